@@ -1,0 +1,1 @@
+"""VoxSoft: describe, mesh, simulate, calibrate and optimise soft robots."""

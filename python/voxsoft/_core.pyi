@@ -1,0 +1,3 @@
+"""Types of the private Rust module."""
+
+__version__: str
