@@ -1,0 +1,137 @@
+"""Physical quantities: plain SI floats in Python, text with a unit in files.
+
+Inside VoxSoft every number is SI and ``float``. For typing there are factors, so that
+``5 * mm`` reads as it should; in a design file a number carries its unit as text, ``"5 mm"``.
+The annotated types (:data:`Length`, :data:`Pressure`, ...) let a pydantic model take either:
+a float that is SI already, or text with a unit of the right kind. When a *file* is read
+(validation context ``{"source": "file"}``) a bare number other than zero is refused.
+
+Examples
+--------
+>>> from voxsoft.units import kPa, mm, parse
+>>> 5 * mm
+0.005
+>>> parse("4 kPa", "pressure") == 4 * kPa
+True
+"""
+
+from voxsoft.units.factors import (
+    GPa,
+    Hz,
+    J,
+    L,
+    MPa,
+    N,
+    Pa,
+    bar,
+    cm,
+    deg,
+    g,
+    inch,
+    kg,
+    kN,
+    kPa,
+    m,
+    mg,
+    mJ,
+    mL,
+    mm,
+    mN,
+    ms,
+    psi,
+    rad,
+    s,
+    um,
+)
+from voxsoft.units.kinds import KINDS, Dimension, Kind, Quantity, describe_dimension
+from voxsoft.units.text import format_quantity, parse, parse_any, round_significant
+from voxsoft.units.types import (
+    FILE_CONTEXT,
+    Acceleration,
+    Angle,
+    Area,
+    Density,
+    Dimensionless,
+    Energy,
+    ExtendedLength,
+    Force,
+    Length,
+    Mass,
+    Modulus,
+    NonNegativeLength,
+    NonNegativeRate,
+    Point,
+    PositiveDensity,
+    PositiveLength,
+    PositiveTime,
+    Pressure,
+    Rate,
+    Stiffness,
+    Time,
+    UnitOf,
+    Vector,
+    Volume,
+)
+
+__all__ = [
+    "FILE_CONTEXT",
+    "KINDS",
+    "Acceleration",
+    "Angle",
+    "Area",
+    "Density",
+    "Dimension",
+    "Dimensionless",
+    "Energy",
+    "ExtendedLength",
+    "Force",
+    "GPa",
+    "Hz",
+    "J",
+    "Kind",
+    "L",
+    "Length",
+    "MPa",
+    "Mass",
+    "Modulus",
+    "N",
+    "NonNegativeLength",
+    "NonNegativeRate",
+    "Pa",
+    "Point",
+    "PositiveDensity",
+    "PositiveLength",
+    "PositiveTime",
+    "Pressure",
+    "Quantity",
+    "Rate",
+    "Stiffness",
+    "Time",
+    "UnitOf",
+    "Vector",
+    "Volume",
+    "bar",
+    "cm",
+    "deg",
+    "describe_dimension",
+    "format_quantity",
+    "g",
+    "inch",
+    "kN",
+    "kPa",
+    "kg",
+    "m",
+    "mJ",
+    "mL",
+    "mN",
+    "mg",
+    "mm",
+    "ms",
+    "parse",
+    "parse_any",
+    "psi",
+    "rad",
+    "round_significant",
+    "s",
+    "um",
+]

@@ -1,0 +1,98 @@
+"""Kinds of quantity (length, pressure, ...) and the dimensions behind them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Final, NamedTuple
+
+
+class Dimension(NamedTuple):
+    """Exponents of length, mass, time and angle.
+
+    An angle has a dimension of its own here: a bare number must not pass for radians.
+
+    Examples
+    --------
+    >>> KINDS["force"].dimension
+    Dimension(length=1, mass=1, time=-2, angle=0)
+    """
+
+    length: int = 0
+    mass: int = 0
+    time: int = 0
+    angle: int = 0
+
+    def times(self, other: Dimension, power: int = 1) -> Dimension:
+        """Dimension of a product with `other` raised to `power`."""
+        return Dimension(*(a + power * b for a, b in zip(self, other, strict=True)))
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number in SI units together with its dimension; what a formula evaluates to."""
+
+    value: float
+    dimension: Dimension
+
+    def __str__(self) -> str:
+        return f"{self.value:.12g} SI ({describe_dimension(self.dimension)})"
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of quantity: its name, dimension and the units it is written in, preferred first."""
+
+    name: str
+    dimension: Dimension
+    units: tuple[str, ...]
+
+    @property
+    def article(self) -> str:
+        """The name with its article, as error messages say it: ``"an area"``."""
+        return f"{'an' if self.name[0] in 'aeiou' else 'a'} {self.name}"
+
+    @property
+    def example(self) -> str:
+        """Text that would be accepted, such as ``"5 mm"``."""
+        return f"5 {self.units[0]}" if self.units else "5"
+
+
+_ALL: Final = (
+    Kind("length", Dimension(1), ("mm", "m", "um")),
+    Kind("area", Dimension(2), ("mm^2", "m^2")),
+    Kind("volume", Dimension(3), ("mL", "mm^3", "m^3")),
+    Kind("pressure", Dimension(-1, 1, -2), ("kPa", "Pa", "MPa")),
+    Kind("modulus", Dimension(-1, 1, -2), ("kPa", "Pa", "MPa", "GPa")),
+    Kind("density", Dimension(-3, 1), ("kg/m^3",)),
+    Kind("mass", Dimension(0, 1), ("g", "kg", "mg")),
+    Kind("force", Dimension(1, 1, -2), ("N", "mN", "kN")),
+    Kind("acceleration", Dimension(1, 0, -2), ("m/s^2",)),
+    Kind("time", Dimension(0, 0, 1), ("s", "ms")),
+    Kind("rate", Dimension(0, 0, -1), ("1/s",)),
+    Kind("speed", Dimension(1, 0, -1), ("m/s", "mm/s")),
+    Kind("angle", Dimension(0, 0, 0, 1), ("deg", "rad")),
+    Kind("stiffness", Dimension(0, 1, -2), ("N/m",)),
+    Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
+    Kind("number", Dimension(), ()),
+)
+
+#: Every kind by name.
+KINDS: Final = MappingProxyType({kind.name: kind for kind in _ALL})
+
+
+def describe_dimension(dimension: Dimension) -> str:
+    """Say a dimension in words: the kind's name, or the exponents where it has none.
+
+    Examples
+    --------
+    >>> describe_dimension(Dimension(length=1))
+    'a length'
+    >>> describe_dimension(Dimension(length=4))
+    'length^4'
+    """
+    for kind in KINDS.values():
+        if kind.dimension == dimension:
+            return "a plain number" if kind.name == "number" else kind.article
+    named = zip(Dimension._fields, dimension, strict=True)
+    return "·".join(f"{name}^{power}" if power != 1 else name for name, power in named if power)

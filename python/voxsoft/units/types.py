@@ -1,0 +1,178 @@
+"""Annotated types: a pydantic field of type ``Length`` takes SI floats or text with a unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from pydantic_core import core_schema
+
+from voxsoft.errors import UnitError
+from voxsoft.units.kinds import KINDS, Quantity, describe_dimension
+from voxsoft.units.text import format_quantity, parse
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+    from pydantic.json_schema import JsonSchemaValue
+
+#: Validation context under which a bare number needs a unit: what a file reader passes.
+FILE_CONTEXT: Final[Mapping[str, str]] = {"source": "file"}
+
+
+@dataclass(frozen=True, slots=True)
+class UnitOf:
+    """Marks a float as a quantity of one kind; use it inside ``Annotated[float, ...]``.
+
+    Parameters
+    ----------
+    kind
+        A key of :data:`voxsoft.units.KINDS`.
+    positive
+        Whether zero and negative values are refused.
+    non_negative
+        Whether negative values are refused.
+    infinite
+        Whether ``inf`` and ``-inf`` are taken (an open range). NaN never is.
+
+    Notes
+    -----
+    Accepts text with a unit, a :class:`Quantity` of the right dimension, and a plain number,
+    which is SI; but under the context ``{"source": "file"}`` only zero may be plain.
+    In JSON mode a value is written as text with a unit.
+
+    Examples
+    --------
+    >>> from pydantic import BaseModel
+    >>> class Tube(BaseModel):
+    ...     wall: Annotated[float, UnitOf("length", positive=True)]
+    >>> Tube(wall="2 mm").wall
+    0.002
+    >>> Tube(wall=0.002).model_dump(mode="json")
+    {'wall': '2 mm'}
+    """
+
+    kind: str
+    positive: bool = False
+    non_negative: bool = False
+    infinite: bool = False
+
+    def read(self, value: object, *, from_file: bool = False) -> float:
+        """Convert text, number or :class:`Quantity` to SI; raise :class:`UnitError` if not."""
+        return self._within_bounds(self._to_si(value, from_file), value)
+
+    def _to_si(self, value: object, from_file: bool) -> float:
+        kind = KINDS[self.kind]
+        if isinstance(value, str):
+            return parse(value, self.kind)
+        if isinstance(value, Quantity):
+            if value.dimension != kind.dimension and value.value != 0:
+                came = describe_dimension(value.dimension)
+                raise UnitError(self.kind, f"the formula gives {came}; {self._due} is due")
+            return value.value
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise UnitError(
+                self.kind,
+                f"{_shown(value)} is not a quantity; {self._due} is due",
+                f'write "{kind.example}"' if kind.units else "write a number",
+            )
+        number = _to_float(value)
+        if from_file and kind.units and number != 0 and math.isfinite(number):
+            raise UnitError(
+                self.kind,
+                f"{value} has no unit; {self._due} is due",
+                f'write "{number:g} {kind.units[0]}"',
+            )
+        return number
+
+    def _within_bounds(self, number: float, value: object) -> float:
+        shown = _shown(value) if isinstance(value, str) else format_quantity(number, self.kind)
+        if math.isnan(number) or (math.isinf(number) and not self.infinite):
+            raise UnitError(self.kind, f"{shown} is not a finite number")
+        if self.positive and number <= 0:
+            raise UnitError(self.kind, f"{shown} is not positive", f"give {self._due} above zero")
+        if self.non_negative and number < 0:
+            raise UnitError(self.kind, f"{shown} is negative", f"give {self._due} of zero or more")
+        return number
+
+    @property
+    def _due(self) -> str:
+        kind = KINDS[self.kind]
+        return kind.article if kind.units else "a plain number"
+
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        """Tell pydantic how to read and write this type."""
+        return core_schema.with_info_plain_validator_function(
+            lambda value, info: self.read(
+                value, from_file=bool(info.context) and info.context.get("source") == "file"
+            ),
+            serialization=core_schema.plain_serializer_function_ser_schema(
+                self._written, when_used="json"
+            ),
+        )
+
+    def _written(self, value: float) -> str | float:
+        written = KINDS[self.kind].units and math.isfinite(value) and value != 0
+        return format_quantity(value, self.kind) if written else value
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Describe the type for JSON Schema: text with a unit, or a number."""
+        kind = KINDS[self.kind]
+        sign = "positive " if self.positive else "non-negative " if self.non_negative else ""
+        if not kind.units:
+            described = f"A {sign}number, or a formula."
+        else:
+            described = (
+                f'A {sign}{kind.name} with its unit, such as "{kind.example}", or a formula; '
+                "in a file only zero may be a bare number."
+            )
+        described_as: dict[str, Any] = {
+            "anyOf": [{"type": "string"}, {"type": "number"}],
+            "description": described,
+            "x-kind": kind.name,
+        }
+        return described_as
+
+
+def _to_float(value: Real) -> float:
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
+def _shown(value: object) -> str:
+    shown = repr(value)
+    return shown if len(shown) <= 60 else f"{shown[:57]}..."
+
+
+Length = Annotated[float, UnitOf("length")]
+PositiveLength = Annotated[float, UnitOf("length", positive=True)]
+NonNegativeLength = Annotated[float, UnitOf("length", non_negative=True)]
+ExtendedLength = Annotated[float, UnitOf("length", infinite=True)]
+Area = Annotated[float, UnitOf("area")]
+Volume = Annotated[float, UnitOf("volume")]
+Pressure = Annotated[float, UnitOf("pressure")]
+Modulus = Annotated[float, UnitOf("modulus", positive=True)]
+Density = Annotated[float, UnitOf("density")]
+PositiveDensity = Annotated[float, UnitOf("density", positive=True)]
+Mass = Annotated[float, UnitOf("mass")]
+Force = Annotated[float, UnitOf("force")]
+Acceleration = Annotated[float, UnitOf("acceleration")]
+Time = Annotated[float, UnitOf("time")]
+PositiveTime = Annotated[float, UnitOf("time", positive=True)]
+Rate = Annotated[float, UnitOf("rate")]
+NonNegativeRate = Annotated[float, UnitOf("rate", non_negative=True)]
+Angle = Annotated[float, UnitOf("angle")]
+Stiffness = Annotated[float, UnitOf("stiffness")]
+Energy = Annotated[float, UnitOf("energy")]
+Dimensionless = Annotated[float, UnitOf("number")]
+
+Point = tuple[Length, Length, Length]
+Vector = tuple[Dimensionless, Dimensionless, Dimensionless]
