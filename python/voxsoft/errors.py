@@ -6,6 +6,27 @@ Errors that correspond to a standard exception inherit it too, so ``except Value
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import NamedTuple, Self
+
+
+class Problem(NamedTuple):
+    """One thing that is wrong: the place, what came and is allowed, and what to try.
+
+    Examples
+    --------
+    >>> str(Problem("wall", "-2 mm is negative"))
+    'wall: -2 mm is negative'
+    """
+
+    where: str
+    what: str = ""
+    hint: str = ""
+
+    def __str__(self) -> str:
+        message = ": ".join(part for part in (self.where, self.what) if part)
+        return f"{message}. Try: {self.hint}" if self.hint else message
+
 
 class VoxSoftError(Exception):
     """Base of all errors raised by VoxSoft.
@@ -19,6 +40,11 @@ class VoxSoftError(Exception):
     hint
         What to try, in plain words; may be empty.
 
+    Attributes
+    ----------
+    problems : tuple of Problem
+        Everything that is wrong, where a check goes on after the first find; at least one.
+
     Examples
     --------
     >>> str(VoxSoftError("wall", "-2 mm is negative", "give a positive length"))
@@ -27,23 +53,41 @@ class VoxSoftError(Exception):
 
     def __init__(self, where: str, what: str = "", hint: str = "") -> None:
         self.where, self.what, self.hint = where, what, hint
+        self.problems: tuple[Problem, ...] = (Problem(where, what, hint),)
         super().__init__(where, what, hint)
 
+    @classmethod
+    def listing(cls, problems: Iterable[Problem]) -> Self:
+        """Make one error of several problems; its own place is that of the first.
+
+        Examples
+        --------
+        >>> print(DesignError.listing([Problem("a", "is missing"), Problem("b", "is negative")]))
+        2 problems
+          a: is missing
+          b: is negative
+        """
+        every = tuple(problems)
+        error = cls(*every[0])
+        error.problems = every
+        return error
+
     def __str__(self) -> str:
-        message = f"{self.where}: {self.what}" if self.what else self.where
-        return f"{message}. Try: {self.hint}" if self.hint else message
+        if len(self.problems) == 1:
+            return str(self.problems[0])
+        return "\n  ".join((f"{len(self.problems)} problems", *map(str, self.problems)))
 
 
 class UnitError(VoxSoftError, ValueError):
     """A missing unit, an unknown unit, or a unit of the wrong kind."""
 
 
-class FormulaError(VoxSoftError, ValueError):
-    """A formula that cannot be read, names something unknown, or runs in a circle."""
-
-
 class DesignError(VoxSoftError, ValueError):
     """A design that is not valid: unknown key, impossible size, missing clamp, ..."""
+
+
+class FormulaError(DesignError):
+    """A formula that cannot be read, names something unknown, or runs in a circle."""
 
 
 class ShapeError(VoxSoftError, ValueError):

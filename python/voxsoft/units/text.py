@@ -248,7 +248,8 @@ def _ask_pint(name: str) -> tuple[Decimal, Dimension] | str:
     except (pint.PintError, AssertionError, AttributeError, ValueError, TypeError):
         return f'there is no unit "{name}"'
     dimension = Dimension()
-    for base_name, exponent in dict(base.unit_items()).items():
+    exponents: dict[str, Any] = dict(base.unit_items())
+    for base_name, exponent in exponents.items():
         if base_name not in _BASE_UNITS or exponent != int(exponent):
             return f'"{name}" is not a mechanical unit'
         dimension = dimension.times(_BASE_UNITS[base_name], int(exponent))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 from pydantic_core import core_schema
 
 from voxsoft.errors import UnitError
-from voxsoft.units.kinds import KINDS, Quantity, describe_dimension
+from voxsoft.units.kinds import KINDS, Dimension, Quantity, describe_dimension
 from voxsoft.units.text import format_quantity, parse
 
 if TYPE_CHECKING:
@@ -68,7 +68,8 @@ class UnitOf:
         if isinstance(value, str):
             return parse(value, self.kind)
         if isinstance(value, Quantity):
-            if value.dimension != kind.dimension and value.value != 0:
+            zero = value.value == 0 and value.dimension == Dimension()
+            if value.dimension != kind.dimension and not zero:
                 came = describe_dimension(value.dimension)
                 raise UnitError(self.kind, f"the formula gives {came}; {self._due} is due")
             return value.value
@@ -148,7 +149,7 @@ def _to_float(value: Real) -> float:
 
 
 def _shown(value: object) -> str:
-    shown = repr(value)
+    shown = f'"{value}"' if isinstance(value, str) else repr(value)
     return shown if len(shown) <= 60 else f"{shown[:57]}..."
 
 

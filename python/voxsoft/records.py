@@ -1,0 +1,221 @@
+"""The base of every typed table of a design, and plain words for what pydantic finds wrong."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, ClassVar, get_args
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic_core import ErrorDetails
+
+from voxsoft.errors import DesignError, FormulaError, Problem, UnitError, VoxSoftError
+
+
+class Record(BaseModel):
+    """An immutable table with named, typed entries; an unknown name is an error.
+
+    Subclasses declare fields as in any pydantic model. Wrong input raises a
+    :class:`~voxsoft.errors.VoxSoftError` (the class variable ``error_type``) that lists every
+    problem with its place; pydantic's own error stays inside.
+
+    Examples
+    --------
+    >>> class Slab(Record):
+    ...     thickness: float
+    >>> Slab(thicknes=1)
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: 2 problems
+      thickness: is missing
+      thicknes: is not known here. Try: did you mean "thickness"?
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", validate_by_name=True, validate_by_alias=True
+    )
+
+    error_type: ClassVar[type[VoxSoftError]] = DesignError
+
+    def __init__(self, /, **data: Any) -> None:  # noqa: ANN401 - the fields declare the types
+        try:
+            super().__init__(**data)
+        except ValidationError as error:
+            raise plain_error(error, type(self), data) from None
+
+    # Tells pydantic that tables nested in tables may skip this constructor, so that the
+    # outermost one sees all problems with their full place and the validation context.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+
+def plain_error(error: ValidationError, model: type[Record], document: object) -> VoxSoftError:
+    """Turn pydantic's error about `document` into ours, one problem per finding.
+
+    Raises nothing; returns the error to raise: a ``FormulaError`` where only formulas are
+    wrong, else the model's ``error_type``.
+    """
+    found = error.errors(include_url=False)
+    problems = [problem for details in found for problem in _problems(details, model, document)]
+    causes = [details.get("ctx", {}).get("error") for details in found]
+    only_formulas = all(isinstance(cause, FormulaError) for cause in causes)
+    return (FormulaError if only_formulas else model.error_type).listing(_without_echo(problems))
+
+
+def place(path: Iterable[str | int]) -> str:
+    """Write a path of keys and indices as it is read aloud: ``parts[0].material``.
+
+    Examples
+    --------
+    >>> place(["parts", 0, "material"])
+    'parts[0].material'
+    """
+    text = ""
+    for key in path:
+        text += f"[{key}]" if isinstance(key, int) else f".{key}" if text else str(key)
+    return text
+
+
+def closest(name: str, known: Iterable[str]) -> str:
+    """Suggest the known name closest to a wrong one, or list what there is.
+
+    Examples
+    --------
+    >>> closest("materal", ["shape", "material"])
+    'did you mean "material"?'
+    >>> closest("colour", ["shape", "material"])
+    'known are material, shape'
+    """
+    names = sorted(known)
+    matches = difflib.get_close_matches(name, names, n=1)
+    if matches:
+        return f'did you mean "{matches[0]}"?'
+    return f"known are {', '.join(names)}" if names else ""
+
+
+def _problems(details: ErrorDetails, model: type[Record], document: object) -> Iterator[Problem]:
+    path = list(_real_keys(details, document))
+    where = place(path)
+    cause = details.get("ctx", {}).get("error")
+    if isinstance(cause, UnitError):
+        yield Problem(where, cause.what, cause.hint)
+    elif isinstance(cause, VoxSoftError):
+        for problem in cause.problems:
+            joined = ".".join(part for part in (where, problem.where) if part)
+            yield Problem(joined.replace(".[", "["), problem.what, problem.hint)
+    elif details["type"] == "extra_forbidden":
+        hint = closest(str(path[-1]), _field_names(model, path[:-1], document))
+        yield Problem(where, "is not known here", hint)
+    elif details["type"] == "missing":
+        yield Problem(where, "is missing")
+    elif details["type"] in {"union_tag_invalid", "union_tag_not_found"}:
+        yield _unknown_kind(details, where)
+    else:
+        yield Problem(where, _in_words(details))
+
+
+def _real_keys(details: ErrorDetails, document: object) -> Iterator[str | int]:
+    """Keep the steps that exist in the document; pydantic adds the names of union branches."""
+    steps, here = details["loc"], document
+    absent = details["type"] == "missing"
+    for position, step in enumerate(steps):
+        if absent and position == len(steps) - 1:
+            yield step
+        elif (child := _child(here, step)) is not _NOTHING:
+            here = child
+            yield step
+
+
+_NOTHING = object()
+
+
+def _child(table: object, step: str | int) -> object:
+    if isinstance(table, Mapping):
+        return table.get(step, _NOTHING)
+    if isinstance(step, int):
+        return table[step] if isinstance(table, Sequence) and step < len(table) else _NOTHING
+    return getattr(table, step) if step in getattr(type(table), "model_fields", ()) else _NOTHING
+
+
+def _unknown_kind(details: ErrorDetails, where: str) -> Problem:
+    context = details.get("ctx", {})
+    tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",") if tag]
+    key = str(context.get("discriminator", "kind")).strip("'")
+    place_of_key = f"{where}.{key}" if where else key
+    if details["type"] == "union_tag_not_found":
+        what = "is missing" if isinstance(details["input"], Mapping) else "a table is due"
+        return Problem(place_of_key, what, closest("", tags) if tags else "")
+    came = str(context.get("tag", ""))
+    return Problem(place_of_key, f'"{came}" is not known', closest(came, tags))
+
+
+_DUE = {
+    "string_type": "text is due",
+    "int_type": "a whole number is due",
+    "int_parsing": "a whole number is due",
+    "int_from_float": "a whole number is due",
+    "float_type": "a number is due",
+    "float_parsing": "a number is due",
+    "bool_type": "true or false is due",
+    "bool_parsing": "true or false is due",
+    "tuple_type": "a list is due",
+    "list_type": "a list is due",
+    "dict_type": "a table is due",
+    "mapping_type": "a table is due",
+    "model_type": "a table is due",
+    "model_attributes_type": "a table is due",
+}
+
+
+def _in_words(details: ErrorDetails) -> str:
+    came = repr(details["input"])
+    came = came if len(came) <= 60 else f"{came[:57]}..."
+    due = _DUE.get(details["type"])
+    if due is None:
+        due = details["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+        due = f"due is {due}" if details["msg"].startswith("Input should be") else due
+    return f"{came} came; {due}"
+
+
+def _without_echo(problems: Sequence[Problem]) -> list[Problem]:
+    """Drop the complaints of union branches that the input never meant.
+
+    Where text or a table may stand (an operand's name, or the operand itself), a faulty table
+    also fails as text: the finding inside the table is the useful one.
+    """
+    deeper = [p.where for p in problems]
+    return [
+        p
+        for p in dict.fromkeys(problems)
+        if "text is due" not in p.what
+        or not any(w != p.where and w.startswith(p.where) for w in deeper)
+    ]
+
+
+def _field_names(model: type[Record], path: Sequence[str | int], document: object) -> set[str]:
+    """Collect the names that may stand in the table at `path`."""
+    reached, here = list(_records(model)), document
+    for step in path:
+        here = _child(here, step)
+        if isinstance(step, int):
+            continue
+        inner = [
+            f.annotation for m in reached for n, f in m.model_fields.items() if step in (n, f.alias)
+        ]
+        # A step that no field has is a key of a mapping such as [shapes]: same type as before.
+        reached = [r for annotation in inner for r in _records(annotation)] or reached
+    kind = here.get("kind") if isinstance(here, Mapping) else None
+    exact = [
+        m
+        for m in reached
+        if kind and "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
+    ]
+    return {f.alias or n for m in exact or reached for n, f in m.model_fields.items()}
+
+
+def _records(annotation: object) -> Iterator[type[Record]]:
+    """Find the record types inside an annotation: behind unions, tuples and mappings."""
+    if isinstance(annotation, type) and issubclass(annotation, Record):
+        yield annotation
+    else:
+        for argument in get_args(annotation):
+            yield from _records(argument)
