@@ -1,1 +1,55 @@
-//! VoxSoft: solid.
+//! One mechanical problem and its answer.
+//!
+//! A [`Body`] is a tetrahedral mesh with materials; a [`Problem`] adds clamps, loads and a floor;
+//! a [`State`] is where the vertices are and how fast they move. Solvers (`xpbd`, later `statics`)
+//! see nothing but this crate. Everything is in SI units and `f64`.
+//!
+//! # Words
+//!
+//! - *constraint*: a scalar function `C(x)` of vertex positions with a compliance `α`; its energy is
+//!   `C²/(2α)` and its Lagrange multiplier at rest is `λ = −C/α`.
+//! - *edge constraint*: `C = |x_a − x_b| − ℓ`, stiffness `1/α = E_e ℓ s`, where `s` is the
+//!   [share](body) of a full turn around the edge that is filled with material.
+//! - *volume constraint*: `C = V − V₀` of a tetrahedron, stiffness `1/α = K/V₀`.
+//! - *residual*: the force that is left over on the vertices that are free to move.
+//!
+//! # Example
+//!
+//! ```
+//! use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Problem};
+//!
+//! let mesh = Mesh {
+//!     vertices: vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+//!     tets: vec![[0, 1, 2, 3]],
+//!     tet_part: vec![0],
+//!     tet_block: vec![0],
+//! };
+//! let rubber = LatticeMaterial::from_moduli(25e3, 100e3, 1070.0)?;
+//! let body = Body::new(&mesh, &[rubber])?;
+//! let clamp = Clamp::fixed(vec![0, 1, 2]);
+//! let gravity = Load::gravity([0.0, 0.0, -9.81]);
+//! let problem = Problem::new(body, vec![clamp], vec![gravity], None)?;
+//! assert!((problem.body().total_mass() - 1070.0 / 6.0).abs() < 1e-9);
+//! # Ok::<(), voxsoft_solid::ProblemError>(())
+//! ```
+
+pub mod balance;
+pub mod body;
+mod clamp;
+pub mod elastic;
+mod error;
+mod history;
+mod lattice;
+mod load;
+mod problem;
+mod state;
+pub mod vector;
+
+pub use body::{Body, Edge, Mesh, Tet};
+pub use clamp::{Clamp, Motion};
+pub use error::ProblemError;
+pub use history::History;
+pub use lattice::LatticeMaterial;
+pub use load::{Load, LoadKind};
+pub use problem::{Floor, Problem};
+pub use state::State;

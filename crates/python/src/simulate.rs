@@ -1,0 +1,440 @@
+//! `_core.Problem` and its two ways to an answer.
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voxsoft_solid::balance::{balance, total_load};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{
+    Body, Clamp, Floor, History, LatticeMaterial, Load, LoadKind, Mesh, Motion, Problem,
+    ProblemError, State, elastic,
+};
+use voxsoft_xpbd::{Answer, Damping, Dynamics, Progress, Relaxation, Status, relax, simulate};
+
+use crate::gate;
+
+/// How often a Python progress callback is called at most.
+const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
+
+/// The Python class for each error; every variant is bad input to a constructor.
+fn to_python(error: ProblemError) -> PyErr {
+    PyValueError::new_err(error.to_string())
+}
+
+fn rows<const N: usize, T: numpy::Element + Copy>(
+    what: &str,
+    array: &PyReadonlyArray2<'_, T>,
+) -> PyResult<Vec<[T; N]>> {
+    let view = array.as_array();
+    if view.ncols() != N {
+        let message = format!("{what} must have {N} columns, got {}", view.ncols());
+        return Err(PyValueError::new_err(message));
+    }
+    let row = |row: numpy::ndarray::ArrayView1<'_, T>| std::array::from_fn(|i| row[i]);
+    Ok(view.rows().into_iter().map(row).collect())
+}
+
+/// A time history: times in s and factors.
+type HistoryArgument = Option<(Vec<f64>, Vec<f64>)>;
+
+fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
+    match argument {
+        Some((times, factors)) => History::new(times, factors),
+        None => Ok(History::constant()),
+    }
+}
+
+/// One mechanical problem: a body with clamps, loads and a floor.
+#[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
+pub struct PyProblem {
+    mesh: Mesh,
+    problem: Problem,
+}
+
+/// Collects clamps and loads before the problem is made.
+#[pyclass(name = "ProblemParts", module = "voxsoft._core")]
+#[derive(Default)]
+pub struct PyProblemParts {
+    clamps: Vec<Clamp>,
+    loads: Vec<Load>,
+    floor: Option<Floor>,
+}
+
+#[pymethods]
+impl PyProblemParts {
+    #[new]
+    fn new() -> Self {
+        Self::default()
+    }
+
+    #[pyo3(signature = (vertices, axes, displacement=None, axis=[0.0, 0.0, 1.0], angle=0.0, center=[0.0; 3], history=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of one Python call")]
+    fn clamp(
+        &mut self,
+        vertices: PyReadonlyArray1<'_, u32>,
+        axes: [bool; 3],
+        displacement: Option<Vec3>,
+        axis: Vec3,
+        angle: f64,
+        center: Vec3,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let motion = match displacement {
+            Some(displacement) => {
+                let history = self::history(history).map_err(to_python)?;
+                Some(Motion { displacement, axis, angle, center, history })
+            }
+            None => None,
+        };
+        let vertices = vertices.as_array().to_vec();
+        self.clamps.push(Clamp { vertices, axes, motion });
+        Ok(())
+    }
+
+    #[pyo3(signature = (acceleration, history=None))]
+    fn gravity(&mut self, acceleration: Vec3, history: HistoryArgument) -> PyResult<()> {
+        self.load(LoadKind::Gravity(acceleration), history)
+    }
+
+    #[pyo3(signature = (triangles, pressure, history=None))]
+    fn pressure(
+        &mut self,
+        triangles: PyReadonlyArray2<'_, u32>,
+        pressure: f64,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let triangles = rows("triangles", &triangles)?;
+        self.load(LoadKind::Pressure { triangles, pressure }, history)
+    }
+
+    #[pyo3(signature = (vertices, forces, history=None))]
+    fn forces(
+        &mut self,
+        vertices: PyReadonlyArray1<'_, u32>,
+        forces: PyReadonlyArray2<'_, f64>,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let forces = rows("forces", &forces)?;
+        let vertices = vertices.as_array().to_vec();
+        self.load(LoadKind::Forces { vertices, forces }, history)
+    }
+
+    fn floor(&mut self, z: f64) {
+        self.floor = Some(Floor { z });
+    }
+}
+
+impl PyProblemParts {
+    fn load(&mut self, kind: LoadKind, history: HistoryArgument) -> PyResult<()> {
+        let history = self::history(history).map_err(to_python)?;
+        self.loads.push(Load { kind, history });
+        Ok(())
+    }
+}
+
+/// Two numbers and the density: moduli in Pa, or raw compliances where `raw`.
+type MaterialArgument = (bool, f64, f64, f64);
+
+fn material((raw, edge, volume, density): MaterialArgument) -> Result<LatticeMaterial, ProblemError> {
+    if raw {
+        LatticeMaterial::from_compliances(edge, volume, density)
+    } else {
+        LatticeMaterial::from_moduli(edge, volume, density)
+    }
+}
+
+/// Young's modulus (Pa) and Poisson's ratio of a lattice material at a voxel size (m).
+#[pyfunction]
+pub fn lattice_constants(argument: MaterialArgument, voxel_size: f64) -> PyResult<(f64, f64)> {
+    let material = material(argument).map_err(to_python)?;
+    Ok((material.young(voxel_size), material.poisson(voxel_size)))
+}
+
+#[pymethods]
+impl PyProblem {
+    #[new]
+    fn new(
+        vertices: PyReadonlyArray2<'_, f64>,
+        tets: PyReadonlyArray2<'_, u32>,
+        tet_part: PyReadonlyArray1<'_, u8>,
+        tet_block: PyReadonlyArray1<'_, u32>,
+        materials: Vec<MaterialArgument>,
+        parts: PyRef<'_, PyProblemParts>,
+    ) -> PyResult<Self> {
+        let mesh = Mesh {
+            vertices: rows("vertices", &vertices)?,
+            tets: rows("tets", &tets)?,
+            tet_part: tet_part.as_array().to_vec(),
+            tet_block: tet_block.as_array().to_vec(),
+        };
+        let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
+        Ok(Self { mesh, problem })
+    }
+
+    /// The same body and loads with other materials.
+    fn with_materials(&self, materials: Vec<MaterialArgument>) -> PyResult<Self> {
+        let parts = PyProblemParts {
+            clamps: self.problem.clamps().to_vec(),
+            loads: self.problem.loads().to_vec(),
+            floor: self.problem.floor(),
+        };
+        let problem = assemble(&self.mesh, materials, &parts).map_err(to_python)?;
+        Ok(Self { mesh: self.mesh.clone(), problem })
+    }
+
+    #[getter]
+    fn mass(&self) -> f64 {
+        self.problem.body().total_mass()
+    }
+
+    #[getter]
+    fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.problem.body().masses())
+    }
+
+    /// Edges as (vertices, rest length, stiffness) arrays.
+    #[expect(clippy::type_complexity, reason = "three arrays")]
+    fn edges<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> (Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
+        let edges = self.problem.body().edges();
+        let vertices: Vec<[u32; 2]> = edges.iter().map(|edge| edge.vertices).collect();
+        let collect = |value: fn(&voxsoft_solid::Edge) -> f64| edges.iter().map(value).collect();
+        (
+            from_rows(py, &vertices),
+            PyArray1::from_vec(py, collect(|edge| edge.length)),
+            PyArray1::from_vec(py, collect(|edge| edge.stiffness)),
+        )
+    }
+
+    /// Elastic energy in J and forces in N at the given positions.
+    fn elastic<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<(f64, Bound<'py, PyArray2<f64>>)> {
+        let positions = self.positions(&positions)?;
+        let mut forces = vec![[0.0; 3]; positions.len()];
+        elastic::add_forces(self.problem.body(), &positions, &mut forces);
+        Ok((elastic::energy(self.problem.body(), &positions), from_rows(py, &forces)))
+    }
+
+    #[pyo3(signature = (*, tolerance, max_steps, start=None, progress=None))]
+    fn relax<'py>(
+        &self,
+        py: Python<'py>,
+        tolerance: f64,
+        max_steps: u64,
+        start: Option<PyReadonlyArray2<'_, f64>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let settings = Relaxation { tolerance, max_steps };
+        let mut state = State::at_rest(self.problem.body());
+        if let Some(start) = start {
+            state.positions = self.positions(&start)?;
+        }
+        let mut watch = Watch::new(progress, Vec::new(), false);
+        let answer = gate::run(py, |cancel| {
+            relax(&self.problem, state, &settings, &mut |now| watch.see(now, cancel))
+        })?;
+        self.report(py, answer, watch, f64::INFINITY)
+    }
+
+    #[pyo3(signature = (*, time_step, substeps, iterations, damping, retardation, end_time, max_time, tolerance,
+        record_interval=None, sensors=vec![], frames=false, progress=None))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of one Python call")]
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        time_step: f64,
+        substeps: Option<u32>,
+        iterations: u32,
+        damping: Option<f64>,
+        retardation: f64,
+        end_time: Option<f64>,
+        max_time: f64,
+        tolerance: f64,
+        record_interval: Option<f64>,
+        sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
+        frames: bool,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let damping = damping.map_or(Damping::Critical, Damping::Rate);
+        let settings = Dynamics {
+            time_step,
+            substeps,
+            iterations,
+            damping,
+            retardation,
+            end_time,
+            max_time,
+            tolerance,
+            record_interval,
+        };
+        let state = State::at_rest(self.problem.body());
+        let sensors = sensors
+            .iter()
+            .map(|(vertices, weights)| Sensor {
+                vertices: vertices.as_array().to_vec(),
+                weights: weights.as_array().to_vec(),
+            })
+            .collect();
+        let mut watch = Watch::new(progress, sensors, frames);
+        let answer = gate::run(py, |cancel| {
+            simulate(&self.problem, state, &settings, &mut |now| watch.see(now, cancel))
+        })?;
+        let time = answer.state.time;
+        self.report(py, answer, watch, time)
+    }
+}
+
+fn assemble(
+    mesh: &Mesh,
+    materials: Vec<MaterialArgument>,
+    parts: &PyProblemParts,
+) -> Result<Problem, ProblemError> {
+    let materials: Result<Vec<_>, _> = materials.into_iter().map(material).collect();
+    let body = Body::new(mesh, &materials?)?;
+    Problem::new(body, parts.clamps.clone(), parts.loads.clone(), parts.floor)
+}
+
+impl PyProblem {
+    fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
+        let positions = rows("positions", array)?;
+        let expected = self.problem.body().rest().len();
+        if positions.len() != expected {
+            let message = format!("positions: {} rows, expected {expected}", positions.len());
+            return Err(PyValueError::new_err(message));
+        }
+        Ok(positions)
+    }
+
+    fn report<'py>(
+        &self,
+        py: Python<'py>,
+        answer: Answer,
+        watch: Watch,
+        time: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        if let Some(raised) = watch.raised {
+            return Err(raised);
+        }
+        let positions = &answer.state.positions;
+        let balance = balance(&self.problem, positions, time);
+        let (load, load_moment) = total_load(&self.problem, positions, time);
+        let report = PyDict::new(py);
+        let status = match answer.status {
+            Status::AtRest => "at-rest",
+            Status::EndTime => "end-time",
+            Status::NotAtRest => "not-at-rest",
+            Status::Diverged => "diverged",
+            Status::Cancelled => "cancelled",
+        };
+        report.set_item("status", status)?;
+        report.set_item("positions", from_rows(py, positions))?;
+        report.set_item("velocities", from_rows(py, &answer.state.velocities))?;
+        report.set_item("time", answer.state.time)?;
+        report.set_item("residual", answer.residual)?;
+        report.set_item("steps", answer.steps)?;
+        report.set_item("back_offs", answer.back_offs)?;
+        report.set_item("substep", answer.substep)?;
+        report.set_item("breakdown", answer.breakdown.map(|b| (b.vertex, b.rest, b.when)))?;
+        report.set_item("reactions", from_rows(py, &balance.reactions))?;
+        report.set_item("reaction", balance.total_reaction())?;
+        report.set_item("reaction_moment", balance.total_moment(positions))?;
+        report.set_item("load", load)?;
+        report.set_item("load_moment", load_moment)?;
+        report.set_item("elastic_energy", elastic::energy(self.problem.body(), positions))?;
+        report.set_item("record_times", PyArray1::from_vec(py, watch.times))?;
+        let sensors = watch.sensors.len();
+        let records = PyArray1::from_vec(py, watch.records).reshape([watch.recorded, sensors, 3])?;
+        report.set_item("records", records)?;
+        let frames: Bound<'py, PyArray3<f64>> = PyArray1::from_vec(py, watch.frames)
+            .reshape([if watch.keep_frames { watch.recorded } else { 0 }, positions.len(), 3])?;
+        report.set_item("frames", frames)?;
+        Ok(report)
+    }
+}
+
+/// A weighted mean of vertices whose position is recorded.
+struct Sensor {
+    vertices: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+/// Watches a run: records, reports progress to Python and passes on Ctrl-C.
+struct Watch {
+    progress: Option<Py<PyAny>>,
+    last_call: Instant,
+    sensors: Vec<Sensor>,
+    keep_frames: bool,
+    recorded: usize,
+    times: Vec<f64>,
+    records: Vec<f64>,
+    frames: Vec<f64>,
+    raised: Option<PyErr>,
+}
+
+impl Watch {
+    fn new(progress: Option<Py<PyAny>>, sensors: Vec<Sensor>, keep_frames: bool) -> Self {
+        Self {
+            progress,
+            last_call: Instant::now(),
+            sensors,
+            keep_frames,
+            recorded: 0,
+            times: Vec::new(),
+            records: Vec::new(),
+            frames: Vec::new(),
+            raised: None,
+        }
+    }
+
+    fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
+        if now.record {
+            self.record(&now.state.positions, now.state.time);
+        }
+        if let Some(progress) = &self.progress
+            && self.last_call.elapsed() >= PROGRESS_PERIOD
+        {
+            self.last_call = Instant::now();
+            let arguments = (now.steps, now.state.time, now.residual);
+            if let Err(raised) = Python::attach(|py| progress.call1(py, arguments)) {
+                self.raised = Some(raised);
+                return ControlFlow::Break(());
+            }
+        }
+        if cancel.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn record(&mut self, positions: &[Vec3], time: f64) {
+        self.recorded += 1;
+        self.times.push(time);
+        for sensor in &self.sensors {
+            let mut mean = [0.0; 3];
+            for (&vertex, weight) in sensor.vertices.iter().zip(&sensor.weights) {
+                for axis in 0..3 {
+                    mean[axis] += weight * positions[vertex as usize][axis];
+                }
+            }
+            self.records.extend(mean);
+        }
+        if self.keep_frames {
+            self.frames.extend(positions.as_flattened());
+        }
+    }
+}
+
+fn from_rows<'py, const N: usize, T: numpy::Element + Copy>(
+    py: Python<'py>,
+    rows: &[[T; N]],
+) -> Bound<'py, PyArray2<T>> {
+    PyArray1::from_slice(py, rows.as_flattened())
+        .reshape([rows.len(), N])
+        .expect("a flattened array of rows has rows times N entries")
+}

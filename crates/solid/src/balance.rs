@@ -1,0 +1,97 @@
+//! Balance of forces: the residual that tells rest from motion, reactions and moments.
+
+use crate::vector::{Vec3, add, axpy, cross};
+use crate::{Problem, elastic};
+
+/// Forces on all vertices of a body, sorted by who carries them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Balance {
+    /// Norm of the forces left over on free vertices in N.
+    pub residual: f64,
+    /// Norm against which the residual counts: the larger of all external and all support forces, N.
+    pub scale: f64,
+    /// Elastic plus external force on every vertex in N.
+    pub net: Vec<Vec3>,
+    /// What clamps and floor answer with: minus the net force on held axes, N.
+    pub reactions: Vec<Vec3>,
+}
+
+impl Balance {
+    /// The residual without units; zero for a body without any force.
+    pub fn relative_residual(&self) -> f64 {
+        if self.residual == 0.0 { 0.0 } else { self.residual / self.scale }
+    }
+
+    /// The total reaction in N.
+    pub fn total_reaction(&self) -> Vec3 {
+        self.reactions.iter().fold([0.0; 3], |sum, r| add(sum, *r))
+    }
+
+    /// The total moment of the reactions about the origin in N m.
+    pub fn total_moment(&self, positions: &[Vec3]) -> Vec3 {
+        self.reactions
+            .iter()
+            .zip(positions)
+            .fold([0.0; 3], |sum, (r, x)| add(sum, cross(*x, *r)))
+    }
+}
+
+/// The balance of a body at `positions` under its loads at `time` (s).
+pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
+    let count = positions.len();
+    let mut external = vec![[0.0; 3]; count];
+    problem.add_loads(positions, time, &mut external);
+    let mut net = external.clone();
+    elastic::add_forces(problem.body(), positions, &mut net);
+
+    let mut reactions = vec![[0.0; 3]; count];
+    let (mut residual, mut applied, mut supported) = (0.0, 0.0, 0.0);
+    for vertex in 0..count {
+        for axis in 0..3 {
+            let force = net[vertex][axis];
+            applied += external[vertex][axis].powi(2);
+            if problem.held()[vertex][axis] || rests_on_floor(problem, vertex, axis, positions, force) {
+                reactions[vertex][axis] = -force;
+                supported += force * force;
+            } else {
+                residual += force * force;
+            }
+        }
+    }
+    let scale = f64::max(applied, supported).sqrt();
+    Balance { residual: residual.sqrt(), scale, net, reactions }
+}
+
+/// The floor carries a vertex that touches it and is pressed down.
+pub fn rests_on_floor(
+    problem: &Problem,
+    vertex: usize,
+    axis: usize,
+    positions: &[Vec3],
+    force: f64,
+) -> bool {
+    axis == 2 && force < 0.0 && problem.floor().is_some_and(|floor| positions[vertex][2] <= floor.z)
+}
+
+/// The volume in m³ enclosed by triangles whose normals point out of the solid, into the cavity.
+pub fn cavity_volume(triangles: &[[u32; 3]], positions: &[Vec3]) -> f64 {
+    let mut six_volumes = 0.0;
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| positions[v as usize]);
+        let normal = cross(b, c);
+        six_volumes -= a[0] * normal[0] + a[1] * normal[1] + a[2] * normal[2];
+    }
+    six_volumes / 6.0
+}
+
+/// The external force (N) and moment about the origin (N m) of all loads.
+pub fn total_load(problem: &Problem, positions: &[Vec3], time: f64) -> (Vec3, Vec3) {
+    let mut external = vec![[0.0; 3]; positions.len()];
+    problem.add_loads(positions, time, &mut external);
+    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    for (f, x) in external.iter().zip(positions) {
+        axpy(&mut force, 1.0, *f);
+        axpy(&mut moment, 1.0, cross(*x, *f));
+    }
+    (force, moment)
+}

@@ -1,0 +1,297 @@
+//! The body: masses and constraints of a tetrahedral mesh with materials.
+//!
+//! # The share of an edge
+//!
+//! An edge inside the body is worth a full spring, one on its surface less, or a thin wall would be
+//! too stiff and the material would change with the voxel size. The share `s` is the sum of the
+//! dihedral angles of the tetrahedra around the edge over a full turn: 1 inside, 1/4 at the outer
+//! edge of a single voxel, 1/2 for a face diagonal on the surface. Written per voxel, every voxel
+//! carries the same energy density, and materials meet at an interface in proportion:
+//! `k = ℓ Σ_tets E_e(tet) θ(tet)/2π`.
+
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use crate::lattice::Stiffness;
+use crate::vector::{Vec3, cross, dot, norm, sub};
+use crate::{LatticeMaterial, ProblemError};
+
+/// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
+const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
+    ([0, 1], [2, 3]),
+    ([0, 2], [3, 1]),
+    ([0, 3], [1, 2]),
+    ([1, 2], [0, 3]),
+    ([1, 3], [2, 0]),
+    ([2, 3], [0, 1]),
+];
+
+/// The plain arrays that a body is built from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    /// Positions at rest in m.
+    pub vertices: Vec<Vec3>,
+    /// Four vertices each, positive volume.
+    pub tets: Vec<[u32; 4]>,
+    /// The material of each tetrahedron, an index into the list of materials.
+    pub tet_part: Vec<u8>,
+    /// The block of each tetrahedron (its voxel); blocks are numbered from 0 without gaps.
+    pub tet_block: Vec<u32>,
+}
+
+/// An edge constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Edge {
+    /// The two vertices.
+    pub vertices: [u32; 2],
+    /// Rest length in m.
+    pub length: f64,
+    /// Stiffness in N/m: the inverse of the compliance.
+    pub stiffness: f64,
+}
+
+/// A volume constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tet {
+    /// The four vertices.
+    pub vertices: [u32; 4],
+    /// Rest volume in m³.
+    pub volume: f64,
+    /// Stiffness in Pa/m³ on `V − V₀`: the inverse of the compliance.
+    pub stiffness: f64,
+}
+
+/// Masses and constraints. Constraints are grouped in blocks (a voxel each) in a colour order:
+/// blocks of one colour share no vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    rest: Vec<Vec3>,
+    masses: Vec<f64>,
+    edges: Vec<Edge>,
+    tets: Vec<Tet>,
+    block_edges: Vec<u32>,
+    block_tets: Vec<u32>,
+    colors: Vec<u32>,
+}
+
+impl Body {
+    /// Builds the body; `materials[mesh.tet_part[t]]` is the material of tetrahedron `t`.
+    pub fn new(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<Self, ProblemError> {
+        check(mesh, materials)?;
+        let order = color_order(mesh);
+        let volumes: Vec<f64> = mesh.tets.iter().map(|t| volume(&mesh.vertices, *t)).collect();
+        if let Some(tet) = volumes.iter().position(|v| v.is_nan() || *v <= 0.0) {
+            return Err(ProblemError::RestVolume { tet, volume: volumes[tet] });
+        }
+
+        let mut masses = vec![0.0; mesh.vertices.len()];
+        let mut tets = Vec::with_capacity(mesh.tets.len());
+        let mut edges: Vec<Edge> = Vec::new();
+        let mut edge_index: HashMap<[u32; 2], usize> = HashMap::new();
+        let (mut block_edges, mut block_tets) = (vec![0], vec![0]);
+        for block in &order.blocks {
+            let side = f64::cbrt(block.iter().map(|&t| volumes[t]).sum());
+            for &t in block {
+                let material = materials[usize::from(mesh.tet_part[t])];
+                for vertex in mesh.tets[t] {
+                    masses[vertex as usize] += material.density() * volumes[t] / 4.0;
+                }
+                tets.push(volume_constraint(mesh.tets[t], volumes[t], material));
+                for (pair, opposite) in TET_EDGES {
+                    let ends = pair.map(|corner| mesh.tets[t][corner]);
+                    let apexes = opposite.map(|corner| mesh.tets[t][corner]);
+                    let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                    let index = *edge_index.entry(key).or_insert_with(|| {
+                        edges.push(unstressed_edge(&mesh.vertices, key));
+                        edges.len() - 1
+                    });
+                    let share = dihedral(&mesh.vertices, key, apexes) / TAU;
+                    let edge = &mut edges[index];
+                    edge.stiffness += edge_stiffness(material, edge.length, share, side)
+                        .ok_or(ProblemError::NotVoxels { tet: t })?;
+                }
+            }
+            block_edges.push(edges.len() as u32);
+            block_tets.push(tets.len() as u32);
+        }
+        Ok(Self {
+            rest: mesh.vertices.clone(),
+            masses,
+            edges,
+            tets,
+            block_edges,
+            block_tets,
+            colors: order.colors,
+        })
+    }
+
+    /// Positions at rest in m.
+    pub fn rest(&self) -> &[Vec3] {
+        &self.rest
+    }
+
+    /// The lumped mass of every vertex in kg: a quarter of each tetrahedron around it.
+    pub fn masses(&self) -> &[f64] {
+        &self.masses
+    }
+
+    /// The mass of the body in kg.
+    pub fn total_mass(&self) -> f64 {
+        self.masses.iter().sum()
+    }
+
+    /// All edge constraints, block after block.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+
+    /// All volume constraints, block after block.
+    pub fn tets(&self) -> &[Tet] {
+        &self.tets
+    }
+
+    /// The blocks in the order of solution: the ranges of their edges and tetrahedra. An edge
+    /// belongs to the first block that holds it.
+    pub fn blocks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+        let range = |ends: &[u32], i: usize| ends[i] as usize..ends[i + 1] as usize;
+        (0..self.block_tets.len() - 1)
+            .map(move |i| (range(&self.block_edges, i), range(&self.block_tets, i)))
+    }
+
+    /// Where each colour ends in [`Body::blocks`].
+    pub fn colors(&self) -> &[u32] {
+        &self.colors
+    }
+
+    /// The diagonal of the bounding box at rest in m: the size against which motion is measured.
+    pub fn size(&self) -> f64 {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for p in &self.rest {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(p[axis]);
+                high[axis] = high[axis].max(p[axis]);
+            }
+        }
+        norm(sub(high, low))
+    }
+}
+
+fn check(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<(), ProblemError> {
+    let expected = mesh.tets.len();
+    for (what, got) in [
+        ("parts of tetrahedra", mesh.tet_part.len()),
+        ("blocks of tetrahedra", mesh.tet_block.len()),
+    ] {
+        if got != expected {
+            return Err(ProblemError::Length { what, got, expected });
+        }
+    }
+    if mesh.vertices.iter().flatten().any(|value| !value.is_finite()) {
+        return Err(ProblemError::NotFinite { what: "the vertices" });
+    }
+    let in_range = |what, index: usize, count: usize| {
+        if index < count {
+            Ok(())
+        } else {
+            Err(ProblemError::Index { what, index, count })
+        }
+    };
+    for tet in &mesh.tets {
+        for &vertex in tet {
+            in_range("vertex of a tetrahedron", vertex as usize, mesh.vertices.len())?;
+        }
+    }
+    for &part in &mesh.tet_part {
+        in_range("material of a tetrahedron", usize::from(part), materials.len())?;
+    }
+    for &block in &mesh.tet_block {
+        in_range("block of a tetrahedron", block as usize, expected)?;
+    }
+    Ok(())
+}
+
+struct ColorOrder {
+    /// The tetrahedra of each block, blocks sorted by colour.
+    blocks: Vec<Vec<usize>>,
+    colors: Vec<u32>,
+}
+
+/// Greedy colouring: a block takes the lowest colour that none of its vertices has seen. Voxels in
+/// C order get the eight colours of their parities where the grid is dense.
+fn color_order(mesh: &Mesh) -> ColorOrder {
+    let count = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
+    let mut members = vec![Vec::new(); count];
+    for (tet, &block) in mesh.tet_block.iter().enumerate() {
+        members[block as usize].push(tet);
+    }
+    let mut seen = vec![0u128; mesh.vertices.len()];
+    let mut by_color: Vec<Vec<Vec<usize>>> = Vec::new();
+    for block in members.into_iter().filter(|block| !block.is_empty()) {
+        let vertices = || block.iter().flat_map(|&t| mesh.tets[t]).map(|v| v as usize);
+        let taken = vertices().fold(0, |taken, v| taken | seen[v]);
+        // A vertex with more than 128 blocks around it cannot be coloured apart; such blocks share
+        // the last colour, which only costs parallelism because blocks are solved in order.
+        let color = (taken.trailing_ones() as usize).min(127);
+        vertices().for_each(|v| seen[v] |= 1 << color);
+        if by_color.len() <= color {
+            by_color.resize(color + 1, Vec::new());
+        }
+        by_color[color].push(block);
+    }
+    let mut end = 0;
+    let colors = by_color.iter().map(|blocks| {
+        end += blocks.len() as u32;
+        end
+    });
+    let colors = colors.collect();
+    ColorOrder { blocks: by_color.into_iter().flatten().collect(), colors }
+}
+
+/// The signed volume of a tetrahedron in m³.
+fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
+    let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
+    dot(sub(b, a), cross(sub(c, a), sub(d, a))) / 6.0
+}
+
+fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial) -> Tet {
+    let stiffness = match material.stiffness() {
+        Stiffness::Moduli { bulk, .. } => bulk / volume,
+        Stiffness::Compliances { volume, .. } => 1.0 / volume,
+    };
+    Tet { vertices, volume, stiffness }
+}
+
+fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {
+    let length = norm(sub(vertices[a as usize], vertices[b as usize]));
+    Edge { vertices: [a, b], length, stiffness: 0.0 }
+}
+
+/// The stiffness that one tetrahedron adds to one of its edges, or `None` for a raw compliance away
+/// from a voxel of the given side.
+fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64) -> Option<f64> {
+    match material.stiffness() {
+        Stiffness::Moduli { edge, .. } => Some(edge * length * share),
+        Stiffness::Compliances { edge, .. } => {
+            // A full turn holds four voxels around a cube edge and two around a face diagonal; each
+            // voxel brings one edge of the raw compliance.
+            let is_length = |multiple: f64| (length / (side * multiple) - 1.0).abs() < 1e-6;
+            if is_length(1.0) {
+                Some(4.0 * share / edge)
+            } else if is_length(f64::sqrt(2.0)) {
+                Some(2.0 * share / edge)
+            } else {
+                None
+            }
+        }
+    }
+}
+
+/// The angle in rad between the two faces of a tetrahedron that meet at the edge `ends`.
+fn dihedral(vertices: &[Vec3], ends: [u32; 2], apexes: [u32; 2]) -> f64 {
+    let [a, b] = ends.map(|v| vertices[v as usize]);
+    let along = sub(b, a);
+    let [n, m] = apexes.map(|v| cross(along, sub(vertices[v as usize], a)));
+    f64::atan2(norm(cross(n, m)), dot(n, m))
+}

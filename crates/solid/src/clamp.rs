@@ -1,0 +1,46 @@
+use crate::History;
+use crate::vector::{Vec3, add, rotate, scale, sub};
+
+/// Vertices held on some axes, at rest or along a prescribed motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clamp {
+    /// The vertices.
+    pub vertices: Vec<u32>,
+    /// Which axes (x, y, z) are held.
+    pub axes: [bool; 3],
+    /// The prescribed motion; `None` holds the rest position.
+    pub motion: Option<Motion>,
+}
+
+/// A rigid motion: a turn about an axis through a centre, then a translation, both times a history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Translation in m.
+    pub displacement: Vec3,
+    /// Unit vector of the axis of rotation.
+    pub axis: Vec3,
+    /// Angle in rad.
+    pub angle: f64,
+    /// Centre of rotation in m.
+    pub center: Vec3,
+    /// The factor over time on translation and angle.
+    pub history: History,
+}
+
+impl Clamp {
+    /// Holds all axes of the vertices where they are.
+    pub fn fixed(vertices: Vec<u32>) -> Self {
+        Self { vertices, axes: [true; 3], motion: None }
+    }
+
+    /// Where the clamp wants a vertex with the rest position `rest` at `time` (s), the motion being
+    /// scaled by `ramp` (0 to 1).
+    pub fn target(&self, rest: Vec3, time: f64, ramp: f64) -> Vec3 {
+        let Some(motion) = &self.motion else {
+            return rest;
+        };
+        let factor = ramp * motion.history.at(time);
+        let turned = rotate(sub(rest, motion.center), motion.axis, factor * motion.angle);
+        add(add(motion.center, turned), scale(factor, motion.displacement))
+    }
+}

@@ -1,0 +1,61 @@
+use thiserror::Error;
+
+/// Why a mechanical problem could not be set up.
+#[derive(Debug, Error, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum ProblemError {
+    /// Arrays that belong together have different lengths.
+    #[error("{what}: {got} entries, expected {expected}")]
+    Length {
+        /// The array.
+        what: &'static str,
+        /// Its length.
+        got: usize,
+        /// The length that its partner has.
+        expected: usize,
+    },
+    /// An index points past the end.
+    #[error("{what}: index {index} is out of range, there are {count}")]
+    Index {
+        /// What is indexed.
+        what: &'static str,
+        /// The index.
+        index: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A tetrahedron has no volume or is inside out at rest.
+    #[error("tetrahedron {tet} has the volume {volume:e} m³ at rest; it must be positive")]
+    RestVolume {
+        /// The tetrahedron's index.
+        tet: usize,
+        /// Its signed volume in m³.
+        volume: f64,
+    },
+    /// A constant that must be positive and finite is not.
+    #[error("{what} is {value:e}; it must be positive and finite")]
+    NotPositive {
+        /// The constant's name with its unit.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A number is NaN or infinite.
+    #[error("{what} holds a number that is not finite")]
+    NotFinite {
+        /// Where the number stands.
+        what: &'static str,
+    },
+    /// The times of a load history do not increase, or the history is empty.
+    #[error("the times of a history must increase; entry {entry} does not")]
+    History {
+        /// The first entry that breaks the rule.
+        entry: usize,
+    },
+    /// A raw compliance belongs to voxels, and these blocks are not voxels of one size.
+    #[error("raw compliances need a mesh of voxels: tetrahedron {tet} is not one of five in a cube")]
+    NotVoxels {
+        /// The first tetrahedron that is out of place.
+        tet: usize,
+    },
+}

@@ -1,0 +1,44 @@
+use crate::History;
+use crate::vector::Vec3;
+
+/// A load with its history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// What it does.
+    pub kind: LoadKind,
+    /// The factor over time.
+    pub history: History,
+}
+
+/// The kinds of loads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadKind {
+    /// An acceleration of all mass in m/s².
+    Gravity(Vec3),
+    /// A pressure in Pa on triangles whose normals point out of the solid; it follows the surface.
+    Pressure {
+        /// The loaded triangles.
+        triangles: Vec<[u32; 3]>,
+        /// The pressure; positive pushes against the solid.
+        pressure: f64,
+    },
+    /// Forces in N on vertices, fixed in direction.
+    Forces {
+        /// The loaded vertices.
+        vertices: Vec<u32>,
+        /// The force on each.
+        forces: Vec<Vec3>,
+    },
+}
+
+impl Load {
+    /// A constant gravity in m/s².
+    pub fn gravity(acceleration: Vec3) -> Self {
+        Self::constant(LoadKind::Gravity(acceleration))
+    }
+
+    /// A load that does not vary with time.
+    pub fn constant(kind: LoadKind) -> Self {
+        Self { kind, history: History::constant() }
+    }
+}

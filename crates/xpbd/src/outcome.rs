@@ -1,0 +1,113 @@
+use std::ops::ControlFlow;
+
+use voxsoft_solid::vector::{Vec3, norm, sub};
+use voxsoft_solid::{Problem, State};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Residual force and speed fell below the tolerance.
+    AtRest,
+    /// The end time was reached, as asked.
+    EndTime,
+    /// Steps or time ran out before the body came to rest.
+    NotAtRest,
+    /// The step was backed off as far as allowed and the body still flew apart.
+    Diverged,
+    /// The observer asked to stop.
+    Cancelled,
+}
+
+/// Where and when a run broke down.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Breakdown {
+    /// The vertex that went farthest or lost its number.
+    pub vertex: usize,
+    /// Its position at rest in m.
+    pub rest: Vec3,
+    /// The time in s (dynamics) or the number of steps (relaxation).
+    pub when: f64,
+}
+
+/// The answer of a run: the last good state and how it was reached.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// The last good state.
+    pub state: State,
+    /// How the run ended.
+    pub status: Status,
+    /// The residual force without units, see [`voxsoft_solid::balance::Balance`].
+    pub residual: f64,
+    /// Substeps (dynamics) or steps (relaxation) taken, repeated ones counted.
+    pub steps: u64,
+    /// How often the step was halved.
+    pub back_offs: u32,
+    /// The last substep in s; zero for relaxation, which has no physical time.
+    pub substep: f64,
+    /// Where and when it broke down, for [`Status::Diverged`].
+    pub breakdown: Option<Breakdown>,
+}
+
+/// What an observer is told now and then.
+#[derive(Debug)]
+pub struct Progress<'a> {
+    /// Steps so far.
+    pub steps: u64,
+    /// The current state.
+    pub state: &'a State,
+    /// The residual force without units.
+    pub residual: f64,
+    /// Whether the state falls on the recording grid of [`crate::Dynamics::record_interval`].
+    pub record: bool,
+}
+
+/// Called now and then during a run; `Break` cancels it.
+pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
+
+/// How often the step may be halved before a run counts as diverged.
+pub(crate) const MAX_BACK_OFFS: u32 = 10;
+
+/// A residual this many times the loads and reactions is no motion that they could cause. Unstable
+/// steps pass 1e3 within a few dozen steps; the sound transients in the tests stay under 10.
+pub(crate) const BLOW_UP_RESIDUAL: f64 = 300.0;
+
+/// How far a vertex may go from its rest position, in body sizes beyond the clamps' own motion.
+const BLOW_UP_SIZES: f64 = 10.0;
+
+/// The farthest distance in m that a vertex may sensibly travel.
+pub(crate) fn travel_limit(problem: &Problem) -> f64 {
+    let body = problem.body();
+    let clamps = problem.clamps().iter().flat_map(|clamp| {
+        clamp.vertices.iter().map(|&vertex| {
+            let rest = body.rest()[vertex as usize];
+            norm(sub(clamp.target(rest, f64::INFINITY, 1.0), rest))
+        })
+    });
+    BLOW_UP_SIZES * body.size() + clamps.fold(0.0, f64::max)
+}
+
+/// The first vertex that is not a number or has gone past `limit`.
+pub(crate) fn find_breakdown(
+    problem: &Problem,
+    positions: &[Vec3],
+    limit: f64,
+    when: f64,
+) -> Option<Breakdown> {
+    let rest = problem.body().rest();
+    let beyond = |vertex: &usize| {
+        let distance = norm(sub(positions[*vertex], rest[*vertex]));
+        distance.is_nan() || distance > limit
+    };
+    let vertex = (0..positions.len()).find(beyond)?;
+    Some(Breakdown { vertex, rest: rest[vertex], when })
+}
+
+/// The vertex that has gone farthest, for a run that blew up without leaving the limits.
+pub(crate) fn farthest(problem: &Problem, positions: &[Vec3], when: f64) -> Breakdown {
+    let rest = problem.body().rest();
+    let distance = |vertex: usize| norm(sub(positions[vertex], rest[vertex]));
+    let vertex = (0..positions.len())
+        .max_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+        .unwrap_or(0);
+    Breakdown { vertex, rest: rest[vertex], when }
+}
