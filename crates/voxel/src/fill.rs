@@ -3,6 +3,7 @@
 //! Centers within 1e-9 voxels of the surface count as outside, so that a radius that is a whole
 //! number of voxels gives the same cells whatever the rounding of the inputs.
 use crate::grid::Grid;
+use crate::vectors::{dot, norm, sub};
 
 /// Share of a voxel by which a center must be inside.
 const TIE: f64 = 1e-9;
@@ -118,18 +119,6 @@ fn mix(state: u64) -> u64 {
     let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
-}
-
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|axis| a[axis] - b[axis])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 #[cfg(test)]

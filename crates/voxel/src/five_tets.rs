@@ -63,7 +63,7 @@ pub(crate) fn is_even(node: [i32; 3]) -> bool {
 mod tests {
     use super::*;
 
-    pub fn corner(c: usize) -> [f64; 3] {
+    fn corner(c: usize) -> [f64; 3] {
         [2, 1, 0].map(|bit| (c >> bit & 1) as f64)
     }
 

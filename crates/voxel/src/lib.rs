@@ -28,8 +28,8 @@
 //! assert!((chambers[0].volume - (5.0 * mm).powi(3)).abs() < 1e-18);
 //!
 //! let mesh = tet_mesh(&grid, u64::MAX)?;
-//! assert_eq!(mesh.tets().len(), 5 * 124);
-//! assert_eq!(mesh.cavities()[0].triangles.len(), 12);
+//! assert_eq!(mesh.tets.len(), 5 * 124);
+//! assert_eq!(mesh.cavities[0].triangles.len(), 12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]
@@ -40,18 +40,25 @@ mod combine;
 mod components;
 mod fill;
 mod five_tets;
+mod from_tets;
 mod grid;
 mod nodes;
 mod planes;
+mod quality;
 mod runs;
+mod shells;
 mod stitch;
 mod tet_mesh;
+mod topology;
 mod unstitched;
+mod vectors;
 
 pub use cavities::{Cavity, cavities};
 pub use combine::CombineError;
 pub use components::{CellRun, Contact, Region, components};
+pub use from_tets::{FromTetsError, mesh_from_tets};
 pub use grid::{Grid, GridError, MAX_CELLS_PER_AXIS};
+pub use quality::{Quality, quality};
 pub use stitch::{StitchError, mesh_bytes, tet_mesh};
 pub use tet_mesh::{CavitySurface, TetMesh};
 pub use unstitched::{Unstitched, unstitched};

@@ -12,64 +12,29 @@ pub struct CavitySurface {
 }
 
 /// A conforming mesh of tetrahedra with its edges, its boundary and its cavities.
+///
+/// Plain lists that agree with each other when they come from [`crate::tet_mesh`] or
+/// [`crate::mesh_from_tets`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct TetMesh {
-    pub(crate) vertices: Vec<[f64; 3]>,
-    pub(crate) keys: Vec<[i32; 3]>,
-    pub(crate) tets: Vec<[i32; 4]>,
-    pub(crate) edges: Vec<[i32; 2]>,
-    pub(crate) triangles: Vec<[i32; 3]>,
-    pub(crate) tet_part: Vec<u8>,
-    pub(crate) voxel_cells: Vec<[i32; 3]>,
-    pub(crate) voxel_size: Option<f64>,
-    pub(crate) cavities: Vec<CavitySurface>,
-}
-
-impl TetMesh {
     /// Positions [m]; those of a voxel mesh are in C order of their lattice nodes.
-    pub fn vertices(&self) -> &[[f64; 3]] {
-        &self.vertices
-    }
-
+    pub vertices: Vec<[f64; 3]>,
     /// The lattice node of each vertex; empty for a mesh that was not made of voxels.
-    pub fn keys(&self) -> &[[i32; 3]] {
-        &self.keys
-    }
-
+    pub keys: Vec<[i32; 3]>,
     /// Vertex indices of each tetrahedron, with positive volume.
     ///
     /// In a voxel mesh, tets `5v..5v + 5` make up voxel `v`, the middle one first.
-    pub fn tets(&self) -> &[[i32; 4]] {
-        &self.tets
-    }
-
+    pub tets: Vec<[i32; 4]>,
     /// The pairs of vertices joined by an edge, each once, `a < b`, sorted.
-    pub fn edges(&self) -> &[[i32; 2]] {
-        &self.edges
-    }
-
+    pub edges: Vec<[i32; 2]>,
     /// The boundary, pointing out of the material.
-    pub fn triangles(&self) -> &[[i32; 3]] {
-        &self.triangles
-    }
-
+    pub triangles: Vec<[i32; 3]>,
     /// The part of each tetrahedron.
-    pub fn tet_part(&self) -> &[u8] {
-        &self.tet_part
-    }
-
+    pub tet_part: Vec<u8>,
     /// The lattice index of each voxel, in C order; empty for a mesh that was not made of voxels.
-    pub fn voxel_cells(&self) -> &[[i32; 3]] {
-        &self.voxel_cells
-    }
-
+    pub voxel_cells: Vec<[i32; 3]>,
     /// Side of the voxels [m]; `None` for a mesh that was not made of voxels.
-    pub fn voxel_size(&self) -> Option<f64> {
-        self.voxel_size
-    }
-
-    /// The surfaces of the cavities, in the order of [`crate::cavities`].
-    pub fn cavities(&self) -> &[CavitySurface] {
-        &self.cavities
-    }
+    pub voxel_size: Option<f64>,
+    /// The surfaces of the cavities, largest first (in the order of [`crate::cavities`]).
+    pub cavities: Vec<CavitySurface>,
 }

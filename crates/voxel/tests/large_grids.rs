@@ -67,7 +67,7 @@ fn a_mesh_over_the_limit_is_refused_before_it_is_allocated() {
     assert_eq!((voxels, limit), (64 * 64 * 64, 10_000_000));
     assert!(bytes > limit && bytes < mesh_bytes(voxels));
     let mesh = tet_mesh(&grid, bytes).unwrap();
-    let kept = mesh.tets().len() * 17 + mesh.vertices().len() * 36 + mesh.edges().len() * 8;
+    let kept = mesh.tets.len() * 17 + mesh.vertices.len() * 36 + mesh.edges.len() * 8;
     assert!((kept as u64) < bytes);
 }
 
@@ -110,7 +110,7 @@ fn stitching_is_linear_in_the_number_of_voxels() {
             let nanoseconds = start.elapsed().as_nanos() as f64 / voxels as f64;
             println!(
                 "gyroid {n}³: {voxels} voxels, {} vertices, {nanoseconds:.0} ns and {} bytes at the peak per voxel",
-                mesh.vertices().len(),
+                mesh.vertices.len(),
                 PEAK.load(Relaxed) / voxels
             );
             nanoseconds

@@ -124,29 +124,29 @@ proptest! {
     fn tets_fill_their_voxels_exactly(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let cube = grid.voxel_size().powi(3);
-        prop_assert_eq!(mesh.tets().len(), 5 * grid.count());
-        let volumes: Vec<f64> = mesh.tets().iter().map(|tet| {
-            let [a, b, c, d] = tet.map(|v| mesh.vertices()[v as usize]);
+        prop_assert_eq!(mesh.tets.len(), 5 * grid.count());
+        let volumes: Vec<f64> = mesh.tets.iter().map(|tet| {
+            let [a, b, c, d] = tet.map(|v| mesh.vertices[v as usize]);
             dot(sub(b, a), cross(sub(c, a), sub(d, a))) / 6.0
         }).collect();
         for (voxel, volumes) in volumes.chunks_exact(5).enumerate() {
             prop_assert!((volumes[0] - cube / 3.0).abs() < 1e-12 * cube);
             prop_assert!(volumes[1..].iter().all(|v| (v - cube / 6.0).abs() < 1e-12 * cube));
-            let cell = mesh.voxel_cells()[voxel];
+            let cell = mesh.voxel_cells[voxel];
             let local: [usize; 3] =
                 std::array::from_fn(|a| (cell[a] - grid.lattice_offset()[a]) as usize);
-            prop_assert_eq!(&mesh.tet_part()[5 * voxel..5 * voxel + 5], &[grid.get(local); 5]);
+            prop_assert_eq!(&mesh.tet_part[5 * voxel..5 * voxel + 5], &[grid.get(local); 5]);
         }
     }
 
     #[test]
     fn the_mesh_conforms_and_its_boundary_is_listed(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
-        let faces = face_counts(mesh.tets());
+        let faces = face_counts(&mesh.tets);
         prop_assert!(faces.values().all(|&n| n <= 2));
         let single = faces.values().filter(|&&n| n == 1).count();
-        prop_assert_eq!(single, mesh.triangles().len());
-        for triangle in mesh.triangles() {
+        prop_assert_eq!(single, mesh.triangles.len());
+        for triangle in &mesh.triangles {
             let mut face = *triangle;
             face.sort_unstable();
             prop_assert_eq!(faces.get(&face), Some(&1));
@@ -156,8 +156,8 @@ proptest! {
     #[test]
     fn the_boundary_encloses_the_volume(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
-        let volume: f64 = mesh.triangles().iter().map(|t| {
-            let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
+        let volume: f64 = mesh.triangles.iter().map(|t| {
+            let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
             dot(a, cross(b, c)) / 6.0
         }).sum();
         prop_assert!((volume - grid.volume()).abs() < 1e-10 * grid.volume().max(1e-3));
@@ -167,32 +167,32 @@ proptest! {
     fn edges_are_those_of_the_tets_once_and_sorted(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let mut expected = HashSet::new();
-        for tet in mesh.tets() {
+        for tet in mesh.tets {
             for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
                 expected.insert([tet[a].min(tet[b]), tet[a].max(tet[b])]);
             }
         }
         let mut expected: Vec<_> = expected.into_iter().collect();
         expected.sort_unstable();
-        prop_assert_eq!(mesh.edges(), expected);
+        prop_assert_eq!(&mesh.edges, &expected);
     }
 
     #[test]
     fn vertices_are_lattice_nodes_once_each(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
-        prop_assert!(mesh.keys().is_sorted_by(|a, b| a < b));
-        for (&key, &vertex) in mesh.keys().iter().zip(mesh.vertices()) {
+        prop_assert!(mesh.keys.is_sorted_by(|a, b| a < b));
+        for (&key, &vertex) in mesh.keys.iter().zip(&mesh.vertices) {
             prop_assert_eq!(vertex, grid.node_position(key));
         }
-        let used: HashSet<i32> = mesh.tets().iter().flatten().copied().collect();
-        prop_assert_eq!(used.len(), mesh.vertices().len());
+        let used: HashSet<i32> = mesh.tets.iter().flatten().copied().collect();
+        prop_assert_eq!(used.len(), mesh.vertices.len());
     }
 
     #[test]
     fn the_euler_number_is_that_of_the_cubes(grid in random_grid()) {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
-        let counts = [mesh.vertices().len(), mesh.edges().len(),
-            face_counts(mesh.tets()).len(), mesh.tets().len()].map(|n| n as i64);
+        let counts = [mesh.vertices.len(), mesh.edges.len(),
+            face_counts(&mesh.tets).len(), mesh.tets.len()].map(|n| n as i64);
         let euler = counts[0] - counts[1] + counts[2] - counts[3];
         prop_assert_eq!(euler, euler_number_of_cubes(&filled_cells(&grid)));
     }
@@ -203,7 +203,7 @@ proptest! {
         let mesh = tet_mesh(&grid, u64::MAX).unwrap();
         let expected = flooded_cavities(&grid);
         prop_assert_eq!(found.len(), expected.len());
-        prop_assert_eq!(found.len(), mesh.cavities().len());
+        prop_assert_eq!(found.len(), mesh.cavities.len());
         for (cavity, (cells, _)) in found.iter().zip(&expected) {
             prop_assert_eq!(cavity.region.cell_count() as usize, *cells);
         }
@@ -211,9 +211,9 @@ proptest! {
         let area: f64 = found.iter().map(|cavity| cavity.area).sum();
         let walls: usize = expected.iter().map(|&(_, walls)| walls).sum();
         prop_assert!((area - total(walls)).abs() < 1e-12);
-        for (cavity, surface) in found.iter().zip(mesh.cavities()) {
+        for (cavity, surface) in found.iter().zip(&mesh.cavities) {
             let signed: f64 = surface.triangles.iter().map(|t| {
-                let [a, b, c] = t.map(|v| mesh.vertices()[v as usize]);
+                let [a, b, c] = t.map(|v| mesh.vertices[v as usize]);
                 dot(a, cross(b, c)) / 6.0
             }).sum();
             prop_assert!((signed + cavity.volume).abs() < 1e-12);
