@@ -73,6 +73,8 @@ _ALL: Final = (
     Kind("speed", Dimension(1, 0, -1), ("m/s", "mm/s")),
     Kind("angle", Dimension(0, 0, 0, 1), ("deg", "rad")),
     Kind("stiffness", Dimension(0, 1, -2), ("N/m",)),
+    Kind("compliance", Dimension(0, -1, 2), ("m/N", "mm/N")),
+    Kind("volume compliance", Dimension(4, -1, 2), ("m^3/Pa",)),
     Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
     Kind("number", Dimension(), ()),
 )
