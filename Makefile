@@ -1,0 +1,75 @@
+# VoxSoft. `make demo` and `make test` set everything up by themselves.
+#
+# The environment lives in .venv; it is rebuilt only when Rust sources or dependencies change.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+STAMP := $(VENV)/.installed
+# How many tests run side by side; each of them may use a second core for a moment.
+JOBS ?= 2
+
+RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
+
+.PHONY: help install demo test test-rust test-python test-all lint format bench docs clean
+
+help:
+	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
+	@echo "make test      set up, run all quick tests"
+	@echo "make test-all  also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
+	@echo "make lint      formatters, linters, types, layers"
+	@echo "make bench     benchmarks"
+	@echo "make docs      the documentation as web pages in docs/_build"
+	@echo "make install   only the environment: .venv/bin/voxsoft"
+
+install: $(STAMP)
+
+$(VENV)/bin/python:
+	@command -v $(PYTHON) >/dev/null || { echo "VoxSoft needs Python 3.11 or newer, and there is no '$(PYTHON)'. Install it from https://www.python.org, or name it: make install PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "VoxSoft needs Python 3.11 or newer, and '$(PYTHON)' is $$($(PYTHON) -V). Name a newer one: make install PYTHON=python3.12" >&2; exit 1; }
+	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || { echo "'$(PYTHON)' cannot make virtual environments: its venv module is missing (Debian and Ubuntu: apt install python3-venv)." >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(STAMP): $(VENV)/bin/python pyproject.toml Cargo.toml Cargo.lock $(RUST_SOURCES)
+	@command -v cargo >/dev/null || { echo "VoxSoft's core is written in Rust, and there is no 'cargo'. Install the Rust toolchain from https://rustup.rs" >&2; exit 1; }
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1" "maturin>=1.9,<2"
+	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release
+	@touch $@
+
+demo: install
+	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo --resume
+
+test: install test-rust test-python
+
+test-rust:
+	cargo test --workspace --exclude voxsoft-python --quiet
+
+test-python: install
+	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"
+
+test-all: install
+	cargo test --workspace --exclude voxsoft-python --quiet -- --include-ignored
+	$(BIN)/python -m pytest -n $(JOBS)
+
+lint: install
+	cargo fmt --check
+	cargo clippy --workspace --all-targets --quiet -- -D warnings
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format:
+	cargo fmt
+	$(BIN)/ruff check --fix
+	$(BIN)/ruff format
+
+bench: install
+	$(BIN)/python benchmarks/pipeline.py
+
+docs: install
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
+	$(BIN)/mkdocs build --strict
+
+clean:
+	rm -rf $(VENV) target runs dist docs/_build
