@@ -1,8 +1,11 @@
 //! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
 use pyo3::prelude::*;
 
+mod errors;
 mod gate;
+mod mesh;
 mod simulate;
+mod voxels;
 
 /// The private Rust module `voxsoft._core`; the public package wraps it.
 #[pymodule]
@@ -11,5 +14,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_function(wrap_pyfunction!(simulate::lattice_constants, module)?)?;
+    module.add_class::<voxels::PyGrid>()?;
+    module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh::mesh_tets, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh::mesh_quality, module)?)?;
     Ok(())
 }

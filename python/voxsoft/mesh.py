@@ -1,0 +1,283 @@
+"""Tetrahedral meshes: what the solvers work on.
+
+Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one by
+:meth:`voxsoft.voxels.Voxels.mesh`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voxsoft import _core
+from voxsoft._memory import memory_limit
+from voxsoft.errors import MeshError
+
+
+@dataclass(frozen=True, eq=False)
+class MeshCavity:
+    """The part of a mesh's boundary that faces one cavity.
+
+    Attributes
+    ----------
+    triangles : ndarray of int32, shape (t, 3)
+        Vertex indices, pointing out of the material, that is into the cavity.
+    volume : float
+        Enclosed volume [m³].
+    area : float
+        Area of the triangles [m²].
+    """
+
+    triangles: NDArray[np.int32] = field(repr=False)
+    volume: float
+    area: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "triangles", _frozen(self.triangles, np.int32))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return MeshCavity, (self.triangles, self.volume, self.area)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MeshCavity):
+            return NotImplemented
+        return (self.volume, self.area) == (other.volume, other.area) and np.array_equal(
+            self.triangles, other.triangles
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+@dataclass(frozen=True)
+class MeshQuality:
+    """Figures that tell whether a mesh is sound, counted from tets and triangles alone.
+
+    Attributes
+    ----------
+    volume : float
+        Sum of the volumes of the tets [m³].
+    smallest_tet, largest_tet : float
+        Extreme volumes of a tet [m³].
+    area : float
+        Area of the boundary [m²].
+    euler_number : int
+        V - E + F - T: 1 for a ball, 0 for a solid ring, 2 for a ball with a cavity.
+    conforming : bool
+        Whether the triangles are exactly the faces held by one tet, outward, and every other face
+        is held by two.
+    open_edges : int
+        Boundary edges that do not have a triangle on both sides; 0 if the surface is watertight.
+    nonmanifold_edges : tuple of pairs of int
+        Edges where four or more boundary triangles meet: bodies that touch along them.
+    """
+
+    volume: float
+    smallest_tet: float
+    largest_tet: float
+    area: float
+    euler_number: int
+    conforming: bool
+    open_edges: int
+    nonmanifold_edges: tuple[tuple[int, int], ...]
+
+    @property
+    def watertight(self) -> bool:
+        """Whether the boundary has no holes."""
+        return self.open_edges == 0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Mesh:
+    """A conforming mesh of tetrahedra with its edges, its boundary and its cavities.
+
+    All arrays are read-only. Make meshes with :meth:`from_tets` or
+    :meth:`voxsoft.voxels.Voxels.mesh`; the constructor trusts what it is given.
+
+    Attributes
+    ----------
+    vertices : ndarray of float64, shape (n, 3)
+        Positions [m].
+    tets : ndarray of int32, shape (m, 4)
+        Vertex indices, with positive volume. The five tets of a voxel come one after the other.
+    edges : ndarray of int32, shape (k, 2)
+        Pairs of vertices, each once, lower index first, sorted.
+    triangles : ndarray of int32, shape (t, 3)
+        The boundary, pointing out of the material.
+    tet_part : ndarray of uint8, shape (m,)
+        The part of each tet.
+    tet_voxel : ndarray of int32, shape (m,), or None
+        The voxel of each tet, counted in C order of the filled cells; None if not made of voxels.
+    voxel_size : float or None
+        Side of the voxels [m]; None if not made of voxels.
+    cavities : tuple of MeshCavity
+        Largest first.
+    """
+
+    vertices: NDArray[np.float64]
+    tets: NDArray[np.int32]
+    edges: NDArray[np.int32]
+    triangles: NDArray[np.int32]
+    tet_part: NDArray[np.uint8]
+    tet_voxel: NDArray[np.int32] | None
+    voxel_size: float | None
+    cavities: tuple[MeshCavity, ...]
+
+    def __post_init__(self) -> None:
+        for name, dtype in _DTYPES.items():
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, _frozen(value, dtype))
+
+    @classmethod
+    def from_tets(
+        cls, vertices: ArrayLike, tets: ArrayLike, tet_part: ArrayLike | None = None
+    ) -> Self:
+        """Return a mesh of given tetrahedra.
+
+        Tets of negative volume are turned round (their last two corners swapped). Edges and
+        boundary are found; a closed piece of the boundary that points inward is a cavity. An
+        island that floats in a cavity is not subtracted from its volume.
+
+        Parameters
+        ----------
+        vertices : array_like, shape (n, 3)
+            Positions [m].
+        tets : array_like of int, shape (m, 4)
+            Vertex indices, counted from 0.
+        tet_part : array_like of int, shape (m,), optional
+            The part of each tet, 1 to 255; by default all are of part 1.
+
+        Raises
+        ------
+        MeshError
+            Naming the first tet, vertex or face that is wrong: an index out of range, a position
+            that is not finite, a tet without volume, tets that overlap.
+
+        Examples
+        --------
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> Mesh.from_tets(corners, [[0, 1, 2, 3]])
+        Mesh(4 vertices, 1 tets, 6 edges, 4 triangles, 0 cavities)
+        >>> Mesh.from_tets(corners, [[0, 1, 2, 2]])  # doctest: +ELLIPSIS
+        Traceback (most recent call last):
+            ...
+        voxsoft.errors.MeshError: tets[0]: tetrahedron 0 is flat: its volume is 0e0 m^3. Try: ...
+        """
+        points = _matrix("vertices", vertices, 3, np.float64)
+        corners = _matrix("tets", tets, 4, np.int32)
+        parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
+        return cls._from_core(_core.mesh_tets(points, corners, parts), None)
+
+    @classmethod
+    def from_voxel_grid(cls, grid: _core.Grid) -> Self:
+        """Return the mesh of a grid of the core; call :meth:`voxsoft.voxels.Voxels.mesh`."""
+        return cls._from_core(_core.mesh_voxels(grid, memory_limit()), grid.voxel_size)
+
+    @classmethod
+    def _from_core(cls, arrays: _core.MeshArrays, voxel_size: float | None) -> Self:
+        vertices, tets, edges, triangles, tet_part, cavities = arrays
+        tet_voxel = None if voxel_size is None else np.arange(len(tets), dtype=np.int32) // 5
+        surfaces = tuple(MeshCavity(*cavity) for cavity in cavities)
+        return cls(vertices, tets, edges, triangles, tet_part, tet_voxel, voxel_size, surfaces)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Mesh, tuple(getattr(self, each.name) for each in fields(self))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mesh):
+            return NotImplemented
+        return (
+            self.voxel_size == other.voxel_size
+            and self.cavities == other.cavities
+            and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _DTYPES)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        counts = f"{len(self.vertices)} vertices, {len(self.tets)} tets, {len(self.edges)} edges"
+        return f"Mesh({counts}, {len(self.triangles)} triangles, {len(self.cavities)} cavities)"
+
+    @property
+    def tet_volumes(self) -> NDArray[np.float64]:
+        """Volume of each tet [m³], shape (m,)."""
+        a, b, c, d = (self.vertices[self.tets[:, corner]] for corner in range(4))
+        volumes: NDArray[np.float64] = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
+        return volumes
+
+    @property
+    def surface_volume(self) -> float:
+        """Volume that the boundary encloses [m³], cavities left out.
+
+        By the divergence theorem: the sum over the triangles of a · (b × c) / 6. In a sound mesh
+        it equals the sum of :attr:`tet_volumes`.
+        """
+        points = self.vertices - self.vertices.mean(axis=0)
+        a, b, c = (points[self.triangles[:, corner]] for corner in range(3))
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+    @cached_property
+    def quality(self) -> MeshQuality:
+        """Quality figures, counted on first use (a few times the time of meshing).
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> Voxels.from_array([[[1, 1]]], voxel_size=0.5).mesh().quality.watertight
+        True
+        """
+        counted = _core.mesh_quality(self.vertices, self.tets, self.edges, self.triangles)
+        volume, smallest, largest, area, euler, conforming, open_edges, nonmanifold = counted
+        return MeshQuality(
+            volume=volume,
+            smallest_tet=smallest,
+            largest_tet=largest,
+            area=area,
+            euler_number=euler,
+            conforming=conforming,
+            open_edges=open_edges,
+            nonmanifold_edges=tuple((int(a), int(b)) for a, b in nonmanifold),
+        )
+
+
+_DTYPES: dict[str, type[np.generic]] = {
+    "vertices": np.float64,
+    "tets": np.int32,
+    "edges": np.int32,
+    "triangles": np.int32,
+    "tet_part": np.uint8,
+    "tet_voxel": np.int32,
+}
+
+
+def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[Any]:
+    """Return a read-only view, so that the caller's own array keeps its flags."""
+    view = np.ascontiguousarray(array, dtype=dtype).view()
+    view.setflags(write=False)
+    return view
+
+
+def _matrix(place: str, values: ArrayLike, columns: int, dtype: type[np.generic]) -> NDArray[Any]:
+    array = np.asarray(values)
+    if array.ndim != 2 or array.shape[1] != columns:
+        raise MeshError(place, f"has shape {array.shape}; expected (n, {columns})")
+    if array.dtype.kind not in ("ui" if dtype is np.int32 else "uif"):
+        raise MeshError(place, f"holds {array.dtype}; expected {np.dtype(dtype)}")
+    if dtype is np.int32 and array.size and (array.min() < -(2**31) or array.max() >= 2**31):
+        raise MeshError(place, "holds an index that does not fit in 32 bits")
+    return np.ascontiguousarray(array, dtype=dtype)
+
+
+def _parts(values: ArrayLike) -> NDArray[np.uint8]:
+    array = np.asarray(values)
+    if array.ndim != 1 or array.dtype.kind not in "ui":
+        what = f"has shape {array.shape} of {array.dtype}; expected (m,) whole numbers"
+        raise MeshError("tet_part", what)
+    if array.size and not (array.min() >= 1 and array.max() <= 255):
+        found = f"holds {array.min()} to {array.max()}"
+        raise MeshError("tet_part", f"{found}; parts are numbered 1 to 255")
+    return array.astype(np.uint8)

@@ -1,0 +1,22 @@
+"""Grids of cubic cells, and the regions found in them.
+
+Enter here with a CT scan or any array of cells; a shape gives a grid by sampling. A grid says
+what a designer asks before simulating: is it one piece, which chambers does it enclose, where
+do they leak, how thin are the walls. :meth:`Voxels.mesh` goes on to the solvers.
+
+Examples
+--------
+>>> from voxsoft.units import mm
+>>> from voxsoft.voxels import Voxels
+>>> block = Voxels.empty((5, 5, 7), voxel_size=5 * mm).fill_box((0, 0, 0), (1, 1, 1))
+>>> chamber = block.fill_box((5 * mm, 5 * mm, 5 * mm), (20 * mm, 20 * mm, 30 * mm), part=0)
+>>> chamber
+Voxels(5 x 5 x 7 cells of 5 mm, 25 x 25 x 35 mm, 130 filled)
+>>> [cavity.count for cavity in chamber.cavities]
+[45]
+"""
+
+from voxsoft.voxels.grid import Voxels
+from voxsoft.voxels.regions import Cavity, Region
+
+__all__ = ["Cavity", "Region", "Voxels"]
