@@ -54,11 +54,12 @@ def plain_error(error: ValidationError, model: type[Record], document: object) -
     Raises nothing; returns the error to raise: a ``FormulaError`` where only formulas are
     wrong, else the model's ``error_type``.
     """
-    found = error.errors(include_url=False)
+    found = _without_echo(error.errors(include_url=False), document)
     problems = [problem for details in found for problem in _problems(details, model, document)]
     causes = [details.get("ctx", {}).get("error") for details in found]
     only_formulas = all(isinstance(cause, FormulaError) for cause in causes)
-    return (FormulaError if only_formulas else model.error_type).listing(_without_echo(problems))
+    error_type = FormulaError if only_formulas else model.error_type
+    return error_type.listing(dict.fromkeys(problems))
 
 
 def place(path: Iterable[str | int]) -> str:
@@ -176,24 +177,24 @@ def _in_words(details: ErrorDetails) -> str:
     return f"{came} came; {due}"
 
 
-def _without_echo(problems: Sequence[Problem]) -> list[Problem]:
-    """Drop the complaints of union branches that the input never meant.
+def _without_echo(found: Sequence[ErrorDetails], document: object) -> list[ErrorDetails]:
+    """Drop complaints that only repeat a finding further inside.
 
     Where text or a table may stand (an operand's name, or the operand itself), a faulty table
-    also fails as text: the finding inside the table is the useful one.
+    also fails as text; and a list with a faulty entry also fails as too short.
     """
-    deeper = [p.where for p in problems]
+    paths = [tuple(_real_keys(details, document)) for details in found]
     return [
-        p
-        for p in dict.fromkeys(problems)
-        if "text is due" not in p.what
-        or not any(w != p.where and w.startswith(p.where) for w in deeper)
+        details
+        for details, path in zip(found, paths, strict=True)
+        if details["type"] not in {"string_type", "too_short"}
+        or not any(len(other) > len(path) and other[: len(path)] == path for other in paths)
     ]
 
 
 def _field_names(model: type[Record], path: Sequence[str | int], document: object) -> set[str]:
     """Collect the names that may stand in the table at `path`."""
-    reached, here = list(_records(model)), document
+    reached, here = list(records_in(model)), document
     for step in path:
         here = _child(here, step)
         if isinstance(step, int):
@@ -202,7 +203,7 @@ def _field_names(model: type[Record], path: Sequence[str | int], document: objec
             f.annotation for m in reached for n, f in m.model_fields.items() if step in (n, f.alias)
         ]
         # A step that no field has is a key of a mapping such as [shapes]: same type as before.
-        reached = [r for annotation in inner for r in _records(annotation)] or reached
+        reached = [r for annotation in inner for r in records_in(annotation)] or reached
     kind = here.get("kind") if isinstance(here, Mapping) else None
     exact = [
         m
@@ -212,10 +213,10 @@ def _field_names(model: type[Record], path: Sequence[str | int], document: objec
     return {f.alias or n for m in exact or reached for n, f in m.model_fields.items()}
 
 
-def _records(annotation: object) -> Iterator[type[Record]]:
+def records_in(annotation: object) -> Iterator[type[Record]]:
     """Find the record types inside an annotation: behind unions, tuples and mappings."""
     if isinstance(annotation, type) and issubclass(annotation, Record):
         yield annotation
     else:
         for argument in get_args(annotation):
-            yield from _records(argument)
+            yield from records_in(argument)

@@ -43,7 +43,7 @@ from voxsoft.units.factors import (
     s,
     um,
 )
-from voxsoft.units.kinds import KINDS, Dimension, Kind, Quantity, describe_dimension
+from voxsoft.units.kinds import KINDS, Dimension, Kind, Number, Quantity, describe_dimension
 from voxsoft.units.text import format_quantity, parse, parse_any, round_significant
 from voxsoft.units.types import (
     FILE_CONTEXT,
@@ -71,6 +71,7 @@ from voxsoft.units.types import (
     UnitOf,
     Vector,
     Volume,
+    read_from_file,
 )
 
 __all__ = [
@@ -97,6 +98,7 @@ __all__ = [
     "N",
     "NonNegativeLength",
     "NonNegativeRate",
+    "Number",
     "Pa",
     "Point",
     "PositiveDensity",
@@ -131,6 +133,7 @@ __all__ = [
     "parse_any",
     "psi",
     "rad",
+    "read_from_file",
     "round_significant",
     "s",
     "um",

@@ -39,6 +39,13 @@ class Quantity:
         return f"{self.value:.12g} SI ({describe_dimension(self.dimension)})"
 
 
+class Number(float):
+    """What a formula without dimension evaluates to.
+
+    A plain float stands for SI where a unit is due; this one is known to be no quantity.
+    """
+
+
 @dataclass(frozen=True, slots=True)
 class Kind:
     """A kind of quantity: its name, dimension and the units it is written in, preferred first."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 from pydantic_core import core_schema
 
 from voxsoft.errors import UnitError
-from voxsoft.units.kinds import KINDS, Dimension, Quantity, describe_dimension
+from voxsoft.units.kinds import KINDS, Dimension, Number, Quantity, describe_dimension
 from voxsoft.units.text import format_quantity, parse
 
 if TYPE_CHECKING:
@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
 #: Validation context under which a bare number needs a unit: what a file reader passes.
 FILE_CONTEXT: Final[Mapping[str, str]] = {"source": "file"}
+
+
+def read_from_file(info: core_schema.ValidationInfo) -> bool:
+    """Whether a validation reads a file, where a number needs its unit."""
+    return (info.context or {}).get("source") == "file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +72,8 @@ class UnitOf:
         kind = KINDS[self.kind]
         if isinstance(value, str):
             return parse(value, self.kind)
+        if isinstance(value, Number):
+            value = Quantity(float(value), Dimension())
         if isinstance(value, Quantity):
             zero = value.value == 0 and value.dimension == Dimension()
             if value.dimension != kind.dimension and not zero:
@@ -108,17 +115,16 @@ class UnitOf:
     ) -> core_schema.CoreSchema:
         """Tell pydantic how to read and write this type."""
         return core_schema.with_info_plain_validator_function(
-            lambda value, info: self.read(
-                value, from_file=bool(info.context) and info.context.get("source") == "file"
-            ),
+            lambda value, info: self.read(value, from_file=read_from_file(info)),
             serialization=core_schema.plain_serializer_function_ser_schema(
                 self._written, when_used="json"
             ),
         )
 
     def _written(self, value: float) -> str | float:
-        written = KINDS[self.kind].units and math.isfinite(value) and value != 0
-        return format_quantity(value, self.kind) if written else value
+        if not KINDS[self.kind].units or not math.isfinite(value):
+            return value
+        return format_quantity(value, self.kind) if value else 0
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
