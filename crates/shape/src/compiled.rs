@@ -1,0 +1,201 @@
+//! Lowering of an expression to fidget, which compiles it and prunes it by intervals.
+use std::collections::HashMap;
+
+use fidget::context::{Context, Node as Handle, Tree};
+use fidget::eval::{BulkEvaluator, TracingEvaluator};
+use fidget::shape::{EzShape, Shape, ShapeBulkEval, ShapeTape, ShapeTracingEval};
+use fidget::var::{Var, VarIndex};
+
+use crate::expr::{Binary, Expr, Node, Unary};
+
+/// fidget's evaluator: machine code where the `jit` feature is on, else an interpreter.
+#[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
+pub(crate) type Function = fidget::jit::JitFunction;
+/// fidget's evaluator: machine code where the `jit` feature is on, else an interpreter.
+#[cfg(not(all(feature = "jit", not(target_arch = "wasm32"))))]
+pub(crate) type Function = fidget::vm::VmFunction;
+
+/// fidget's evaluator over blocks.
+pub(crate) type IntervalEval = ShapeTracingEval<<Function as fidget::eval::Function>::IntervalEval>;
+/// fidget's evaluator of many points.
+pub(crate) type FloatEval = ShapeBulkEval<<Function as fidget::eval::Function>::FloatSliceEval>;
+/// Scratch space of fidget's simplification.
+pub(crate) type Workspace = <Function as fidget::eval::Function>::Workspace;
+type Trace = <Function as fidget::eval::Function>::Trace;
+type IntervalTape =
+    ShapeTape<<<Function as fidget::eval::Function>::IntervalEval as TracingEvaluator>::Tape>;
+type FloatTape =
+    ShapeTape<<<Function as fidget::eval::Function>::FloatSliceEval as BulkEvaluator>::Tape>;
+
+/// A simpler function is adopted when it has at most this part of the operations: compiling costs.
+const WORTHWHILE: f64 = 0.75;
+
+/// A function, or the part of it that matters in a block, compiled for blocks and for points.
+pub(crate) struct Part {
+    shape: Shape<Function>,
+    pub intervals: IntervalTape,
+    pub floats: FloatTape,
+}
+
+/// A subexpression of one coordinate, computed once for each cell layer along that axis.
+///
+/// A call of a sine from compiled code costs as much as forty multiplications, and a periodic surface has six in
+/// each cell: with tables there are three per layer instead.
+pub(crate) struct Table {
+    pub variable: VarIndex,
+    pub axis: usize,
+    pub expr: Expr,
+}
+
+impl Part {
+    /// Compiles `expr`, or `None` when it samples a field, which fidget cannot.
+    pub fn compile(expr: &Expr) -> Option<(Self, Vec<Table>)> {
+        let mut context = Context::new();
+        let (root, mut tables) = lower(expr, &mut context)?;
+        let shape = Shape::new(&context, root).expect("the root was made in this context");
+        let part = Self::of(shape);
+        let used = |table: &Table| part.floats.vars().get(&Var::V(table.variable)).is_some();
+        tables.retain(used);
+        Some((part, tables))
+    }
+
+    fn of(shape: Shape<Function>) -> Self {
+        Self {
+            intervals: shape.ez_interval_tape(),
+            floats: shape.ez_float_slice_tape(),
+            shape,
+        }
+    }
+
+    /// The part left by the choices in `trace`, if it is markedly smaller.
+    pub fn simplify(&self, trace: &Trace, workspace: &mut Workspace) -> Option<Self> {
+        let simpler = self
+            .shape
+            .simplify(trace, Default::default(), workspace)
+            .expect("the trace belongs to this function");
+        let is_worthwhile = simpler.size() as f64 <= WORTHWHILE * self.shape.size() as f64;
+        is_worthwhile.then(|| Self::of(simpler))
+    }
+}
+
+fn lower(expr: &Expr, context: &mut Context) -> Option<(Handle, Vec<Table>)> {
+    let mut lowering = Lowering::default();
+    for node in expr.postorder() {
+        let tree = lowering.lower(&node)?;
+        lowering.trees.insert(node.key(), tree);
+    }
+    Some((
+        context.import(&lowering.trees[&expr.key()]),
+        lowering.tables,
+    ))
+}
+
+/// What is known of the nodes lowered so far.
+#[derive(Default)]
+struct Lowering {
+    trees: HashMap<*const Node, Tree>,
+    squared_lengths: HashMap<*const Node, Tree>,
+    dependence: HashMap<*const Node, Dependence>,
+    tables: Vec<Table>,
+}
+
+/// What a node depends on.
+#[derive(Clone, Copy, Default)]
+struct Dependence {
+    /// One bit per coordinate
+    axes: u8,
+    /// Whether it calls a library function
+    is_costly: bool,
+}
+
+impl Lowering {
+    fn lower(&mut self, node: &Expr) -> Option<Tree> {
+        let dependence = self.depend(node);
+        self.dependence.insert(node.key(), dependence);
+        if dependence.is_costly && dependence.axes.count_ones() == 1 {
+            let axis = dependence.axes.trailing_zeros() as usize;
+            let variable = Var::new();
+            let index = variable.index().expect("a new variable has an index");
+            self.tables.push(Table {
+                variable: index,
+                axis,
+                expr: node.clone(),
+            });
+            return Some(Tree::from(variable));
+        }
+        let of = |child: &Expr| self.trees[&child.key()].clone();
+        Some(match node.node() {
+            Node::Axis(axis) => Tree::from([Var::X, Var::Y, Var::Z][*axis]),
+            Node::Constant(c) => Tree::constant(*c as f32),
+            Node::Unary(op, a) => lower_unary(*op, of(a)),
+            Node::Binary(Binary::Hypot, a, b) => {
+                // A length of a length needs one root only.
+                let square = |child: &Expr| match self.squared_lengths.get(&child.key()) {
+                    Some(sum) => sum.clone(),
+                    None => of(child).square(),
+                };
+                let sum = square(a) + square(b);
+                self.squared_lengths.insert(node.key(), sum.clone());
+                sum.sqrt()
+            }
+            Node::Binary(op, a, b) => lower_binary(*op, of(a), of(b)),
+            Node::Field(..) => return None,
+        })
+    }
+
+    fn depend(&self, node: &Expr) -> Dependence {
+        let of = |child: &Expr| self.dependence[&child.key()];
+        match node.node() {
+            Node::Axis(axis) => Dependence {
+                axes: 1 << axis,
+                is_costly: false,
+            },
+            Node::Unary(op, a) => {
+                let is_costly = of(a).is_costly || is_library_call(*op);
+                Dependence { is_costly, ..of(a) }
+            }
+            Node::Binary(op, a, b) => Dependence {
+                axes: of(a).axes | of(b).axes,
+                is_costly: of(a).is_costly || of(b).is_costly || *op == Binary::Atan2,
+            },
+            Node::Constant(_) | Node::Field(..) => Dependence::default(),
+        }
+    }
+}
+
+fn is_library_call(op: Unary) -> bool {
+    use Unary::{Acos, Asin, Atan, Cos, Exp, Log, Sin, Tan};
+    matches!(op, Sin | Cos | Tan | Asin | Acos | Atan | Exp | Log)
+}
+
+fn lower_unary(op: Unary, a: Tree) -> Tree {
+    match op {
+        Unary::Neg => -a,
+        Unary::Abs => a.abs(),
+        Unary::Sqrt => a.sqrt(),
+        Unary::Square => a.square(),
+        Unary::Floor => a.floor(),
+        Unary::Triangle => (a.clone() - (a + 0.5).floor()).abs(),
+        Unary::Sin => a.sin(),
+        Unary::Cos => a.cos(),
+        Unary::Tan => a.tan(),
+        Unary::Asin => a.asin(),
+        Unary::Acos => a.acos(),
+        Unary::Atan => a.atan(),
+        Unary::Exp => a.exp(),
+        Unary::Log => a.ln(),
+    }
+}
+
+fn lower_binary(op: Binary, a: Tree, b: Tree) -> Tree {
+    match op {
+        Binary::Add => a + b,
+        Binary::Sub => a - b,
+        Binary::Mul => a * b,
+        Binary::Div => a / b,
+        Binary::Min => a.min(b),
+        Binary::Max => a.max(b),
+        Binary::Atan2 => a.atan2(b),
+        Binary::Hypot => (a.square() + b.square()).sqrt(),
+    }
+}

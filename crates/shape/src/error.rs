@@ -1,0 +1,100 @@
+//! What can go wrong, one enum per operation.
+use thiserror::Error;
+
+/// A field (mesh, function) failed to give values.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{0}")]
+pub struct FieldError(pub String);
+
+/// A shape cannot be built from the numbers given.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BuildError {
+    /// A size that must be positive and finite.
+    #[error("{name} is {value}; it must be positive and finite")]
+    NotPositive {
+        /// Which argument
+        name: &'static str,
+        /// What came
+        value: f64,
+    },
+    /// A number that must be finite.
+    #[error("{name} is {value}; it must be finite")]
+    NotFinite {
+        /// Which argument
+        name: &'static str,
+        /// What came
+        value: f64,
+    },
+    /// A direction of zero length.
+    #[error("{name} has no length; give three numbers that are not all zero")]
+    NoDirection {
+        /// Which argument
+        name: &'static str,
+    },
+    /// A value outside its range, in words.
+    #[error("{name} is {value}; {allowed}")]
+    OutOfRange {
+        /// Which argument
+        name: &'static str,
+        /// What came
+        value: f64,
+        /// What is allowed
+        allowed: &'static str,
+    },
+    /// A polygon that encloses no area.
+    #[error("{0}")]
+    Polygon(&'static str),
+    /// A union or intersection of nothing.
+    #[error("nothing to combine; give at least one shape")]
+    NoOperands,
+}
+
+/// An expression text that cannot be read.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("at character {position}: {message}")]
+pub struct ParseError {
+    /// Where, counted in characters from 1
+    pub position: usize,
+    /// What is wrong and what is allowed
+    pub message: String,
+}
+
+/// A shape cannot be sampled into cells.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SampleError {
+    /// More memory than allowed, found before allocating.
+    #[error(
+        "a grid of {} x {} x {} cells needs about {bytes} bytes, more than the limit of {limit} bytes",
+        shape[0], shape[1], shape[2]
+    )]
+    TooLarge {
+        /// Cells along x, y, z
+        shape: [usize; 3],
+        /// Estimate in bytes
+        bytes: u128,
+        /// Allowed bytes
+        limit: u64,
+    },
+    /// A voxel size or origin that is not usable.
+    #[error("{name} is {value}; it must be positive and finite")]
+    BadLattice {
+        /// Which number
+        name: &'static str,
+        /// What came
+        value: f64,
+    },
+    /// The function has no value somewhere.
+    #[error("the shape function is not a number (NaN) at {} of the cell centers, first at x, y, z = ({}, {}, {}) m", count, at[0], at[1], at[2])]
+    NotANumber {
+        /// How many cells
+        count: usize,
+        /// First such cell center in C order, m
+        at: [f64; 3],
+    },
+    /// A mesh or function failed.
+    #[error(transparent)]
+    Field(#[from] FieldError),
+    /// The caller asked to stop.
+    #[error("stopped")]
+    Canceled,
+}

@@ -1,0 +1,143 @@
+//! Classification of the cells of a lattice: which centers lie inside a shape.
+//!
+//! A cell is inside when s < −10⁻⁹ voxel sizes at its center, in float64: values closer to zero count as
+//! on the surface, hence outside, so that rounding cannot flip a cell whose center lies exactly there.
+//!
+//! Blocks of cells are decided together where interval arithmetic proves one sign; the others are
+//! split, each with the part of the function that matters there, and the smallest are evaluated by
+//! compiled f32 code. A cell whose f32 value lies within the error bound of [`crate::range`] is evaluated
+//! again in float64, so the answer is that of a float64 evaluation of every cell.
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::block::Block;
+use crate::error::SampleError;
+use crate::shape::Shape;
+use crate::worker::{Classifier, Worker};
+
+/// Cells along the edge of the blocks handed to threads.
+const TILE: usize = 64;
+
+/// Centers closer to the surface than this part of a voxel count as on it.
+pub const TIE: f64 = 1e-9;
+
+/// Cells in space: cell (i, j, k) is the cube from `origin + size·(i, j, k)` with edge `size`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lattice {
+    /// Lowest corner of cell (0, 0, 0), m
+    pub origin: [f64; 3],
+    /// Edge of a cell, m
+    pub voxel_size: f64,
+    /// Cells along x, y, z
+    pub shape: [usize; 3],
+}
+
+impl Lattice {
+    /// Number of cells.
+    pub fn cells(&self) -> u128 {
+        self.shape.iter().map(|&n| n as u128).product()
+    }
+
+    /// Center of a cell along one axis, m.
+    pub fn center(&self, axis: usize, index: usize) -> f64 {
+        self.origin[axis] + (index as f64 + 0.5) * self.voxel_size
+    }
+
+    /// Estimate of the memory of [`sample`] in bytes: the cells, and the tiles before they are put together.
+    pub fn memory(&self) -> u128 {
+        2 * self.cells()
+    }
+
+    fn check(&self, memory_limit: u64) -> Result<(), SampleError> {
+        if !(self.voxel_size.is_finite() && self.voxel_size > 0.0) {
+            return Err(SampleError::BadLattice {
+                name: "voxel_size",
+                value: self.voxel_size,
+            });
+        }
+        if let Some(&value) = self.origin.iter().find(|v| !v.is_finite()) {
+            return Err(SampleError::BadLattice {
+                name: "origin",
+                value,
+            });
+        }
+        let bytes = self.memory();
+        if bytes > u128::from(memory_limit) {
+            return Err(SampleError::TooLarge {
+                shape: self.shape,
+                bytes,
+                limit: memory_limit,
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Tells for each cell, in C order (x slowest), whether its center is inside: 1, else 0.
+///
+/// The result does not depend on the number of threads. `cancel` stops the work early.
+///
+/// # Errors
+/// [`SampleError`]: a lattice that is unusable or needs more than `memory_limit` bytes, a function without a value.
+///
+/// ```
+/// use std::sync::atomic::AtomicBool;
+/// use voxsoft_shape::{Lattice, primitives, sample};
+/// let ball = primitives::sphere([0.0; 3], 1.0)?;
+/// let lattice = Lattice { origin: [-1.0; 3], voxel_size: 0.1, shape: [20; 3] };
+/// let cells = sample(&ball, &lattice, u64::MAX, &AtomicBool::new(false))?;
+/// let volume = cells.iter().filter(|&&c| c == 1).count() as f64 * 1e-3;
+/// assert!((volume - 4.189).abs() < 0.05);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn sample(
+    shape: &Shape,
+    lattice: &Lattice,
+    memory_limit: u64,
+    cancel: &AtomicBool,
+) -> Result<Vec<u8>, SampleError> {
+    lattice.check(memory_limit)?;
+    let classifier = Classifier::new(shape, lattice, TIE * lattice.voxel_size)?;
+    let tiles = Block::whole(lattice.shape).split(TILE);
+    let done = for_each_tile(&tiles, |worker, tile| {
+        if cancel.load(Ordering::Relaxed) {
+            return Err(SampleError::Canceled);
+        }
+        worker.classify(&classifier, *tile)
+    })?;
+
+    let mut cells = vec![0; lattice.cells() as usize];
+    let mut undefined: Vec<[usize; 3]> = Vec::new();
+    for (tile, content) in tiles.iter().zip(done) {
+        content.write(tile, lattice.shape, &mut cells);
+        undefined.extend(content.undefined);
+    }
+    if let Some(&first) = undefined.iter().min() {
+        let at = [0, 1, 2].map(|axis| lattice.center(axis, first[axis]));
+        return Err(SampleError::NotANumber {
+            count: undefined.len(),
+            at,
+        });
+    }
+    Ok(cells)
+}
+
+#[cfg(feature = "threads")]
+fn for_each_tile<T: Send>(
+    tiles: &[Block],
+    work: impl Fn(&mut Worker, &Block) -> Result<T, SampleError> + Sync,
+) -> Result<Vec<T>, SampleError> {
+    use rayon::prelude::*;
+    tiles
+        .par_iter()
+        .map_init(Worker::default, |worker, tile| work(worker, tile))
+        .collect()
+}
+
+#[cfg(not(feature = "threads"))]
+fn for_each_tile<T>(
+    tiles: &[Block],
+    work: impl Fn(&mut Worker, &Block) -> Result<T, SampleError>,
+) -> Result<Vec<T>, SampleError> {
+    let mut worker = Worker::default();
+    tiles.iter().map(|tile| work(&mut worker, tile)).collect()
+}

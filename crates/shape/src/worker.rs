@@ -1,0 +1,269 @@
+//! One thread's work on one tile: prune by intervals, then evaluate what is left.
+use fidget::shape::ShapeVars;
+use fidget::types::Interval;
+
+use crate::block::{Block, TileCells, TileContent};
+use crate::compiled::{FloatEval, IntervalEval, Part, Workspace};
+use crate::error::SampleError;
+use crate::layers::{Layers, spread};
+use crate::range::Range;
+use crate::sample::Lattice;
+use crate::shape::Shape;
+use crate::tape::Tape;
+
+/// Block edges below the tile, largest first.
+const EDGES: [usize; 2] = [16, 8];
+
+/// An error bound is inherited by smaller blocks while it is below this part of the range of values.
+const SHARP: f64 = 1e-4;
+
+/// The function of a shape in all its forms, shared by the threads.
+pub(crate) struct Classifier {
+    tape: Tape,
+    compiled: Option<Part>,
+    layers: Layers,
+    lattice: Lattice,
+    /// Inside means s below this
+    threshold: f64,
+}
+
+impl Classifier {
+    pub fn new(shape: &Shape, lattice: &Lattice, tie: f64) -> Result<Self, SampleError> {
+        let (compiled, tables) = match Part::compile(&shape.expr) {
+            Some((part, tables)) => (Some(part), tables),
+            None => (None, vec![]),
+        };
+        Ok(Self {
+            tape: Tape::new(&shape.expr),
+            compiled,
+            layers: Layers::new(&tables, lattice)?,
+            lattice: *lattice,
+            threshold: -tie,
+        })
+    }
+
+    fn verdict(&self, low: f64, high: f64) -> Option<u8> {
+        if high < self.threshold {
+            Some(1)
+        } else if low >= self.threshold {
+            Some(0)
+        } else {
+            None
+        }
+    }
+
+    /// The cell centers of a block along each axis, m.
+    fn extent(&self, block: &Block) -> [Range; 3] {
+        [0, 1, 2].map(|axis| {
+            let center = |index| self.lattice.center(axis, index);
+            Range::new(center(block.low[axis]), center(block.high[axis] - 1))
+        })
+    }
+}
+
+/// Evaluators and buffers of one thread.
+#[derive(Default)]
+pub(crate) struct Worker {
+    intervals: IntervalEval,
+    floats: FloatEval,
+    workspace: Workspace,
+    ranges: Vec<Range>,
+    layer_ranges: ShapeVars<Interval>,
+    layer_values: ShapeVars<Vec<f32>>,
+    singles: [Vec<f32>; 3],
+    /// Cells of the leaf that need float64, as positions in the tile
+    doubtful: Vec<usize>,
+    points: Vec<[f64; 3]>,
+    values: Vec<f64>,
+}
+
+/// The tile being filled.
+struct Canvas {
+    tile: Block,
+    cells: Vec<u8>,
+    undefined: Vec<[usize; 3]>,
+}
+
+impl Canvas {
+    fn fill(&mut self, block: &Block, value: u8) {
+        let row = block.shape()[2];
+        for start in block.rows(self.tile.low, self.tile.shape()) {
+            self.cells[start..start + row].fill(value);
+        }
+    }
+
+    /// Lattice indices of the cell at a position in the tile.
+    fn index(&self, position: usize) -> [usize; 3] {
+        let [_, ny, nz] = self.tile.shape();
+        let local = [position / (ny * nz), position / nz % ny, position % nz];
+        [0, 1, 2].map(|axis| self.tile.low[axis] + local[axis])
+    }
+}
+
+impl Worker {
+    /// Classifies the cells of `tile`.
+    pub fn classify(&mut self, of: &Classifier, tile: Block) -> Result<TileContent, SampleError> {
+        let range = of.tape.range(&of.extent(&tile), &mut self.ranges)?;
+        if let Some(value) = of.verdict(range.low, range.high) {
+            return Ok(TileContent {
+                cells: TileCells::Uniform(value),
+                undefined: vec![],
+            });
+        }
+        let mut canvas = Canvas {
+            tile,
+            cells: vec![0; tile.cells()],
+            undefined: vec![],
+        };
+        self.open(of, &tile, of.compiled.as_ref(), range, &EDGES, &mut canvas)?;
+        let Canvas {
+            cells, undefined, ..
+        } = canvas;
+        Ok(TileContent {
+            cells: TileCells::Mixed(cells),
+            undefined,
+        })
+    }
+
+    /// Decides a block by fidget's intervals, or goes on with what matters of the function there.
+    fn open(
+        &mut self,
+        of: &Classifier,
+        block: &Block,
+        part: Option<&Part>,
+        range: Range,
+        edges: &[usize],
+        canvas: &mut Canvas,
+    ) -> Result<(), SampleError> {
+        let Some(part) = part else {
+            return self.descend(of, block, None, range, edges, canvas);
+        };
+        let [x, y, z] = of
+            .extent(block)
+            .map(|r| Interval::new(r.low as f32, r.high as f32));
+        of.layers.ranges(block, &mut self.layer_ranges);
+        let (values, trace) = self
+            .intervals
+            .eval_with_vars(&part.intervals, x, y, z, &self.layer_ranges)
+            .expect("every variable is a table");
+        let margin = range.error;
+        let (low, high) = (f64::from(values.lower()), f64::from(values.upper()));
+        if let Some(value) = of.verdict(low - margin, high + margin) {
+            canvas.fill(block, value);
+            return Ok(());
+        }
+        // The last level is evaluated once: compiling a simpler function for it does not pay.
+        let simpler = match trace {
+            Some(trace) if !edges.is_empty() => part.simplify(trace, &mut self.workspace),
+            _ => None,
+        };
+        self.descend(
+            of,
+            block,
+            Some(simpler.as_ref().unwrap_or(part)),
+            range,
+            edges,
+            canvas,
+        )
+    }
+
+    /// Splits a block, or evaluates its cells when it is of the smallest size.
+    fn descend(
+        &mut self,
+        of: &Classifier,
+        block: &Block,
+        part: Option<&Part>,
+        range: Range,
+        edges: &[usize],
+        canvas: &mut Canvas,
+    ) -> Result<(), SampleError> {
+        let Some((&edge, finer)) = edges.split_first() else {
+            return self.evaluate(of, block, part, range.error, canvas);
+        };
+        // Written so that an infinite or unknown range is not sharp.
+        let is_sharp = range.error < SHARP * (range.high - range.low) && range.error.is_finite();
+        for child in block.split(edge) {
+            let mut child_range = range;
+            if part.is_none() || !is_sharp {
+                child_range = of.tape.range(&of.extent(&child), &mut self.ranges)?;
+                if let Some(value) = of.verdict(child_range.low, child_range.high) {
+                    canvas.fill(&child, value);
+                    continue;
+                }
+            }
+            self.open(of, &child, part, child_range, finer, canvas)?;
+        }
+        Ok(())
+    }
+
+    /// Evaluates every cell of a block: in f32 where that is certain enough, else in float64.
+    fn evaluate(
+        &mut self,
+        of: &Classifier,
+        block: &Block,
+        part: Option<&Part>,
+        error: f64,
+        canvas: &mut Canvas,
+    ) -> Result<(), SampleError> {
+        self.doubtful.clear();
+        let row = block.shape()[2];
+        let starts = block.rows(canvas.tile.low, canvas.tile.shape());
+        match part {
+            Some(part) if error.is_finite() => {
+                for (axis, slice) in self.singles.iter_mut().enumerate() {
+                    spread(
+                        block,
+                        axis,
+                        |index| of.lattice.center(axis, index) as f32,
+                        slice,
+                    );
+                }
+                of.layers.place(block, &mut self.layer_values);
+                let [x, y, z] = &self.singles;
+                let values = self
+                    .floats
+                    .eval_with_var_arrays(&part.floats, x, y, z, &self.layer_values)
+                    .expect("slices of one length, and every variable is a table");
+                let (inside, outside) =
+                    ((of.threshold - error) as f32, (of.threshold + error) as f32);
+                for (values, start) in values.chunks_exact(row).zip(starts) {
+                    for (position, &value) in (start..).zip(values) {
+                        canvas.cells[position] = u8::from(value < inside);
+                        // Written so that NaN is doubtful too; the ends take the rounding of the limits.
+                        if !(value < inside || value > outside) || value == inside {
+                            self.doubtful.push(position);
+                        }
+                    }
+                }
+            }
+            _ => self
+                .doubtful
+                .extend(starts.flat_map(|start| start..start + row)),
+        }
+        self.evaluate_doubtful(of, canvas)
+    }
+
+    fn evaluate_doubtful(
+        &mut self,
+        of: &Classifier,
+        canvas: &mut Canvas,
+    ) -> Result<(), SampleError> {
+        if self.doubtful.is_empty() {
+            return Ok(());
+        }
+        self.points.clear();
+        self.points.extend(self.doubtful.iter().map(|&position| {
+            let index = canvas.index(position);
+            [0, 1, 2].map(|axis| of.lattice.center(axis, index[axis]))
+        }));
+        self.values.resize(self.points.len(), 0.0);
+        of.tape.evaluate_into(&self.points, &mut self.values)?;
+        for (&position, &value) in self.doubtful.iter().zip(&self.values) {
+            canvas.cells[position] = u8::from(value < of.threshold);
+            if value.is_nan() {
+                canvas.undefined.push(canvas.index(position));
+            }
+        }
+        Ok(())
+    }
+}

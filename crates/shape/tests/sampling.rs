@@ -1,0 +1,281 @@
+//! The pruned, compiled classification equals a float64 evaluation of every cell.
+use std::sync::atomic::AtomicBool;
+
+use proptest::prelude::*;
+use voxsoft_shape::periodic::{Struts, Surface};
+use voxsoft_shape::{Expr, Lattice, SampleError, Shape, TIE, operators, primitives, sample};
+
+/// Every cell on its own, in float64.
+fn brute_force(shape: &Shape, lattice: &Lattice) -> Vec<u8> {
+    let [nx, ny, nz] = lattice.shape;
+    let mut points = Vec::new();
+    for i in 0..nx {
+        for j in 0..ny {
+            for k in 0..nz {
+                points.push([
+                    lattice.center(0, i),
+                    lattice.center(1, j),
+                    lattice.center(2, k),
+                ]);
+            }
+        }
+    }
+    let threshold = -TIE * lattice.voxel_size;
+    shape
+        .evaluate(&points)
+        .unwrap()
+        .iter()
+        .map(|&s| u8::from(s < threshold))
+        .collect()
+}
+
+fn classify(shape: &Shape, lattice: &Lattice) -> Vec<u8> {
+    sample(shape, lattice, u64::MAX, &AtomicBool::new(false)).unwrap()
+}
+
+/// A lattice of about `cells`³ that covers ±0.05 m, deliberately not a whole number of blocks.
+fn lattice(cells: usize) -> Lattice {
+    let voxel_size = 0.1 / cells as f64;
+    Lattice {
+        origin: [-0.05; 3],
+        voxel_size,
+        shape: [cells, cells + 3, cells - 5],
+    }
+}
+
+fn assert_exact(name: &str, shape: &Shape) {
+    for cells in [20, 75] {
+        let lattice = lattice(cells);
+        let (fast, slow) = (classify(shape, &lattice), brute_force(shape, &lattice));
+        let wrong = fast.iter().zip(&slow).filter(|(a, b)| a != b).count();
+        assert_eq!(wrong, 0, "{name}: {wrong} of {} cells differ", slow.len());
+    }
+}
+
+fn atoms() -> Vec<(&'static str, Shape)> {
+    let up = [0.0, 0.0, 1.0];
+    let oblique = [1.0, 2.0, -0.5];
+    let star = [[0.03, 0.0], [0.0, 0.01], [-0.03, 0.0], [0.0, 0.04]];
+    let constant = Expr::constant;
+    vec![
+        (
+            "box",
+            primitives::cuboid([0.0; 3], [0.06, 0.05, 0.04]).unwrap(),
+        ),
+        (
+            "rounded box",
+            primitives::rounded_box([0.01; 3], [0.06, 0.05, 0.04], 0.01).unwrap(),
+        ),
+        ("sphere", primitives::sphere([0.0; 3], 0.04).unwrap()),
+        (
+            "ellipsoid",
+            primitives::ellipsoid([0.0; 3], [0.04, 0.02, 0.01]).unwrap(),
+        ),
+        (
+            "cylinder",
+            primitives::cylinder([0.0; 3], oblique, 0.02, 0.03).unwrap(),
+        ),
+        (
+            "tube",
+            primitives::tube([0.0; 3], up, 0.02, 0.005, 0.03).unwrap(),
+        ),
+        (
+            "cone",
+            primitives::cone([0.0; 3], up, 0.02, 0.0, 0.03).unwrap(),
+        ),
+        (
+            "capsule",
+            primitives::capsule([0.0; 3], [0.03, 0.01, 0.0], 0.01).unwrap(),
+        ),
+        (
+            "torus",
+            primitives::torus([0.0; 3], oblique, 0.03, 0.01).unwrap(),
+        ),
+        (
+            "half-space",
+            primitives::half_space([0.0; 3], oblique).unwrap(),
+        ),
+        (
+            "prism",
+            primitives::prism([0.0; 3], up, &star, 0.03).unwrap(),
+        ),
+        (
+            "revolve",
+            primitives::revolve(
+                [0.0; 3],
+                oblique,
+                &[[0.01, 0.0], [0.03, 0.01], [0.02, 0.02]],
+            )
+            .unwrap(),
+        ),
+        (
+            "gyroid",
+            Surface::Gyroid
+                .sheet(&constant(0.02), &constant(0.003), 0.0)
+                .unwrap(),
+        ),
+        (
+            "schwarz-p",
+            Surface::SchwarzP.solid(&constant(0.03), 0.5).unwrap(),
+        ),
+        (
+            "schwarz-d",
+            Surface::SchwarzD
+                .sheet(&constant(0.03), &constant(0.002), 0.1)
+                .unwrap(),
+        ),
+        (
+            "neovius",
+            Surface::Neovius
+                .sheet(&constant(0.04), &constant(0.002), 0.0)
+                .unwrap(),
+        ),
+        ("iwp", Surface::Iwp.solid(&constant(0.025), 0.0).unwrap()),
+        (
+            "cubic",
+            Struts::Cubic
+                .lattice(&constant(0.01), &constant(0.002))
+                .unwrap(),
+        ),
+        (
+            "bcc",
+            Struts::Bcc
+                .lattice(&constant(0.02), &constant(0.003))
+                .unwrap(),
+        ),
+        (
+            "fcc",
+            Struts::Fcc
+                .lattice(&constant(0.02), &constant(0.003))
+                .unwrap(),
+        ),
+        (
+            "octet",
+            Struts::Octet
+                .lattice(&constant(0.03), &constant(0.003))
+                .unwrap(),
+        ),
+    ]
+}
+
+/// `atom` seen through the operator numbered `which`, with numbers from `t` in [0, 1].
+fn operate(which: usize, atom: &Shape, other: &Shape, t: f64) -> Shape {
+    let both = [atom.clone(), other.clone()];
+    let (up, origin) = ([0.0, 0.0, 1.0], [0.0; 3]);
+    match which {
+        0 => operators::union(&both),
+        1 => operators::intersection(&both),
+        2 => operators::difference(&both),
+        3 => operators::smooth_union(&both, 0.001 + 0.02 * t),
+        4 => operators::smooth_intersection(&both, 0.001 + 0.02 * t),
+        5 => operators::smooth_difference(&both, 0.001 + 0.02 * t),
+        6 => operators::offset(atom, 0.01 * (t - 0.5)),
+        7 => operators::shell(atom, 0.001 + 0.005 * t),
+        8 => operators::translate(atom, [0.01 * t, -0.02 * t, 0.03]),
+        9 => operators::rotate(atom, [1.0, t, 0.3], 6.0 * t, [0.0, 0.01, 0.0]),
+        10 => operators::scale(atom, [0.5 + t, 1.0, 1.5 - t], [0.01; 3]),
+        11 => operators::mirror(atom, [0.01, 0.0, 0.0], [1.0, t, 0.0]),
+        12 => operators::array(atom, [2, 1, 3], [0.02, 0.0, 0.02 + 0.02 * t]),
+        13 => operators::polar_array(atom, 5, up, 3.0 * t, [0.03, 0.0, 0.0]),
+        14 => operators::twist(atom, 100.0 * (t - 0.5), up, origin),
+        15 => operators::bend(atom, 40.0 * (t - 0.5) + 1e-3, up, [1.0, 0.0, 0.0], origin),
+        16 => operators::taper(atom, 0.3 + t, 0.03, up, origin),
+        _ => Ok(operators::blend(
+            atom,
+            other,
+            &(Expr::axes()[0].clone() * 10.0 + t),
+        )),
+    }
+    .unwrap()
+}
+
+#[test]
+fn every_primitive_is_classified_as_in_float64() {
+    for (name, shape) in atoms() {
+        assert_exact(name, &shape);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn random_compositions_are_classified_as_in_float64(
+        picks in prop::array::uniform3(0..21_usize), which in prop::array::uniform2(0..18_usize),
+        t in prop::array::uniform2(0.0..1.0f64),
+    ) {
+        let atoms = atoms();
+        let inner = operate(which[0], &atoms[picks[0]].1, &atoms[picks[1]].1, t[0]);
+        let shape = operate(which[1], &inner, &atoms[picks[2]].1, t[1]);
+        assert_exact(&format!("operators {which:?} on {picks:?} with {t:?}"), &shape);
+    }
+}
+
+#[test]
+fn a_center_on_the_surface_is_outside() {
+    // Centers lie at x = ±0.5, ±1.5 ...: a shell of thickness 1 around the plane x = 0 touches two layers.
+    let plane = primitives::half_space([0.0; 3], [1.0, 0.0, 0.0]).unwrap();
+    let lattice = Lattice {
+        origin: [-2.0; 3],
+        voxel_size: 1.0,
+        shape: [4; 3],
+    };
+    let count = |thickness: f64| {
+        let shell = operators::shell(&plane, thickness).unwrap();
+        classify(&shell, &lattice)
+            .iter()
+            .filter(|&&cell| cell == 1)
+            .count()
+    };
+    assert_eq!(count(1.0), 0);
+    assert_eq!(count(1.0 + 1e-6), 32);
+}
+
+#[test]
+fn thread_count_does_not_change_a_cell() {
+    let gyroid = Surface::Gyroid
+        .sheet(&0.02.into(), &0.003.into(), 0.0)
+        .unwrap();
+    let lattice = lattice(130);
+    let with_threads = |count| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .build()
+            .unwrap();
+        pool.install(|| classify(&gyroid, &lattice))
+    };
+    assert_eq!(with_threads(1), with_threads(4));
+}
+
+#[test]
+fn too_large_a_grid_is_refused_before_allocating() {
+    let ball = primitives::sphere([0.0; 3], 1.0).unwrap();
+    let lattice = Lattice {
+        origin: [0.0; 3],
+        voxel_size: 1e-6,
+        shape: [2_000_000; 3],
+    };
+    let refused = sample(&ball, &lattice, 1 << 30, &AtomicBool::new(false));
+    assert!(
+        matches!(refused, Err(SampleError::TooLarge { bytes, .. }) if bytes == 16 * 10_u128.pow(18))
+    );
+}
+
+#[test]
+fn a_function_without_a_value_is_an_error_with_its_place() {
+    let [x, ..] = Expr::axes();
+    let shape = Shape::unknown(x.sqrt() - 0.01);
+    let refused = sample(&shape, &lattice(20), u64::MAX, &AtomicBool::new(false));
+    let Err(SampleError::NotANumber { count, at }) = refused else {
+        panic!("{refused:?}")
+    };
+    assert_eq!(count, 10 * 23 * 15);
+    assert!((at[0] + 0.0475).abs() < 1e-12, "{at:?}");
+}
+
+#[test]
+fn cancel_stops() {
+    let ball = primitives::sphere([0.0; 3], 0.04).unwrap();
+    let stopped = sample(&ball, &lattice(20), u64::MAX, &AtomicBool::new(true));
+    assert_eq!(stopped, Err(SampleError::Canceled));
+}
