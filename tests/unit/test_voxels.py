@@ -131,8 +131,8 @@ def test_a_cavity_has_volume_area_bounds_and_cells():
 @pytest.mark.parametrize(
     ("make", "match"),
     [
-        (lambda: Voxels.empty((0, 1, 1), 0.1), "shape: got .* 1 to 65535"),
-        (lambda: Voxels.empty((2.5, 1, 1), 0.1), "whole cells"),
+        (lambda: Voxels.empty((0, 1, 1), 0.1), "shape: got 0; allowed are whole numbers 1 to"),
+        (lambda: Voxels.empty((2.5, 1, 1), 0.1), "shape: got 2.5; allowed are whole numbers"),
         (lambda: Voxels.empty((1, 1), 0.1), "three numbers"),
         (lambda: Voxels.empty((1, 1, 1), 0.0), "voxel_size: .* positive"),
         (lambda: Voxels.empty((1, 1, 1), float("nan")), "voxel_size"),
@@ -154,7 +154,7 @@ def test_a_cavity_has_volume_area_bounds_and_cells():
         (lambda: voxels().fill_random(0.5, seed=-1), "seed"),
         (lambda: voxels().flip("w"), "axis: got 'w'"),
         (lambda: voxels().pad(-1), "before: got -1"),
-        (lambda: voxels().pad(70000), "0 to 65535"),
+        (lambda: voxels().pad(70000), "each axis may have 65000"),
         (lambda: voxels().shift((0.5, 0, 0)), "whole numbers"),
         (lambda: voxels().components("side"), "face, edge, corner"),
         (lambda: voxels() | Voxels.empty((1, 1, 1), 0.1), "must be equal"),
@@ -178,3 +178,51 @@ def test_a_mesh_over_the_available_memory_is_refused(monkeypatch):
     monkeypatch.setattr("voxsoft.mesh.memory_limit", lambda: 1000)
     with pytest.raises(MeshError, match=r"27 voxels needs about \d+ bytes.*1000"):
         Voxels.from_array(np.ones((3, 3, 3), int), 0.1).mesh()
+
+
+def test_leaks_name_the_cell_where_they_open():
+    block = Voxels.empty((12, 12, 12), voxel_size=0.1).fill_box((0, 0, 0), (2, 2, 2))
+    chamber = block.fill_box((0.3, 0.3, 0.3), (0.9, 0.9, 0.9), part=0)
+    assert chamber.leaks == ()
+    assert len(chamber.cavities) == 1
+    bored = chamber.fill_box((0.5, 0.4, 0.9), (0.6, 0.5, 1.2), part=0)
+    (leak,) = bored.leaks
+    assert bored.cavities == ()
+    assert (leak.count, leak.width, leak.openings) == (216, 1, ((5, 4, 9),))
+    assert bored.with_cell(leak.openings[0]).leaks == ()
+    wide = chamber.fill_box((0.5, 0.4, 0.9), (0.7, 0.6, 1.2), part=0)
+    assert [leak.width for leak in wide.leaks] == [2]
+
+
+def test_a_ring_of_one_cell_leaks_only_where_a_face_is_open():
+    # The cells of a thin ring touch diagonally; no air gets through.
+    grid = Voxels.empty((21, 21, 6), voxel_size=1 * MM)
+    center = (10.5 * MM, 10.5 * MM)
+    ring = grid.fill_tube((*center, 0), 10 * MM, 8.5 * MM, height=6 * MM)
+    lids = grid.fill_cylinder((*center, 0), 10 * MM, 1 * MM)
+    lids = lids.fill_cylinder((*center, 5 * MM), 10 * MM, 1 * MM)
+    closed = ring | lids
+    assert len(closed.cavities) == 1
+    assert closed.leaks == ()
+    side = closed.with_cell((1, 10, 2), part=0).with_cell((0, 10, 2), part=0)
+    assert side.cavities == ()
+    assert [leak.openings for leak in side.leaks] == [((1, 10, 2),)]
+
+
+def test_hinges_are_edges_and_corners():
+    cells = np.zeros((3, 3, 3), int)
+    cells[0, 0, 0] = cells[0, 1, 1] = cells[1, 2, 2] = 1
+    hinges = Voxels.from_array(cells, 0.1).hinges
+    assert [hinge.contact for hinge in hinges] == ["edge", "corner"]
+    assert hinges[1].cells == ((0, 1, 1), (1, 2, 2))
+    assert hollow_block().hinges == ()
+
+
+def test_walls_are_counted_in_voxels():
+    grid = hollow_block()
+    assert grid.wall_thickness.thinnest.thickness == 1
+    assert grid.wall_thickness.cells[0, 2, 3] == 1
+    assert grid.wall_thickness.cells[2, 2, 3] == 0
+    assert sum(grid.wall_thickness.histogram) == grid.count
+    assert [wall.thickness for wall in grid.cavity_walls] == [1]
+    assert Voxels.empty((1, 1, 1), 0.1).wall_thickness.thinnest is None

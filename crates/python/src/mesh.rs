@@ -25,7 +25,16 @@ type PyTetMesh<'py> = (
 );
 
 /// Volume, smallest tet, largest tet, area, Euler number, conforming, open edges, non-manifold edges.
-type PyQuality<'py> = (f64, f64, f64, f64, i64, bool, usize, Bound<'py, PyArray2<i32>>);
+type PyQuality<'py> = (
+    f64,
+    f64,
+    f64,
+    f64,
+    i64,
+    bool,
+    usize,
+    Bound<'py, PyArray2<i32>>,
+);
 
 #[pyfunction]
 pub fn mesh_voxels<'py>(
@@ -95,7 +104,10 @@ fn mesh_to_python(py: Python<'_>, mesh: TetMesh) -> PyResult<PyTetMesh<'_>> {
         rows_to(py, mesh.edges)?,
         rows_to(py, mesh.triangles)?,
         mesh.tet_part.into_pyarray(py),
-        mesh.cavities.into_iter().map(cavity).collect::<PyResult<_>>()?,
+        mesh.cavities
+            .into_iter()
+            .map(cavity)
+            .collect::<PyResult<_>>()?,
     ))
 }
 
@@ -110,7 +122,12 @@ fn rows_to<const N: usize, T: Element>(
 
 /// The rows of a matrix; the Python side has checked that it has N columns.
 fn rows_from<const N: usize, T: Element + Copy>(array: &PyReadonlyArray2<'_, T>) -> Vec<[T; N]> {
-    array.as_array().rows().into_iter().map(|row| std::array::from_fn(|c| row[c])).collect()
+    array
+        .as_array()
+        .rows()
+        .into_iter()
+        .map(|row| std::array::from_fn(|c| row[c]))
+        .collect()
 }
 
 fn stitch_error(py: Python<'_>, error: &StitchError) -> PyErr {
@@ -123,21 +140,28 @@ fn stitch_error(py: Python<'_>, error: &StitchError) -> PyErr {
 
 fn from_tets_error(py: Python<'_>, error: &FromTetsError) -> PyErr {
     let (place, hint) = match error {
-        FromTetsError::Empty => ("tets".into(), "give at least one row of four vertex indices"),
+        FromTetsError::Empty => (
+            "tets".into(),
+            "give at least one row of four vertex indices",
+        ),
         FromTetsError::TooMany(_) => ("tets".into(), "use a coarser mesh"),
         FromTetsError::PartCount { .. } => ("tet_part".into(), "give one part id per tetrahedron"),
-        FromTetsError::Index { tet, .. } => {
-            (format!("tets[{tet}]"), "count vertices from 0, and check that none is missing")
-        }
-        FromTetsError::Position { vertex, .. } => {
-            (format!("vertices[{vertex}]"), "remove or correct the vertex")
-        }
-        FromTetsError::Flat { tet, .. } => {
-            (format!("tets[{tet}]"), "remove the tetrahedron, or merge its nearly equal vertices")
-        }
-        FromTetsError::Overlap { tets, .. } => {
-            (format!("tets[{}]", tets[1]), "remove tetrahedra that are listed twice or overlap")
-        }
+        FromTetsError::Index { tet, .. } => (
+            format!("tets[{tet}]"),
+            "count vertices from 0, and check that none is missing",
+        ),
+        FromTetsError::Position { vertex, .. } => (
+            format!("vertices[{vertex}]"),
+            "remove or correct the vertex",
+        ),
+        FromTetsError::Flat { tet, .. } => (
+            format!("tets[{tet}]"),
+            "remove the tetrahedron, or merge its nearly equal vertices",
+        ),
+        FromTetsError::Overlap { tets, .. } => (
+            format!("tets[{}]", tets[1]),
+            "remove tetrahedra that are listed twice or overlap",
+        ),
     };
     exception(py, "MeshError", &place, &error.to_string(), hint)
 }

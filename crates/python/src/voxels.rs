@@ -12,6 +12,12 @@ use crate::gate;
 /// Runs of cells as rows (i, j, first, last), and the number of cells.
 type PyRegion<'py> = (Bound<'py, PyArray2<u32>>, u64);
 
+/// Region, width and cells of the openings.
+type PyLeak<'py> = (PyRegion<'py>, usize, Vec<(u32, u32, u32)>);
+
+/// Thickness in cells, and a cell.
+type PyWall = (u16, (u32, u32, u32));
+
 #[pyclass(frozen, name = "Grid", module = "voxsoft._core")]
 pub struct PyGrid(pub Arc<voxel::Grid>);
 
@@ -21,7 +27,11 @@ impl PyGrid {
     }
 
     /// A changed copy, made with the GIL released.
-    fn changed(&self, py: Python<'_>, change: impl FnOnce(&mut voxel::Grid) + Send) -> PyResult<Self> {
+    fn changed(
+        &self,
+        py: Python<'_>,
+        change: impl FnOnce(&mut voxel::Grid) + Send,
+    ) -> PyResult<Self> {
         gate::run(py, |_| {
             let mut grid = (*self.0).clone();
             change(&mut grid);
@@ -35,7 +45,9 @@ impl PyGrid {
         combine: impl FnOnce(&voxel::Grid) -> Result<voxel::Grid, CombineError> + Send,
     ) -> PyResult<Self> {
         let combined = gate::run(py, |_| combine(&self.0))?;
-        combined.map(Self::new).map_err(|error| combine_error(py, &error))
+        combined
+            .map(Self::new)
+            .map_err(|error| combine_error(py, &error))
     }
 }
 
@@ -74,7 +86,11 @@ impl PyGrid {
     }
 
     fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        self.0.cells().to_vec().into_pyarray(py).reshape(self.0.shape())
+        self.0
+            .cells()
+            .to_vec()
+            .into_pyarray(py)
+            .reshape(self.0.shape())
     }
 
     #[getter]
@@ -114,17 +130,33 @@ impl PyGrid {
     }
 
     fn with_cell(&self, py: Python<'_>, cell: [usize; 3], part: u8) -> PyResult<Self> {
-        if cell.iter().zip(self.0.shape()).any(|(&index, n)| index >= n) {
+        if cell
+            .iter()
+            .zip(self.0.shape())
+            .any(|(&index, n)| index >= n)
+        {
             return Err(PyIndexError::new_err("cell outside the grid"));
         }
         self.changed(py, |grid| grid.set(cell, part))
     }
 
-    fn fill_box(&self, py: Python<'_>, lower: [f64; 3], upper: [f64; 3], part: u8) -> PyResult<Self> {
+    fn fill_box(
+        &self,
+        py: Python<'_>,
+        lower: [f64; 3],
+        upper: [f64; 3],
+        part: u8,
+    ) -> PyResult<Self> {
         self.changed(py, |grid| grid.fill_box(lower, upper, part))
     }
 
-    fn fill_sphere(&self, py: Python<'_>, center: [f64; 3], radius: f64, part: u8) -> PyResult<Self> {
+    fn fill_sphere(
+        &self,
+        py: Python<'_>,
+        center: [f64; 3],
+        radius: f64,
+        part: u8,
+    ) -> PyResult<Self> {
         self.changed(py, |grid| grid.fill_sphere(center, radius, part))
     }
 
@@ -195,13 +227,61 @@ impl PyGrid {
 
     fn cavities<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyRegion<'py>, f64, f64)>> {
         let cavities = gate::run(py, |_| voxel::cavities(&self.0))?;
-        cavities.iter().map(|c| Ok((region(py, &c.region)?, c.volume, c.area))).collect()
+        cavities
+            .iter()
+            .map(|c| Ok((region(py, &c.region)?, c.volume, c.area)))
+            .collect()
+    }
+
+    /// One row of two cells (i, j, k, i, j, k) per hinge.
+    fn hinges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let hinges = gate::run(py, |_| voxel::hinges(&self.0))?;
+        let count = hinges.len();
+        let cells: Vec<u32> = hinges
+            .iter()
+            .flat_map(|hinge| hinge.cells)
+            .flatten()
+            .collect();
+        cells.into_pyarray(py).reshape([count, 6])
+    }
+
+    fn leaks<'py>(&self, py: Python<'py>, max_width: usize) -> PyResult<Vec<PyLeak<'py>>> {
+        let leaks = gate::run(py, |_| voxel::leaks(&self.0, max_width))?;
+        let cells = |openings: &[[u32; 3]]| openings.iter().map(|&cell| cell.into()).collect();
+        leaks
+            .iter()
+            .map(|l| Ok((region(py, &l.region)?, l.width, cells(&l.openings))))
+            .collect()
+    }
+
+    /// Thickness at each cell, histogram, thinnest place.
+    fn wall_thickness<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<(Bound<'py, PyArray3<u16>>, Vec<u64>, Option<PyWall>)> {
+        let walls = gate::run(py, |_| voxel::wall_thickness(&self.0))?;
+        let cells = walls.cells.into_pyarray(py).reshape(self.0.shape())?;
+        Ok((cells, walls.histogram, walls.thinnest.map(wall)))
+    }
+
+    fn cavity_walls(&self, py: Python<'_>) -> PyResult<Vec<PyWall>> {
+        Ok(gate::run(py, |_| voxel::cavity_walls(&self.0))?
+            .into_iter()
+            .map(wall)
+            .collect())
     }
 }
 
+fn wall(wall: voxel::Wall) -> PyWall {
+    (wall.thickness, wall.cell.into())
+}
+
 fn region<'py>(py: Python<'py>, region: &Region) -> PyResult<PyRegion<'py>> {
-    let rows: Vec<[u32; 4]> =
-        region.runs().iter().map(|run| [run.i, run.j, run.first, run.last]).collect();
+    let rows: Vec<[u32; 4]> = region
+        .runs()
+        .iter()
+        .map(|run| [run.i, run.j, run.first, run.last])
+        .collect();
     let count = rows.len();
     let array = rows.into_flattened().into_pyarray(py).reshape([count, 4])?;
     Ok((array, region.cell_count()))

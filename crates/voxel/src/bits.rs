@@ -100,6 +100,15 @@ impl BitGrid {
         bits
     }
 
+    /// The cells of the set that are not in `other`, which has the same shape.
+    pub fn without(&self, other: &Self) -> Self {
+        let mut bits = self.clone();
+        for (word, other) in bits.words.iter_mut().zip(&other.words) {
+            *word &= !other;
+        }
+        bits
+    }
+
     /// Number of cells of row (i, j) in the set with `first <= k <= last`.
     pub fn count_between(&self, i: usize, j: usize, first: usize, last: usize) -> u32 {
         let row = self.row(i, j);

@@ -304,7 +304,7 @@ mod tests {
     #[test]
     fn results_that_do_not_fit_are_refused() {
         assert!(matches!(
-            row(0).padded([0; 3], [65_535, 0, 0], u64::MAX),
+            row(0).padded([0; 3], [65_000, 0, 0], u64::MAX),
             Err(CombineError::Shape(_))
         ));
         assert!(matches!(

@@ -1,8 +1,9 @@
 //! The grid: a box of cells, each empty (0) or of one part (1..=255).
 use thiserror::Error;
 
-/// The most cells a grid may have along one axis (run ends are kept in 16 bits).
-pub const MAX_CELLS_PER_AXIS: usize = 65_535;
+/// The most cells a grid may have along one axis: ends of runs are kept in 16 bits, with room for
+/// some padding.
+pub const MAX_CELLS_PER_AXIS: usize = 65_000;
 
 /// A fraction of a voxel under which two positions on the lattice count as the same.
 pub(crate) const LATTICE_TOLERANCE: f64 = 1e-6;

@@ -17,6 +17,6 @@ Voxels(5 x 5 x 7 cells of 5 mm, 25 x 25 x 35 mm, 130 filled)
 """
 
 from voxsoft.voxels.grid import Voxels
-from voxsoft.voxels.regions import Cavity, Region
+from voxsoft.voxels.regions import Cavity, Hinge, Leak, Region, Wall, WallThickness
 
-__all__ = ["Cavity", "Region", "Voxels"]
+__all__ = ["Cavity", "Hinge", "Leak", "Region", "Voxels", "Wall", "WallThickness"]

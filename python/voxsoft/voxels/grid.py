@@ -1,8 +1,11 @@
-"""The grid of cells, each empty or of one part."""
+"""The grid of cells, each empty or of one part.
+
+Long because every method documents its arguments, errors and an example; none has more than a
+few lines of its own, the work is done in Rust.
+"""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,14 +18,31 @@ from voxsoft import _core
 from voxsoft._memory import memory_limit
 from voxsoft.errors import VoxelError
 from voxsoft.mesh import Mesh
-from voxsoft.voxels.regions import Cavity, Region, region_fields
+from voxsoft.voxels.arguments import (
+    Axis,
+    Triple,
+    axis_vector,
+    margins,
+    part_id,
+    positive_length,
+    triple,
+    whole,
+)
+from voxsoft.voxels.regions import (
+    Cavity,
+    Hinge,
+    Leak,
+    Region,
+    Wall,
+    WallThickness,
+    region_fields,
+)
 
 Contact = Literal["face", "edge", "corner"]
-Axis = Literal["x", "y", "z"] | Sequence[float]
-Triple = tuple[float, float, float]
 
+#: Openings up to this many cells are leaks; wider ones are meant to be open.
+_WIDEST_LEAK = 2
 _CONTACTS: dict[str, int] = {"face": 1, "edge": 2, "corner": 3}
-_AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -48,7 +68,7 @@ class Voxels:
         Parameters
         ----------
         shape : three ints
-            Number of cells along x, y and z, each 1 to 65535.
+            Number of cells along x, y and z, each 1 to 65,000.
         voxel_size : float
             Side of a cell [m].
         origin : three floats, default (0, 0, 0)
@@ -65,11 +85,8 @@ class Voxels:
         >>> Voxels.empty((2, 3, 4), voxel_size=0.005)
         Voxels(2 x 3 x 4 cells of 5 mm, 10 x 15 x 20 mm, 0 filled)
         """
-        cells = _triple("shape", shape)
-        if any(n != int(n) or not 1 <= n <= 65535 for n in cells):
-            raise VoxelError("shape", f"got {tuple(shape)}; each axis needs 1 to 65535 whole cells")
-        nx, ny, nz = (int(n) for n in cells)
-        place = _triple("origin", origin)
+        nx, ny, nz = (whole("shape", n, 1, 2**31) for n in triple("shape", shape))
+        place = triple("origin", origin)
         return cls(_core.Grid.empty((nx, ny, nz), place, float(voxel_size), memory_limit()))
 
     @classmethod
@@ -107,7 +124,7 @@ class Voxels:
         if cells.size and not (cells.min() >= 0 and cells.max() <= 255):
             found = f"holds {cells.min()} to {cells.max()}"
             raise VoxelError("array", f"{found}; parts are numbered 0 (empty) to 255")
-        place = _triple("origin", origin)
+        place = triple("origin", origin)
         return cls(_core.Grid.from_array(cells.astype(np.uint8), place, float(voxel_size)))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -206,10 +223,10 @@ class Voxels:
         >>> Voxels.empty((2, 2, 2), voxel_size=0.01).with_cell((0, 1, 1), part=3).count
         1
         """
-        i, j, k = (int(n) for n in _triple("cell", cell))
+        i, j, k = (int(n) for n in triple("cell", cell))
         if not all(0 <= index < n for index, n in zip((i, j, k), self.shape, strict=True)):
             raise VoxelError("cell", f"{(i, j, k)} lies outside the grid of {self.shape} cells")
-        return Voxels(self._grid.with_cell((i, j, k), _part(part)))
+        return Voxels(self._grid.with_cell((i, j, k), part_id(part)))
 
     def fill_box(self, lower: Sequence[float], upper: Sequence[float], part: int = 1) -> Voxels:
         """Return a grid with the cells of a box given to a part, or emptied with ``part=0``.
@@ -230,9 +247,9 @@ class Voxels:
         >>> grid.fill_box((0, 0, 0), (0.04, 0.02, 0.01)).count
         8
         """
-        corners = np.sort([_triple("lower", lower), _triple("upper", upper)], axis=0)
-        low, high = (_triple("box", corner) for corner in corners)
-        return Voxels(self._grid.fill_box(low, high, _part(part)))
+        corners = np.sort([triple("lower", lower), triple("upper", upper)], axis=0)
+        low, high = (triple("box", corner) for corner in corners)
+        return Voxels(self._grid.fill_box(low, high, part_id(part)))
 
     def fill_sphere(self, center: Sequence[float], radius: float, part: int = 1) -> Voxels:
         """Return a grid with the cells of a sphere given to a part, or emptied with ``part=0``.
@@ -243,8 +260,10 @@ class Voxels:
         >>> grid.fill_sphere((0.035, 0.035, 0.035), radius=0.02).count
         27
         """
-        place = _triple("center", center)
-        return Voxels(self._grid.fill_sphere(place, _length("radius", radius), _part(part)))
+        place = triple("center", center)
+        return Voxels(
+            self._grid.fill_sphere(place, positive_length("radius", radius), part_id(part))
+        )
 
     def fill_cylinder(
         self,
@@ -294,7 +313,7 @@ class Voxels:
         >>> grid.fill_tube((0, 0.02, 0.02), 0.02, 0.01, height=0.1, axis="x").count
         80
         """
-        inner = _length("inner_radius", inner_radius)
+        inner = positive_length("inner_radius", inner_radius)
         if not inner < outer_radius:
             what = f"{inner:g} m is not less than outer_radius = {outer_radius:g} m"
             raise VoxelError("inner_radius", what)
@@ -309,9 +328,9 @@ class Voxels:
         axis: Axis,
         part: int,
     ) -> Voxels:
-        place, direction = _triple("base", base), _direction(axis)
-        radius, length = _length("radius", outer), _length("height", height)
-        return Voxels(self._grid.fill_tube(place, direction, radius, inner, length, _part(part)))
+        place, along = triple("base", base), axis_vector(axis)
+        radius, length = positive_length("radius", outer), positive_length("height", height)
+        return Voxels(self._grid.fill_tube(place, along, radius, inner, length, part_id(part)))
 
     def fill_random(self, density: float, seed: int, part: int = 1) -> Voxels:
         """Return a grid where each cell was given to a part with a probability.
@@ -335,7 +354,7 @@ class Voxels:
             raise VoxelError("density", f"{density} is not a probability from 0 to 1")
         if not 0 <= seed < 2**64:
             raise VoxelError("seed", f"{seed} is not a whole number from 0 to 2**64 - 1")
-        return Voxels(self._grid.fill_random(float(density), int(seed), _part(part)))
+        return Voxels(self._grid.fill_random(float(density), int(seed), part_id(part)))
 
     def __or__(self, other: Voxels) -> Voxels:
         """Cells of either grid, in a box that holds both; where both are filled, the first wins."""
@@ -357,7 +376,7 @@ class Voxels:
         >>> Voxels.from_array([[[1, 2, 3]]], voxel_size=0.01).flip("z").array.tolist()
         [[[3, 2, 1]]]
         """
-        if axis not in _AXES:
+        if axis not in ("x", "y", "z"):
             raise VoxelError("axis", f"got {axis!r}; allowed are 'x', 'y' and 'z'")
         return Voxels(self._grid.flipped("xyz".index(axis)))
 
@@ -369,7 +388,7 @@ class Voxels:
         >>> Voxels.empty((2, 2, 2), voxel_size=0.5).shift((1, 0, -2)).origin
         (0.5, 0.0, -1.0)
         """
-        steps = [_whole("shift", n, -(2**30), 2**30) for n in _triple("shift", cells)]
+        steps = [whole("shift", n, -(2**30), 2**30) for n in triple("shift", cells)]
         return Voxels(self._grid.shifted((steps[0], steps[1], steps[2])))
 
     def pad(self, before: int | Sequence[int], after: int | Sequence[int] | None = None) -> Voxels:
@@ -388,8 +407,8 @@ class Voxels:
         (3, 3, 6)
         """
         low, high = (
-            _margins("before", before),
-            _margins("after", before if after is None else after),
+            margins("before", before),
+            margins("after", before if after is None else after),
         )
         return Voxels(self._grid.padded(low, high, memory_limit()))
 
@@ -444,6 +463,75 @@ class Voxels:
             Cavity(*self._region(*piece), area=area) for piece, _, area in self._grid.cavities()
         )
 
+    @cached_property
+    def leaks(self) -> tuple[Leak, ...]:
+        """The chambers that are open to the outside by openings of one or two cells, largest first.
+
+        A chamber is found if a cube of two cells a side (three for openings of two cells) fits
+        into it but cannot get out by steps of one cell. So a chamber must be wider than its
+        openings, and what is open by three cells or more counts as outside. Cells that touch at an
+        edge or a corner let no air through.
+
+        Examples
+        --------
+        >>> block = Voxels.empty((6, 6, 6), voxel_size=0.01).fill_box((0, 0, 0), (1, 1, 1))
+        >>> chamber = block.fill_box((0.02, 0.02, 0.02), (0.04, 0.04, 0.04), part=0)
+        >>> chamber.leaks
+        ()
+        >>> bored = chamber.fill_box((0, 0.02, 0.02), (0.02, 0.03, 0.03), part=0)
+        >>> [leak.openings for leak in bored.leaks]
+        [((1, 2, 2),)]
+        """
+        return tuple(
+            Leak(*self._region(*piece), width=width, openings=tuple(openings))
+            for piece, width, openings in self._grid.leaks(_WIDEST_LEAK)
+        )
+
+    @cached_property
+    def hinges(self) -> tuple[Hinge, ...]:
+        """The places where cells touch only along an edge or at a corner.
+
+        Examples
+        --------
+        >>> Voxels.from_array([[[1, 0], [0, 1]]], voxel_size=0.01).hinges
+        (Hinge(cells=((0, 0, 0), (0, 1, 1)), contact='edge'),)
+        """
+        found = []
+        for i, j, k, p, q, r in self._grid.hinges().tolist():
+            is_corner = i != p and j != q and k != r
+            found.append(Hinge(((i, j, k), (p, q, r)), "corner" if is_corner else "edge"))
+        return tuple(found)
+
+    @cached_property
+    def wall_thickness(self) -> WallThickness:
+        """How thin the material is, cell by cell, in voxels.
+
+        Examples
+        --------
+        >>> beam = Voxels.empty((20, 3, 2), voxel_size=0.01).fill_box((0, 0, 0), (1, 1, 1))
+        >>> beam.wall_thickness.thinnest
+        Wall(thickness=2, cell=(0, 0, 0))
+        """
+        cells, histogram, thinnest = self._grid.wall_thickness()
+        cells.setflags(write=False)
+        place = None if thinnest is None else Wall(*thinnest)
+        return WallThickness(cells, tuple(histogram), place)
+
+    @cached_property
+    def cavity_walls(self) -> tuple[Wall, ...]:
+        """The thinnest wall around each cavity, in the order of :attr:`cavities`.
+
+        A wall is a row of filled cells along an axis that has this cavity at one end, and the
+        outside or another cavity at the other.
+
+        Examples
+        --------
+        >>> block = Voxels.empty((5, 6, 7), voxel_size=0.01).fill_box((0, 0, 0), (1, 1, 1))
+        >>> block.with_cell((2, 3, 3), part=0).cavity_walls
+        (Wall(thickness=2, cell=(1, 3, 3)),)
+        """
+        return tuple(Wall(*wall) for wall in self._grid.cavity_walls())
+
     def _region(
         self, runs: NDArray[np.uint32], count: int
     ) -> tuple[NDArray[np.int32], int, float, NDArray[np.float64]]:
@@ -468,48 +556,3 @@ class Voxels:
         ((12, 3), (10, 4))
         """
         return Mesh.from_voxel_grid(self._grid)
-
-
-def _triple(place: str, values: Sequence[float]) -> Triple:
-    try:
-        x, y, z = (float(value) for value in values)
-    except (TypeError, ValueError) as error:
-        raise VoxelError(place, f"got {values!r}; expected three numbers") from error
-    if not all(map(math.isfinite, (x, y, z))):
-        raise VoxelError(place, f"got {(x, y, z)}; the numbers must be finite")
-    return x, y, z
-
-
-def _whole(place: str, value: float, least: int, most: int) -> int:
-    if value != int(value) or not least <= value <= most:
-        raise VoxelError(place, f"got {value:g}; allowed are whole numbers {least} to {most}")
-    return int(value)
-
-
-def _margins(place: str, cells: int | Sequence[int]) -> tuple[int, int, int]:
-    values = (cells, cells, cells) if isinstance(cells, int | np.integer) else cells
-    x, y, z = (_whole(place, n, 0, 65535) for n in _triple(place, values))
-    return x, y, z
-
-
-def _length(place: str, value: float) -> float:
-    if not (math.isfinite(value) and value > 0.0):
-        raise VoxelError(place, f"got {value} m; expected a positive length")
-    return float(value)
-
-
-def _direction(axis: Axis) -> Triple:
-    if isinstance(axis, str):
-        if axis not in _AXES:
-            raise VoxelError("axis", f"got {axis!r}; allowed are 'x', 'y', 'z' or three numbers")
-        return _AXES[axis]
-    direction = _triple("axis", axis)
-    if not any(direction):
-        raise VoxelError("axis", "the zero vector has no direction")
-    return direction
-
-
-def _part(part: int) -> int:
-    if part != int(part) or not 0 <= part <= 255:
-        raise VoxelError("part", f"got {part}; parts are numbered 0 (empty) to 255")
-    return int(part)

@@ -1,11 +1,14 @@
-"""Connected sets of cells of a grid."""
+"""What is found in a grid: pieces, cavities, leaks, hinges and walls."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+
+Cell = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +63,82 @@ class Cavity(Region):
     """
 
     area: float
+
+
+@dataclass(frozen=True, eq=False)
+class Leak(Region):
+    """A chamber that is open to the outside by narrow openings.
+
+    Its cells go up to the openings.
+
+    Attributes
+    ----------
+    width : int
+        The openings are at most this many cells wide in one direction.
+    openings : tuple of (i, j, k)
+        One cell of each opening, where it meets the chamber. Filling the openings there closes
+        the chamber.
+    """
+
+    width: int
+    openings: tuple[Cell, ...]
+
+
+@dataclass(frozen=True)
+class Hinge:
+    """Two filled cells whose only contact, here, is an edge or a corner.
+
+    The mesh is stitched there, so that the cells hang together, but nothing resists their turning
+    about the edge or the corner, and it cannot be made.
+
+    Attributes
+    ----------
+    cells : pair of (i, j, k)
+        The two cells.
+    contact : {"edge", "corner"}
+        What they share.
+    """
+
+    cells: tuple[Cell, Cell]
+    contact: Literal["edge", "corner"]
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A place where the material is thin.
+
+    Attributes
+    ----------
+    thickness : int
+        In voxels, along an axis.
+    cell : (i, j, k)
+        A filled cell of it.
+    """
+
+    thickness: int
+    cell: Cell
+
+
+@dataclass(frozen=True, eq=False)
+class WallThickness:
+    """How thin the material is, cell by cell, in voxels.
+
+    Attributes
+    ----------
+    cells : ndarray of uint16, shape (nx, ny, nz)
+        For each cell the length of the shortest of the three rows of filled cells along the axes
+        that it lies in; 0 where empty. A wall that is inclined to the axes can be thinner than
+        that, by a factor of √3 at most.
+    histogram : tuple of int
+        Number of cells of each thickness; entry 0 is 0.
+    thinnest : Wall or None
+        The first of the thinnest cells; None if no cell is filled. At the outer edge of a rounded
+        body a row can be short without there being a wall; the walls of cavities are free of that.
+    """
+
+    cells: NDArray[np.uint16] = field(repr=False)
+    histogram: tuple[int, ...]
+    thinnest: Wall | None
 
 
 def region_fields(

@@ -1,0 +1,240 @@
+//! How thin the material is, counted in cells along the axes.
+//!
+//! A wall that is inclined to the axes is at most √3 times thinner than the shortest row of cells
+//! through it; on a thin wall this is the measure that decides how many elements bend.
+use crate::bits::BitGrid;
+use crate::cavities::LabeledCavities;
+use crate::grid::Grid;
+
+/// A place where the material is thin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Wall {
+    /// Number of cells.
+    pub thickness: u16,
+    /// A filled cell of it.
+    pub cell: [u32; 3],
+}
+
+/// The thickness of the material, cell by cell.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WallThickness {
+    /// For each cell in C order the shortest of the three rows of filled cells along the axes that
+    /// it lies in; 0 where empty.
+    pub cells: Vec<u16>,
+    /// Number of cells of each thickness; entry 0 is 0.
+    pub histogram: Vec<u64>,
+    /// The first of the thinnest cells in C order; `None` if none is filled.
+    pub thinnest: Option<Wall>,
+}
+
+/// The thickness of the material at each cell.
+///
+/// Takes two bytes per cell. At an outer edge or tip of a rounded body a row can be short without
+/// there being a wall; [`cavity_walls`] is free of that.
+pub fn wall_thickness(grid: &Grid) -> WallThickness {
+    let [nx, ny, nz] = grid.shape();
+    let filled = |index: usize| grid.cells()[index] != 0;
+    let mut cells: Vec<u16> = grid
+        .cells()
+        .iter()
+        .map(|&part| u16::from(part != 0) * u16::MAX)
+        .collect();
+    // Lines along an axis start `lines` apart by one cell and step by `stride`.
+    for plane in 0..nx {
+        shorten(&mut cells, plane * ny * nz, ny, nz, nz, &filled);
+    }
+    for row in 0..ny {
+        shorten(&mut cells, row * nz, nx, ny * nz, nz, &filled);
+    }
+    for row in 0..nx * ny {
+        shorten(&mut cells, row * nz, nz, 1, 1, &filled);
+    }
+
+    let mut histogram = Vec::new();
+    for &thickness in cells.iter().filter(|&&thickness| thickness != 0) {
+        let place = usize::from(thickness);
+        if place >= histogram.len() {
+            histogram.resize(place + 1, 0);
+        }
+        histogram[place] += 1;
+    }
+    let least = histogram.iter().position(|&count| count > 0).unwrap_or(0) as u16;
+    let first = cells
+        .iter()
+        .position(|&thickness| least != 0 && thickness == least);
+    let thinnest = first.map(|index| Wall {
+        thickness: least,
+        cell: [index / (ny * nz), index / nz % ny, index % nz].map(|n| n as u32),
+    });
+    WallThickness {
+        cells,
+        histogram,
+        thinnest,
+    }
+}
+
+/// Takes the runs of filled cells in `lines` lines side by side into account.
+///
+/// Line n holds the cells `start + n`, `start + n + stride`, … (`length` of them). The lines are
+/// walked together so that memory is read in order.
+fn shorten(
+    cells: &mut [u16],
+    start: usize,
+    length: usize,
+    stride: usize,
+    lines: usize,
+    filled: &impl Fn(usize) -> bool,
+) {
+    let mut run = vec![0_u16; lines];
+    for step in 0..=length {
+        for (line, run) in run.iter_mut().enumerate() {
+            let here = start + line + step * stride;
+            if step < length && filled(here) {
+                *run += 1;
+            } else if *run > 0 {
+                for back in 1..=usize::from(*run) {
+                    let cell = &mut cells[here - back * stride];
+                    *cell = (*cell).min(*run);
+                }
+                *run = 0;
+            }
+        }
+    }
+}
+
+/// For each cavity, in the order of [`crate::cavities`], the thinnest wall around it.
+///
+/// A wall is a row of filled cells along an axis with this cavity at one end, and the outside or
+/// another cavity at the other.
+pub fn cavity_walls(grid: &Grid) -> Vec<Wall> {
+    let labeled = LabeledCavities::new(grid, &BitGrid::filled(grid));
+    let walls = labeled.cavities.iter().enumerate().map(|(place, cavity)| {
+        let mut thinnest: Option<Wall> = None;
+        for cell in cavity.region.cells() {
+            for direction in 0..6 {
+                let most = thinnest.map_or(u16::MAX, |wall| wall.thickness - 1);
+                let wall = wall_behind(grid, cell, direction, most);
+                if let Some((wall, beyond)) = wall {
+                    let other_side = beyond.and_then(|[i, j, k]| labeled.place(i, j, k));
+                    if other_side != Some(place as u32) {
+                        thinnest = Some(wall);
+                    }
+                }
+            }
+        }
+        thinnest
+    });
+    // The outermost cells of a cavity have the outside or another cavity behind their wall.
+    walls.flatten().collect()
+}
+
+/// The row of filled cells next to an empty cell, if there are 1 to `most` of them, and the empty
+/// cell beyond it (`None` outside of the grid). Directions are −x, +x, −y, +y, −z, +z.
+fn wall_behind(
+    grid: &Grid,
+    cell: [u32; 3],
+    direction: usize,
+    most: u16,
+) -> Option<(Wall, Option<[usize; 3]>)> {
+    let (axis, forward) = (direction / 2, direction % 2 == 1);
+    let mut at = cell.map(|n| n as usize);
+    let mut wall: Option<Wall> = None;
+    loop {
+        let next = if forward {
+            at[axis].checked_add(1)
+        } else {
+            at[axis].checked_sub(1)
+        };
+        let beyond = next.filter(|&n| n < grid.shape()[axis]).map(|n| {
+            let mut cell = at;
+            cell[axis] = n;
+            cell
+        });
+        match beyond {
+            Some(cell) if grid.get(cell) != 0 => {
+                let thickness = wall.map_or(1, |wall| wall.thickness + 1);
+                if thickness > most {
+                    return None;
+                }
+                let first = wall.map_or(cell.map(|n| n as u32), |wall| wall.cell);
+                wall = Some(Wall {
+                    thickness,
+                    cell: first,
+                });
+                at = cell;
+            }
+            _ => return wall.map(|wall| (wall, beyond)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(shape: [usize; 3]) -> Grid {
+        Grid::from_cells(shape, [0.0; 3], 1.0, vec![1; shape.iter().product()]).unwrap()
+    }
+
+    /// The shortest row through each cell, by walking from it.
+    fn walked(grid: &Grid) -> Vec<u16> {
+        let [nx, ny, nz] = grid.shape();
+        (0..nx * ny * nz)
+            .map(|index| {
+                let cell = [index / (ny * nz), index / nz % ny, index % nz];
+                let reach = |axis: usize, step: isize| {
+                    let mut at = cell;
+                    let mut count = 0;
+                    while at[axis] < grid.shape()[axis] && grid.get(at) != 0 {
+                        count += 1;
+                        at[axis] = at[axis].wrapping_add_signed(step);
+                    }
+                    count
+                };
+                let row = |axis| (reach(axis, 1) + reach(axis, -1)).max(1) - 1;
+                (0..3).map(row).min().unwrap_or(0) as u16
+            })
+            .collect()
+    }
+
+    #[test]
+    fn thickness_is_the_shortest_row_through_a_cell() {
+        for seed in 0..20 {
+            let mut grid = Grid::empty([5, 6, 7 + seed], [0.0; 3], 1.0, u64::MAX).unwrap();
+            grid.fill_random(0.04 * (seed + 5) as f64, seed as u64, 1);
+            let found = wall_thickness(&grid);
+            assert_eq!(found.cells, walked(&grid));
+            assert_eq!(found.histogram.iter().sum::<u64>() as usize, grid.count());
+        }
+    }
+
+    #[test]
+    fn the_thinnest_wall_is_named() {
+        let found = wall_thickness(&block([4, 3, 9]));
+        assert_eq!(
+            found.thinnest,
+            Some(Wall {
+                thickness: 3,
+                cell: [0; 3]
+            })
+        );
+        assert_eq!(found.histogram, [0, 0, 0, 108]);
+        let empty = Grid::empty([2; 3], [0.0; 3], 1.0, 8).unwrap();
+        assert_eq!(wall_thickness(&empty).thinnest, None);
+    }
+
+    #[test]
+    fn walls_are_measured_from_cavity_to_outside_or_to_cavity() {
+        let mut grid = block([9, 9, 12]);
+        grid.fill_box([3.0, 3.0, 3.0], [6.0, 6.0, 6.0], 0);
+        grid.fill_box([3.0, 3.0, 8.0], [6.0, 7.0, 10.0], 0);
+        // An island: the rows across the first cavity that end at it are not walls.
+        grid.set([4, 4, 4], 1);
+        let walls = cavity_walls(&grid);
+        assert_eq!(
+            walls.iter().map(|wall| wall.thickness).collect::<Vec<_>>(),
+            [2, 2]
+        );
+        assert_eq!([walls[0].cell, walls[1].cell], [[3, 3, 6], [3, 3, 7]]);
+    }
+}
