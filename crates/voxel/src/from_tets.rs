@@ -135,8 +135,8 @@ fn orient(vertices: &[[f64; 3]], tets: &mut [[i32; 4]]) -> Result<(), FromTetsEr
             .map(|(a, b)| norm(sub(points[a], points[b])))
             .into_iter()
             .fold(0.0, f64::max);
-        // Also true for NaN, which overflowing positions lead to.
-        if !(volume.abs() > FLAT * longest.powi(3)) {
+        // NaN and infinity come from positions whose products overflow.
+        if !volume.is_finite() || volume.abs() <= FLAT * longest.powi(3) {
             return Err(FromTetsError::Flat { tet, volume });
         }
         if volume < 0.0 {
