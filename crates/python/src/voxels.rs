@@ -280,7 +280,7 @@ fn region<'py>(py: Python<'py>, region: &Region) -> PyResult<PyRegion<'py>> {
     let rows: Vec<[u32; 4]> = region
         .runs()
         .iter()
-        .map(|run| [run.i, run.j, run.first, run.last])
+        .map(|run| [run.i, run.j, run.first, run.last].map(u32::from))
         .collect();
     let count = rows.len();
     let array = rows.into_flattened().into_pyarray(py).reshape([count, 4])?;

@@ -149,6 +149,19 @@ impl BitGrid {
         }
     }
 
+    /// Number of maximal runs of cells.
+    pub fn count_runs(&self) -> usize {
+        let rows = self.words.chunks_exact(self.words_per_row);
+        let starts = rows.flat_map(|row| {
+            row.iter().scan(0, |carried, &word| {
+                let starts = word & !(word << 1 | *carried);
+                *carried = word >> 63;
+                Some(starts.count_ones() as usize)
+            })
+        });
+        starts.sum()
+    }
+
     /// Calls `visit(first, last)` for each maximal run of cells in row (i, j), in order.
     pub fn for_each_run(&self, i: usize, j: usize, mut visit: impl FnMut(usize, usize)) {
         let row = self.row(i, j);
@@ -212,8 +225,9 @@ mod tests {
                 grid.fill_random(0.1 * (seed % 11) as f64, seed, 1);
                 let bits = BitGrid::filled(&grid);
                 let mut rebuilt = BitGrid::new(bits.shape());
-                let mut last_end = None;
+                let (mut last_end, mut runs) = (None, 0);
                 bits.for_each_run(0, 0, |first, last| {
+                    runs += 1;
                     assert!(
                         last_end.is_none_or(|end| first > end + 1),
                         "runs must be maximal"
@@ -221,7 +235,7 @@ mod tests {
                     rebuilt.insert_between(0, 0, first, last);
                     last_end = Some(last);
                 });
-                assert_eq!(rebuilt, bits);
+                assert_eq!((&rebuilt, runs), (&bits, bits.count_runs()));
                 let empty = bits.complement();
                 assert!((0..length).all(|k| empty.get(0, 0, k) == (grid.get([0, 0, k]) == 0)));
                 assert_eq!(empty.complement(), bits);

@@ -82,7 +82,7 @@ fn exposed_faces(region: &Region, filled: &BitGrid) -> u64 {
         .runs()
         .iter()
         .map(|run| {
-            let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(|n| n as usize);
+            let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(usize::from);
             let sides = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
             let walls: u32 = sides
                 .iter()

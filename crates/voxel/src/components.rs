@@ -14,17 +14,17 @@ pub enum Contact {
     Corner,
 }
 
-/// The cells (i, j, first..=last) of the array.
+/// The cells (i, j, first..=last) of the array, in eight bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CellRun {
     /// First index.
-    pub i: u32,
+    pub i: u16,
     /// Second index.
-    pub j: u32,
+    pub j: u16,
     /// Third index of the first cell.
-    pub first: u32,
+    pub first: u16,
     /// Third index of the last cell.
-    pub last: u32,
+    pub last: u16,
 }
 
 /// A connected set of cells, kept as runs along z in C order.
@@ -41,8 +41,9 @@ impl Region {
     pub(crate) fn from_runs(runs: Vec<CellRun>) -> Self {
         let (mut lower, mut upper, mut cell_count) = ([u32::MAX; 3], [0; 3], 0);
         for run in &runs {
-            cell_count += u64::from(run.last - run.first + 1);
-            let (from, to) = ([run.i, run.j, run.first], [run.i, run.j, run.last]);
+            cell_count += u64::from(run.last - run.first) + 1;
+            let from = [run.i, run.j, run.first].map(u32::from);
+            let to = [run.i, run.j, run.last].map(u32::from);
             for axis in 0..3 {
                 lower[axis] = lower[axis].min(from[axis]);
                 upper[axis] = upper[axis].max(to[axis] + 1);
@@ -70,7 +71,7 @@ impl Region {
     pub fn cells(&self) -> impl Iterator<Item = [u32; 3]> {
         self.runs
             .iter()
-            .flat_map(|run| (run.first..=run.last).map(move |k| [run.i, run.j, k]))
+            .flat_map(|run| (run.first..=run.last).map(move |k| [run.i, run.j, k].map(u32::from)))
     }
 
     /// First and one-past-last cell of the bounding box along each axis.

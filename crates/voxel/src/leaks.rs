@@ -93,7 +93,7 @@ fn padded_empty(grid: &Grid, margin: usize) -> BitGrid {
 }
 
 fn unpad(run: CellRun, margin: usize) -> CellRun {
-    let margin = margin as u32;
+    let margin = margin as u16;
     CellRun {
         i: run.i - margin,
         j: run.j - margin,
@@ -132,7 +132,7 @@ fn covered(
 ) -> BitGrid {
     let mut cells = BitGrid::new(shape);
     for (run, _) in runs.iter().filter(|&(_, label)| keep(label)) {
-        let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(|n| n as usize);
+        let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(usize::from);
         for i in i..i + cube {
             for j in j..j + cube {
                 cells.insert_between(i, j, first, last + cube - 1);
@@ -148,7 +148,7 @@ fn covered(
 fn openings(chamber: &Region, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]> {
     let mut mouths: Vec<[usize; 3]> = Vec::new();
     for run in chamber.runs() {
-        let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(|n| n as usize);
+        let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(usize::from);
         let ends = [[i, j, first - 1], [i, j, last + 1]];
         let sides = [(i - 1, j), (i + 1, j), (i, j - 1), (i, j + 1)];
         let along = sides

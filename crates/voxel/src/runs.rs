@@ -26,8 +26,10 @@ impl LabeledRuns {
     /// Joins the cells of `bits` that are in `contact`.
     pub fn new(bits: &BitGrid, contact: Contact) -> Self {
         let shape = bits.shape();
-        let mut row_start = vec![0];
-        let mut spans = Vec::new();
+        let mut row_start = Vec::with_capacity(shape[0] * shape[1] + 1);
+        row_start.push(0);
+        // Growing a list of this length would hold it three times.
+        let mut spans = Vec::with_capacity(bits.count_runs());
         for i in 0..shape[0] {
             for j in 0..shape[1] {
                 bits.for_each_run(i, j, |first, last| {
@@ -144,10 +146,10 @@ impl LabeledRuns {
             self.row(i, j).map(move |at| {
                 let Span { first, last } = self.spans[at];
                 let run = CellRun {
-                    i: i as u32,
-                    j: j as u32,
-                    first: first.into(),
-                    last: last.into(),
+                    i: i as u16,
+                    j: j as u16,
+                    first,
+                    last,
                 };
                 (run, self.labels[at])
             })
@@ -157,9 +159,9 @@ impl LabeledRuns {
     /// Whether each region has a cell on the border of the box.
     pub fn touching_border(&self) -> Vec<bool> {
         let mut touching = vec![false; self.regions];
-        let end = self.shape.map(|n| n as u32 - 1);
+        let end = self.shape.map(|n| (n - 1) as u16);
         for (run, label) in self.iter() {
-            let on_side = |n: u32, axis: usize| n == 0 || n == end[axis];
+            let on_side = |n: u16, axis: usize| n == 0 || n == end[axis];
             touching[label as usize] |=
                 on_side(run.i, 0) || on_side(run.j, 1) || run.first == 0 || run.last == end[2];
         }
@@ -168,11 +170,15 @@ impl LabeledRuns {
 
     /// The regions picked by `keep`, in the order of their labels.
     pub fn to_regions(&self, keep: impl Fn(u32) -> bool) -> Vec<Region> {
+        let mut lengths = vec![0; self.regions];
+        for &label in &self.labels {
+            lengths[label as usize] += 1;
+        }
         let mut place = vec![usize::MAX; self.regions];
         let mut kept = Vec::new();
         for label in (0..self.regions).filter(|&label| keep(label as u32)) {
             place[label] = kept.len();
-            kept.push(Vec::new());
+            kept.push(Vec::with_capacity(lengths[label]));
         }
         for (run, label) in self.iter() {
             if let Some(runs) = kept.get_mut(place[label as usize]) {

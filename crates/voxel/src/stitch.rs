@@ -152,12 +152,24 @@ struct Voxels<'a> {
 }
 
 impl Voxels<'_> {
-    /// The set cells of plane i of a bit set, in C order.
-    fn each_in_plane(bits: &BitGrid, i: usize) -> impl Iterator<Item = [usize; 3]> {
-        (0..bits.shape()[1]).flat_map(move |j| {
-            let row = bits.row(i, j).iter().enumerate();
-            row.flat_map(move |(w, &word)| ones(word).map(move |bit| [i, j, w * 64 + bit]))
-        })
+    /// Lists what `push` adds for each set cell of plane i, in C order; `each` per cell at most.
+    fn collect<T>(
+        bits: &BitGrid,
+        i: usize,
+        each: usize,
+        mut push: impl FnMut(&mut Vec<T>, [usize; 3]),
+    ) -> Vec<T> {
+        let rows = || (0..bits.shape()[1]).map(|j| bits.row(i, j));
+        let cells: u32 = rows().flatten().map(|word| word.count_ones()).sum();
+        let mut list = Vec::with_capacity(each * cells as usize);
+        for (j, row) in rows().enumerate() {
+            for (w, &word) in row.iter().enumerate() {
+                for bit in ones(word) {
+                    push(&mut list, [i, j, w * 64 + bit]);
+                }
+            }
+        }
+        list
     }
 
     fn on_lattice(&self, index: [usize; 3]) -> [i32; 3] {
@@ -174,30 +186,29 @@ impl Voxels<'_> {
     }
 
     fn keys(&self, i: usize) -> Vec<[i32; 3]> {
-        Self::each_in_plane(&self.nodes.bits, i)
-            .map(|node| self.on_lattice(node))
-            .collect()
+        Self::collect(&self.nodes.bits, i, 1, |keys, node| {
+            keys.push(self.on_lattice(node))
+        })
     }
 
     fn cells(&self, i: usize) -> Vec<[i32; 3]> {
-        Self::each_in_plane(self.filled, i)
-            .map(|cell| self.on_lattice(cell))
-            .collect()
+        Self::collect(self.filled, i, 1, |cells, cell| {
+            cells.push(self.on_lattice(cell))
+        })
     }
 
     fn parts(&self, i: usize) -> Vec<u8> {
-        Self::each_in_plane(self.filled, i)
-            .flat_map(|cell| [self.grid.get(cell); 5])
-            .collect()
+        Self::collect(self.filled, i, 5, |parts, cell| {
+            parts.extend([self.grid.get(cell); 5])
+        })
     }
 
     fn tets(&self, i: usize) -> Vec<[i32; 4]> {
-        Self::each_in_plane(self.filled, i)
-            .flat_map(|cell| {
-                let corners = self.corners(cell);
-                tets(is_even(self.on_lattice(cell))).map(|tet| tet.map(|c| corners[c]))
-            })
-            .collect()
+        Self::collect(self.filled, i, 5, |list, cell| {
+            let corners = self.corners(cell);
+            let of_cell = tets(is_even(self.on_lattice(cell)));
+            list.extend(of_cell.map(|tet| tet.map(|c| corners[c])));
+        })
     }
 
     /// The boundary triangles of a plane of cells, each with the cavity it faces.
