@@ -1,0 +1,1 @@
+"""What VoxSoft reads from and writes to the disk."""

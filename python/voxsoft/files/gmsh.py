@@ -1,0 +1,125 @@
+"""Gmsh MSH 4.1: parts, cavities and regions as physical groups.
+
+Physical volumes ``part-N``, physical surfaces ``cavity-N``, and one physical point group for
+each region. Tets are grouped by part. The file is written here, because meshio keeps physical
+groups in this version of the format only where every entity owns a vertex.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TextIO
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import FileError
+from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
+from voxsoft.mesh import Mesh
+
+_DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
+_TYPES = {0: 15, 2: 2, 3: 4}
+
+#: Dimension, number, name and rows of vertices of a physical group, which is one entity too.
+Group = tuple[int, int, str, NDArray[np.integer]]
+
+
+def write(path: Path, content: MeshFile) -> None:
+    """Write an ASCII file of version 4.1."""
+    mesh = content.mesh
+    groups: list[Group] = []
+    for number, (name, vertices) in enumerate(content.regions.items(), start=1):
+        groups.append((0, number, name, vertices[:, None]))
+    for number, cavity in enumerate(mesh.cavities, start=1):
+        groups.append((2, number, f"cavity-{number}", cavity.triangles))
+    for part in np.unique(mesh.tet_part).tolist():
+        groups.append((3, part, f"part-{part}", mesh.tets[mesh.tet_part == part]))
+
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        file.write("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
+        names = [f'{dimension} {number} "{name}"' for dimension, number, name, _ in groups]
+        file.write("\n".join(["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames\n"]))
+        _write_entities(file, mesh, groups)
+        _write_nodes(file, mesh)
+        _write_elements(file, groups)
+
+
+def _write_entities(file: TextIO, mesh: Mesh, groups: list[Group]) -> None:
+    """Write an entity for each group: number, bounds (a point has one corner), its group."""
+    counts = [sum(group[0] == dimension for group in groups) for dimension in range(4)]
+    file.write("$Entities\n" + " ".join(map(str, counts)) + "\n")
+    for dimension, number, _, rows in groups:
+        points = mesh.vertices[np.unique(rows)]
+        corners = [points[0]] if dimension == 0 else [points.min(axis=0), points.max(axis=0)]
+        bounds = " ".join(f"{x:.17g}" for corner in corners for x in corner)
+        boundary = "" if dimension == 0 else " 0"
+        file.write(f"{number} {bounds} 1 {number}{boundary}\n")
+    file.write("$EndEntities\n")
+
+
+def _write_nodes(file: TextIO, mesh: Mesh) -> None:
+    """Write all vertices as nodes of the first part."""
+    count = len(mesh.vertices)
+    file.write(f"$Nodes\n1 {count} 1 {count}\n3 {mesh.tet_part.min()} 0 {count}\n")
+    np.savetxt(file, np.arange(1, count + 1), "%d")
+    np.savetxt(file, mesh.vertices, "%.17g")
+    file.write("$EndNodes\n")
+
+
+def _write_elements(file: TextIO, groups: list[Group]) -> None:
+    total = sum(len(rows) for *_, rows in groups)
+    file.write(f"$Elements\n{len(groups)} {total} 1 {total}\n")
+    first = 1
+    for dimension, number, _, rows in groups:
+        file.write(f"{dimension} {number} {_TYPES[dimension]} {len(rows)}\n")
+        tags = np.arange(first, first + len(rows))
+        np.savetxt(file, np.column_stack((tags, rows + 1)), "%d")
+        first += len(rows)
+    file.write("$EndElements\n")
+
+
+def read(path: Path) -> MeshFile:
+    """Read a Gmsh file of any version meshio knows.
+
+    Physical volumes are parts: by their number if that is from 1 to 255, else counted up. Physical
+    surfaces named ``cavity-N`` are cavities; other groups of points, lines or surfaces are regions.
+    """
+    data = meshio.gmsh.read(str(path))
+    names = {(int(dim), int(tag)): name for name, (tag, dim) in data.field_data.items()}
+    physical = data.cell_data.get("gmsh:physical", [np.zeros(len(c.data), int) for c in data.cells])
+    tets, parts = [], []
+    cavities: dict[int, list[NDArray[np.integer]]] = {}
+    regions: dict[str, list[NDArray[np.integer]]] = {}
+    for block, tags in zip(data.cells, physical, strict=True):
+        dimension = _DIMENSIONS.get(block.type)
+        if dimension == 3:
+            tets.append(block.data)
+            parts.append(tags)
+        elif dimension is not None:
+            for tag in np.unique(tags).tolist():
+                name, rows = names.get((dimension, tag), ""), block.data[tags == tag]
+                cavity = re.fullmatch(r"cavity-(\d+)", name)
+                if cavity and dimension == 2:
+                    cavities.setdefault(int(cavity[1]), []).append(rows)
+                elif name:
+                    regions.setdefault(name, []).append(rows.ravel())
+    if not tets:
+        raise FileError(str(path), "holds no linear tetrahedra")
+
+    mesh = Mesh.from_tets(data.points, np.concatenate(tets), _part_ids(np.concatenate(parts)))
+    if cavities:
+        surfaces = [np.concatenate(cavities[number]) for number in sorted(cavities)]
+        mesh = with_cavities(mesh, surfaces, str(path))
+    count = len(mesh.vertices)
+    kept = {name: np.concatenate(rows) for name, rows in regions.items()}
+    return MeshFile(mesh, {name: vertex_set(str(path), name, v, count) for name, v in kept.items()})
+
+
+def _part_ids(tags: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Return part numbers from 1: the tags where they can be, else their rank."""
+    if tags.min() >= 1 and tags.max() <= 255:
+        return tags
+    ranks: NDArray[np.integer] = np.unique(tags, return_inverse=True)[1].reshape(tags.shape) + 1
+    return ranks

@@ -1,0 +1,207 @@
+"""Meshes to and from files, the format chosen by the name's suffix.
+
+======== ============================= ======= ======= ======== =====
+Suffix   Format                        Parts   Regions Cavities Data
+======== ============================= ======= ======= ======== =====
+``.vtu`` VTK, ParaView, PyVista        kept    kept    kept     kept
+``.msh`` Gmsh 4.1, physical groups     kept    kept    kept
+``.inp`` Abaqus and CalculiX           kept    kept    kept
+``.stl`` binary STL of the boundary
+``.obj`` Wavefront OBJ of the boundary
+======== ============================= ======= ======= ======== =====
+
+Only ``.vtu`` keeps which voxel a tet belongs to. Surface formats can be written, not read: a
+surface enters as a shape.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+
+import meshio
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voxsoft.errors import FileError, MeshError
+from voxsoft.files import abaqus, gmsh, vtu
+from voxsoft.files.mesh_file import MeshFile, vertex_set
+from voxsoft.mesh import Mesh
+
+
+def _write_stl(path: Path, content: MeshFile) -> None:
+    triangles = [("triangle", content.mesh.triangles)]
+    meshio.stl.write(str(path), meshio.Mesh(content.mesh.vertices, triangles), binary=True)
+
+
+def _write_obj(path: Path, content: MeshFile) -> None:
+    triangles = [("triangle", content.mesh.triangles)]
+    meshio.obj.write(str(path), meshio.Mesh(content.mesh.vertices, triangles))
+
+
+_WRITERS: dict[str, Callable[[Path, MeshFile], None]] = {
+    ".vtu": vtu.write,
+    ".msh": gmsh.write,
+    ".inp": abaqus.write,
+    ".stl": _write_stl,
+    ".obj": _write_obj,
+}
+_READERS: dict[str, Callable[[Path], MeshFile]] = {
+    ".vtu": vtu.read,
+    ".msh": gmsh.read,
+    ".inp": abaqus.read,
+}
+_SURFACES = {".stl", ".obj"}
+
+
+def write_mesh(
+    path: str | os.PathLike[str],
+    mesh: Mesh,
+    *,
+    point_data: Mapping[str, ArrayLike] | None = None,
+    cell_data: Mapping[str, ArrayLike] | None = None,
+    regions: Mapping[str, ArrayLike] | None = None,
+) -> None:
+    """Write a mesh to a file; an existing one is replaced once the new one is complete.
+
+    Parameters
+    ----------
+    path
+        Name of the file; its suffix chooses the format (see the table of the module).
+    mesh
+        The mesh.
+    point_data, cell_data : mappings of str to array_like, shape (n, ...) or (m, ...), optional
+        Values at vertices and in tets, such as displacements and stretches; ``.vtu`` only.
+    regions : mapping of str to array_like of int, optional
+        Vertices of each named region. Names are letters, digits, ``_`` and ``-``, a letter first.
+
+    Raises
+    ------
+    FileError
+        If the format cannot hold what is given, or the file cannot be written.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> from voxsoft.voxels import Voxels
+    >>> mesh = Voxels.from_array([[[1, 2]]], voxel_size=0.005).mesh()
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "two.vtu"
+    >>> write_mesh(path, mesh, regions={"base": [0, 1, 2]})
+    >>> read_mesh(path).tet_part.tolist()
+    [1, 1, 1, 1, 1, 2, 2, 2, 2, 2]
+    """
+    target = Path(path)
+    writer = _WRITERS.get(target.suffix.lower())
+    if writer is None:
+        raise _unknown_format(target, list(_WRITERS))
+    content = MeshFile(
+        mesh,
+        _checked_regions(target, regions or {}, len(mesh.vertices)),
+        _checked_data(target, "point_data", point_data or {}, len(mesh.vertices)),
+        _checked_data(target, "cell_data", cell_data or {}, len(mesh.tets)),
+    )
+    suffix = target.suffix.lower()
+    if suffix != ".vtu" and (content.point_data or content.cell_data):
+        raise FileError(str(target), f"{suffix} cannot hold data", "write a .vtu file")
+    if suffix in _SURFACES and content.regions:
+        raise FileError(str(target), f"{suffix} cannot hold regions", "write .vtu, .msh or .inp")
+    _replace(target, lambda temporary: writer(temporary, content))
+
+
+def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+    """Return the mesh of a file; see :func:`read_mesh_file`."""
+    return read_mesh_file(path).mesh
+
+
+def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
+    """Return the mesh of a ``.vtu``, ``.msh`` or ``.inp`` file with its regions and data.
+
+    Files of other programs can be read too: linear tetrahedra are taken, cells of less dimension
+    only where they name a region. Cavities that the file does not name are found.
+
+    Raises
+    ------
+    FileError
+        If the file is missing, truncated, of another format, or holds no valid tetrahedra.
+
+    Examples
+    --------
+    >>> read_mesh_file("no-such-file.vtu")
+    Traceback (most recent call last):
+        ...
+    voxsoft.errors.FileError: no-such-file.vtu: no such file
+    """
+    source = Path(path)
+    suffix = source.suffix.lower()
+    if suffix in _SURFACES:
+        hint = "enter it as a shape and voxelize it"
+        raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
+    reader = _READERS.get(suffix)
+    if reader is None:
+        raise _unknown_format(source, list(_READERS))
+    if not source.is_file():
+        raise FileError(str(source), "no such file")
+    try:
+        return reader(source)
+    except FileError:
+        raise
+    except MeshError as error:
+        raise FileError(str(source), f"{error.where}: {error.what}", error.hint) from error
+    except (Exception, SystemExit) as error:
+        # meshio raises whatever its parsers run into, and leaves the program in places.
+        what = f"cannot be read as {suffix}: {error or type(error).__name__}"
+        raise FileError(str(source), what, "check that the file is complete") from error
+
+
+def _unknown_format(path: Path, known: list[str]) -> FileError:
+    what = f"unknown format {path.suffix!r}; allowed are {', '.join(known)}"
+    return FileError(str(path), what)
+
+
+def _checked_regions(
+    path: Path, regions: Mapping[str, ArrayLike], count: int
+) -> dict[str, NDArray[np.int64]]:
+    for name in regions:
+        if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
+            hint = "use letters, digits, _ and -, a letter first"
+            raise FileError(str(path), f"{name!r} cannot name a region", hint)
+    return {name: vertex_set(str(path), name, v, count) for name, v in regions.items()}
+
+
+def _checked_data(
+    path: Path, kind: str, data: Mapping[str, ArrayLike], count: int
+) -> dict[str, NDArray[np.generic]]:
+    arrays: dict[str, NDArray[np.generic]] = {name: np.asarray(v) for name, v in data.items()}
+    for name, array in arrays.items():
+        if array.shape[:1] != (count,) or array.dtype.kind not in "iuf":
+            what = f"{kind}[{name!r}] has shape {array.shape} of {array.dtype}"
+            raise FileError(str(path), f"{what}; expected ({count}, ...) numbers")
+    return arrays
+
+
+def _replace(target: Path, write: Callable[[Path], None]) -> None:
+    """Write beside the target and then take its place, so that no half-written file is left."""
+    try:
+        with tempfile.NamedTemporaryFile(
+            dir=target.parent, prefix=".", suffix=target.suffix, delete=False
+        ) as file:
+            temporary = Path(file.name)
+    except OSError as error:
+        raise _cannot_write(target, error) from error
+    try:
+        write(temporary)
+        temporary.replace(target)
+    except OSError as error:
+        raise _cannot_write(target, error) from error
+    finally:
+        with suppress(OSError):
+            temporary.unlink()
+
+
+def _cannot_write(target: Path, error: OSError) -> FileError:
+    what = f"cannot be written: {error.strerror or error}"
+    return FileError(str(target), what, "check that the folder exists and the disk has room")

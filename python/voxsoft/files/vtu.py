@@ -1,0 +1,94 @@
+"""VTU (ParaView, PyVista): keeps everything, also voxels and data.
+
+Tets come first, in their order, with cell arrays ``part`` and, for voxel meshes, ``voxel`` and
+``voxel_size``. The triangles of cavities follow, with their number from 1 in the cell array
+``cavity``. A region is the point array ``region:NAME``, 1 at its vertices.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import meshio
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import FileError
+from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
+from voxsoft.mesh import Mesh
+
+_REGION = "region:"
+_OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size"}
+
+
+def write(path: Path, content: MeshFile) -> None:
+    """Write a compressed binary VTU file."""
+    mesh = content.mesh
+    counts = [len(cavity.triangles) for cavity in mesh.cavities]
+    cells = [("tetra", mesh.tets)]
+    if counts:
+        cells.append(("triangle", np.concatenate([c.triangles for c in mesh.cavities])))
+    cavity = np.repeat(np.arange(1, len(counts) + 1, dtype=np.int32), counts)
+
+    def per_cell(values: NDArray[np.generic]) -> list[NDArray[np.generic]]:
+        """Append empty values for the triangles."""
+        empty = np.nan if values.dtype.kind == "f" else 0
+        shape = (sum(counts), *values.shape[1:])
+        return [values, np.full(shape, empty, values.dtype)] if counts else [values]
+
+    arrays = {name: per_cell(values) for name, values in content.cell_data.items()}
+    arrays["part"] = per_cell(mesh.tet_part)
+    if counts:
+        arrays["cavity"] = [np.zeros(len(mesh.tets), np.int32), cavity]
+    if mesh.tet_voxel is not None and mesh.voxel_size is not None:
+        arrays["voxel"] = per_cell(mesh.tet_voxel)
+        arrays["voxel_size"] = per_cell(np.full(len(mesh.tets), mesh.voxel_size))
+
+    points = dict(content.point_data)
+    for name, vertices in content.regions.items():
+        points[_REGION + name] = np.isin(np.arange(len(mesh.vertices)), vertices).astype(np.uint8)
+    meshio.vtu.write(str(path), meshio.Mesh(mesh.vertices, cells, points, arrays))
+
+
+def read(path: Path) -> MeshFile:
+    """Read a VTU file; of other programs' files the tets and all arrays are taken."""
+    data = meshio.vtu.read(str(path))
+    blocks = [block for block, cells in enumerate(data.cells) if cells.type == "tetra"]
+    if not blocks:
+        raise FileError(str(path), "holds no linear tetrahedra")
+    per_tet = {
+        name: np.concatenate([arrays[block] for block in blocks])
+        for name, arrays in data.cell_data.items()
+    }
+    tets = np.concatenate([data.cells[block].data for block in blocks])
+    mesh = Mesh.from_tets(data.points, tets, per_tet.get("part"))
+    if "voxel" in per_tet and "voxel_size" in per_tet:
+        voxel_size = float(per_tet["voxel_size"][0])
+        mesh = replace(mesh, tet_voxel=per_tet["voxel"], voxel_size=voxel_size)
+    if "cavity" in data.cell_data:
+        mesh = with_cavities(mesh, _cavity_triangles(data), str(path))
+
+    regions, points = {}, {}
+    for name, values in data.point_data.items():
+        if name.startswith(_REGION):
+            region = name.removeprefix(_REGION)
+            vertices = np.flatnonzero(values)
+            regions[region] = vertex_set(str(path), region, vertices, len(data.points))
+        else:
+            points[name] = values
+    others = {name: values for name, values in per_tet.items() if name not in _OWN_ARRAYS}
+    return MeshFile(mesh, regions, points, others)
+
+
+def _cavity_triangles(data: meshio.Mesh) -> list[NDArray[np.integer]]:
+    numbered = [
+        (cells.data, numbers)
+        for cells, numbers in zip(data.cells, data.cell_data["cavity"], strict=True)
+        if cells.type == "triangle"
+    ]
+    if not numbered:
+        return []
+    triangles = np.concatenate([triangles for triangles, _ in numbered])
+    numbers = np.concatenate([numbers for _, numbers in numbered])
+    return [triangles[numbers == number] for number in np.unique(numbers[numbers > 0])]

@@ -1,0 +1,206 @@
+"""Mesh files: every format keeps what it can, and bad files are named."""
+
+import errno
+
+import meshio
+import numpy as np
+import pytest
+
+from voxsoft.errors import FileError
+from voxsoft.files.meshes import read_mesh, read_mesh_file, write_mesh
+from voxsoft.mesh import Mesh
+from voxsoft.voxels import Voxels
+
+
+def two_chambers():
+    cells = np.ones((7, 7, 7), int)
+    cells[3:] = 2
+    cells[1:3, 1:3, 1:4] = 0
+    cells[4:6, 4:6, 4:6] = 0
+    return Voxels.from_array(cells, voxel_size=0.005).mesh()
+
+
+REGIONS = {"base": np.array([0, 1, 2, 8]), "tip-2": np.array([100, 7])}
+
+
+def faces(triangles):
+    return {tuple(sorted(triangle)) for triangle in triangles.tolist()}
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".inp"])
+def test_parts_regions_and_cavities_are_kept(tmp_path, suffix):
+    mesh, path = two_chambers(), tmp_path / f"mesh{suffix}"
+    write_mesh(path, mesh, regions=REGIONS)
+    read = read_mesh_file(path)
+    assert np.array_equal(read.mesh.vertices, mesh.vertices)
+    # Voxels are in C order, so grouping by part does not change the order of these tets.
+    assert np.array_equal(read.mesh.tets, mesh.tets)
+    assert np.array_equal(read.mesh.tet_part, mesh.tet_part)
+    assert {name: v.tolist() for name, v in read.regions.items()} == {
+        "base": [0, 1, 2, 8],
+        "tip-2": [7, 100],
+    }
+    assert len(read.mesh.cavities) == 2
+    for found, expected in zip(read.mesh.cavities, mesh.cavities, strict=True):
+        assert faces(found.triangles) == faces(expected.triangles)
+        assert found.volume == pytest.approx(expected.volume)
+        assert found.area == pytest.approx(expected.area)
+
+
+def test_the_cavities_of_a_file_keep_their_order(tmp_path):
+    # Not largest first: a file's numbers are what its loads refer to.
+    mesh = two_chambers()
+    swapped = Mesh(
+        *(getattr(mesh, name) for name in ("vertices", "tets", "edges", "triangles")),
+        *(mesh.tet_part, mesh.tet_voxel, mesh.voxel_size, mesh.cavities[::-1]),
+    )
+    for suffix in (".vtu", ".msh", ".inp"):
+        write_mesh(tmp_path / f"mesh{suffix}", swapped)
+        volumes = [c.volume for c in read_mesh(tmp_path / f"mesh{suffix}").cavities]
+        assert volumes == pytest.approx([c.volume for c in swapped.cavities])
+
+
+def test_vtu_keeps_voxels_and_data(tmp_path):
+    mesh, path = two_chambers(), tmp_path / "mesh.vtu"
+    displacement = np.arange(mesh.vertices.size, dtype=float).reshape(-1, 3)
+    stretch = np.linspace(1, 2, len(mesh.tets))
+    write_mesh(
+        path, mesh, point_data={"displacement": displacement}, cell_data={"stretch": stretch}
+    )
+    read = read_mesh_file(path)
+    assert np.array_equal(read.mesh.tet_voxel, mesh.tet_voxel)
+    assert read.mesh.voxel_size == mesh.voxel_size
+    assert np.array_equal(read.point_data["displacement"], displacement)
+    assert np.array_equal(read.cell_data["stretch"], stretch)
+    assert set(read.cell_data) == {"stretch"}
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj"])
+def test_surfaces_are_written_closed(tmp_path, suffix):
+    mesh, path = two_chambers(), tmp_path / f"mesh{suffix}"
+    write_mesh(path, mesh)
+    surface = meshio.read(path)
+    (triangles,) = (block.data for block in surface.cells if block.type == "triangle")
+    assert len(triangles) == len(mesh.triangles)
+    a, b, c = (surface.points[triangles[:, corner]].astype(float) for corner in range(3))
+    volume = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+    assert volume == pytest.approx(mesh.surface_volume, rel=1e-5)
+    with pytest.raises(FileError, match="holds a surface, not tetrahedra"):
+        read_mesh(path)
+
+
+def test_abaqus_surfaces_point_at_the_faces_of_the_cavity(tmp_path):
+    mesh, path = two_chambers(), tmp_path / "mesh.inp"
+    write_mesh(path, mesh)
+    lines = path.read_text().splitlines()
+    start = lines.index("*SURFACE, NAME=CAVITY-1, TYPE=ELEMENT")
+    assert lines[start + 1].startswith("CAVITY-1-S")
+    again = read_mesh(path)
+    points = again.vertices[again.cavities[0].triangles]
+    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    center = points.mean(axis=(0, 1))
+    # Out of the material is into the chamber.
+    assert (np.einsum("ij,ij->i", normals, center - points.mean(axis=1)) > 0).all()
+
+
+def test_files_of_other_programs_are_read(tmp_path):
+    mesh = two_chambers()
+    surface = mesh.triangles[:10]
+    data = meshio.Mesh(
+        mesh.vertices,
+        [("triangle", surface), ("tetra", mesh.tets)],
+        cell_data={
+            "gmsh:physical": [np.full(10, 7), np.full(len(mesh.tets), 1000)],
+            "gmsh:geometrical": [np.full(10, 7), np.full(len(mesh.tets), 1000)],
+        },
+        field_data={"inlet": np.array([7, 2]), "rubber": np.array([1000, 3])},
+    )
+    meshio.write(tmp_path / "other.msh", data, file_format="gmsh22", binary=False)
+    read = read_mesh_file(tmp_path / "other.msh")
+    assert read.mesh.tet_part.tolist() == [1] * len(mesh.tets)
+    assert read.regions["inlet"].tolist() == np.unique(surface).tolist()
+    assert [c.volume for c in read.mesh.cavities] == pytest.approx(
+        [c.volume for c in mesh.cavities]
+    )
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".inp"])
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])
+def test_truncated_files_are_named(tmp_path, suffix, share, capsys):
+    mesh, path = two_chambers(), tmp_path / f"mesh{suffix}"
+    write_mesh(path, mesh, regions=REGIONS)
+    content = path.read_bytes()
+    path.write_bytes(content[: int(share * len(content))])
+    with pytest.raises(FileError, match=rf"mesh{suffix}: "):
+        read_mesh(path)
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".inp"])
+def test_noise_is_not_a_mesh(tmp_path, suffix):
+    path = tmp_path / f"noise{suffix}"
+    path.write_bytes(np.random.default_rng(0).bytes(1000))
+    with pytest.raises(FileError, match="noise"):
+        read_mesh(path)
+
+
+def test_a_mesh_without_tets_is_refused(tmp_path):
+    path = tmp_path / "surface.vtu"
+    meshio.Mesh(np.eye(3), [("triangle", [[0, 1, 2]])]).write(path)
+    with pytest.raises(FileError, match="holds no linear tetrahedra"):
+        read_mesh(path)
+
+
+def test_flat_tets_of_a_file_are_named_with_the_file(tmp_path):
+    path = tmp_path / "flat.vtu"
+    meshio.Mesh(np.zeros((4, 3)), [("tetra", [[0, 1, 2, 3]])]).write(path)
+    with pytest.raises(FileError, match=r"flat.vtu: tets\[0\]: .* is flat"):
+        read_mesh(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "match"),
+    [
+        ("mesh.xyz", {}, "unknown format '.xyz'; allowed are .vtu"),
+        ("mesh.stl", {"regions": REGIONS}, ".stl cannot hold regions"),
+        (
+            "mesh.msh",
+            {"point_data": {"t": np.zeros(len(two_chambers().vertices))}},
+            ".msh cannot hold data",
+        ),
+        ("mesh.vtu", {"point_data": {"t": np.zeros(3)}}, r"point_data\['t'\] has shape \(3,\)"),
+        ("mesh.vtu", {"cell_data": {"t": ["a"]}}, "cell_data"),
+        ("mesh.vtu", {"regions": {"two words": [0]}}, "'two words' cannot name a region"),
+        ("mesh.vtu", {"regions": {"far": [10**6]}}, "must hold vertex indices from 0 to"),
+        ("mesh.vtu", {"regions": {"none": []}}, "region 'none' has no vertex"),
+        ("missing/mesh.vtu", {}, "cannot be written: No such file"),
+    ],
+)
+def test_what_cannot_be_written_is_named(tmp_path, name, arguments, match):
+    with pytest.raises(FileError, match=match):
+        write_mesh(tmp_path / name, two_chambers(), **arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path, monkeypatch):
+    path = tmp_path / "mesh.vtu"
+    write_mesh(path, two_chambers())
+    before = path.read_bytes()
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("meshio.vtu.write", full)
+    with pytest.raises(FileError, match="No space left on device"):
+        write_mesh(path, two_chambers())
+    assert path.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_abaqus_file_cut_between_two_lines_is_named(tmp_path):
+    path = tmp_path / "mesh.inp"
+    write_mesh(path, two_chambers())
+    lines = path.read_text().splitlines(keepends=True)
+    path.write_text("".join(lines[: len(lines) // 2]))
+    with pytest.raises(FileError, match="is cut short"):
+        read_mesh(path)
