@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 mod errors;
 mod gate;
 mod mesh;
+mod shapes;
 mod simulate;
 mod voxels;
 
@@ -14,6 +15,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_function(wrap_pyfunction!(simulate::lattice_constants, module)?)?;
+    module.add_class::<shapes::PyShape>()?;
     module.add_class::<voxels::PyGrid>()?;
     module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_tets, module)?)?;

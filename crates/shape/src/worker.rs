@@ -14,6 +14,9 @@ use crate::tape::Tape;
 /// Block edges below the tile, largest first.
 const EDGES: [usize; 2] = [16, 8];
 
+/// The same where a field is sampled: it takes many points at once.
+const SAMPLED_EDGES: [usize; 1] = [16];
+
 /// An error bound is inherited by smaller blocks while it is below this part of the range of values.
 const SHARP: f64 = 1e-4;
 
@@ -115,7 +118,8 @@ impl Worker {
             cells: vec![0; tile.cells()],
             undefined: vec![],
         };
-        self.open(of, &tile, of.compiled.as_ref(), range, &EDGES, &mut canvas)?;
+        let edges: &[usize] = if of.compiled.is_some() { &EDGES } else { &SAMPLED_EDGES };
+        self.open(of, &tile, of.compiled.as_ref(), range, edges, &mut canvas)?;
         let Canvas {
             cells, undefined, ..
         } = canvas;

@@ -9,7 +9,7 @@ pub use boolean::{
 };
 pub use deform::{bend, taper, twist};
 pub use rigid::{array, mirror, polar_array, rotate, scale, translate};
-pub use surface::{blend, graded_offset, graded_shell, offset, shell};
+pub use surface::{blend, clip, graded_offset, graded_shell, offset, shell};
 
 use crate::expr::Expr;
 

@@ -1,8 +1,10 @@
 //! Operators on the value of the function: they move or thicken the surface.
 use super::boolean::grown;
+use crate::bounds::Bounds;
 use crate::check;
 use crate::error::BuildError;
 use crate::expr::Expr;
+use crate::primitives;
 use crate::shape::Shape;
 
 /// The surface moved outward by `distance` (m), inward when negative: s − distance.
@@ -46,4 +48,19 @@ pub fn blend(a: &Shape, b: &Shape, weight: &Expr) -> Shape {
         bounds: a.bounds.hull(&b.bounds),
         growth: a.growth.min(b.growth),
     }
+}
+
+/// The part of the shape inside a box, for a function of which nothing else is known.
+///
+/// # Errors
+/// The box must be finite and not empty.
+pub fn clip(shape: &Shape, bounds: &Bounds) -> Result<Shape, BuildError> {
+    let center = [0, 1, 2].map(|i| 0.5 * (bounds.low[i] + bounds.high[i]));
+    let size = [0, 1, 2].map(|i| bounds.high[i] - bounds.low[i]);
+    let cuboid = primitives::cuboid(center, size)?;
+    Ok(Shape {
+        expr: shape.expr.max(cuboid.expr),
+        bounds: *bounds,
+        growth: 1.0,
+    })
 }
