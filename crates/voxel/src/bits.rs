@@ -149,6 +149,13 @@ impl BitGrid {
         }
     }
 
+    /// Number of cells of plane i in the set.
+    pub fn count_in_plane(&self, i: usize) -> usize {
+        let plane = self.shape[1] * self.words_per_row;
+        let words = &self.words[i * plane..(i + 1) * plane];
+        words.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
     /// Number of maximal runs of cells.
     pub fn count_runs(&self) -> usize {
         let rows = self.words.chunks_exact(self.words_per_row);

@@ -38,6 +38,7 @@ mod bits;
 mod cavities;
 mod combine;
 mod components;
+mod edges;
 mod fill;
 mod five_tets;
 mod from_tets;
@@ -55,6 +56,7 @@ mod thickness;
 mod topology;
 mod unstitched;
 mod vectors;
+mod voxel_lists;
 
 pub use cavities::{Cavity, cavities};
 pub use combine::CombineError;

@@ -19,3 +19,46 @@ pub(crate) fn by_plane<T: Send>(
     }
     joined
 }
+
+/// As [`by_plane`] where the number of items of each plane is known: they are written in place.
+///
+/// A mesh is hundreds of bytes per voxel, and touching new memory is most of the time of making it,
+/// so each list is touched once.
+///
+/// # Panics
+///
+/// If `fill` pushes more or fewer items than counted.
+pub(crate) fn fill_planes<T: Clone + Default + Send>(
+    counts: &[usize],
+    fill: impl Fn(usize, &mut Slots<T>) + Sync + Send,
+) -> Vec<T> {
+    let mut list = vec![T::default(); counts.iter().sum()];
+    let mut rest = &mut list[..];
+    let mut planes = Vec::with_capacity(counts.len());
+    for (i, &count) in counts.iter().enumerate() {
+        let (slots, later) = rest.split_at_mut(count);
+        planes.push((i, Slots(slots.iter_mut())));
+        rest = later;
+    }
+    let work = |(i, mut slots): (usize, Slots<'_, T>)| {
+        fill(i, &mut slots);
+        assert_eq!(slots.0.len(), 0, "plane {i} has fewer items than counted");
+    };
+    #[cfg(feature = "threads")]
+    rayon::iter::ParallelIterator::for_each(
+        rayon::iter::IntoParallelIterator::into_par_iter(planes),
+        work,
+    );
+    #[cfg(not(feature = "threads"))]
+    planes.into_iter().for_each(work);
+    list
+}
+
+/// The places of one plane in a list.
+pub(crate) struct Slots<'a, T>(std::slice::IterMut<'a, T>);
+
+impl<T> Slots<'_, T> {
+    pub fn push(&mut self, item: T) {
+        *self.0.next().expect("no more items than counted") = item;
+    }
+}
