@@ -140,7 +140,7 @@ class UnitOf:
                 "in a file only zero may be a bare number."
             )
         described_as: dict[str, Any] = {
-            "anyOf": [{"type": "string"}, {"type": "number"}],
+            "type": ["string", "number"],
             "description": described,
             "x-kind": kind.name,
         }

@@ -1,0 +1,34 @@
+"""Designs: typed models of what is built, held, loaded and measured."""
+
+from voxsoft.design.assignment import set_values
+from voxsoft.design.clamp import Clamp, Motion, Rotation
+from voxsoft.design.history import History
+from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, Pressure, Traction
+from voxsoft.design.model import Design
+from voxsoft.design.parameter import Parameter
+from voxsoft.design.part import Part
+from voxsoft.design.region import Probe, Region
+from voxsoft.design.solver import Solver
+from voxsoft.design.target import Constraint, Objective
+
+__all__ = [
+    "AnyLoad",
+    "Clamp",
+    "Constraint",
+    "Design",
+    "Floor",
+    "Force",
+    "Gravity",
+    "History",
+    "Motion",
+    "Objective",
+    "Parameter",
+    "Part",
+    "Pressure",
+    "Probe",
+    "Region",
+    "Rotation",
+    "Solver",
+    "Traction",
+    "set_values",
+]

@@ -1,0 +1,193 @@
+"""Formulas of a design file: ``= radius - wall``, with units carried along.
+
+The grammar (whitespace is free)::
+
+    formula = "=" sum
+    sum     = product { ("+" | "-") product }
+    product = factor { ("*" | "/") factor }
+    factor  = "-" factor | number | name | ("min" | "max") "(" sum { "," sum } ")" | "(" sum ")"
+
+A formula is evaluated while it is read; nothing in it can call, index or loop.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from typing import Final, NoReturn
+
+from voxsoft.errors import FormulaError
+from voxsoft.units import Dimension, Quantity, describe_dimension
+
+LONGEST_FORMULA: Final = 500
+DEEPEST_NESTING: Final = 40
+
+_TOKEN: Final = re.compile(
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)"
+    r"|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/(),]))",
+    re.ASCII,
+)
+_FUNCTIONS: Final[dict[str, Callable[..., float]]] = {"min": min, "max": max}
+_NUMBER: Final = Dimension()
+
+
+def is_formula(value: object) -> bool:
+    """Whether a value of a document is a formula: text that starts with ``=``.
+
+    Examples
+    --------
+    >>> is_formula("= radius"), is_formula("5 mm"), is_formula(0)
+    (True, False, False)
+    """
+    return isinstance(value, str) and value.lstrip().startswith("=")
+
+
+def evaluate(text: str, parameter: Callable[[str], Quantity]) -> Quantity:
+    """Evaluate a formula.
+
+    Parameters
+    ----------
+    text
+        The formula with its leading ``=``.
+    parameter
+        Gives the value of a parameter by name; raises :class:`FormulaError` for an unknown one.
+
+    Returns
+    -------
+    Quantity
+        The value in SI units with its dimension.
+
+    Raises
+    ------
+    FormulaError
+        Not a formula of this grammar, too long or nested too deep, an unknown name, a sum of
+        different dimensions, a division by zero or a result that is not finite.
+
+    Examples
+    --------
+    >>> from voxsoft.units import KINDS
+    >>> radius = Quantity(0.025, KINDS["length"].dimension)
+    >>> evaluate("= 2*radius", {"radius": radius}.__getitem__).value
+    0.05
+    """
+    return _Reader(text, parameter).read()
+
+
+class _Reader:
+    """One pass over one formula: recursive descent with one token of lookahead."""
+
+    def __init__(self, text: str, parameter: Callable[[str], Quantity]) -> None:
+        if len(text) > LONGEST_FORMULA:
+            raise FormulaError(
+                f'"{text[:40]}..."',
+                f"is longer than {LONGEST_FORMULA} characters",
+                "split it over several parameters",
+            )
+        self._text = text
+        self._parameter = parameter
+        self._tokens = self._split()
+        self._position = 0
+        self._depth = 0
+
+    def read(self) -> Quantity:
+        result = self._sum()
+        if self._token:
+            self._fail(f'"{self._token}" is not expected here')
+        return result
+
+    def _split(self) -> list[str]:
+        body = self._text.lstrip()[1:].rstrip()
+        tokens, position = [], 0
+        while position < len(body):
+            match = _TOKEN.match(body, position)
+            if match is None:
+                self._fail(f'"{body[position:].lstrip()[:10]}" is not part of a formula')
+            tokens.append(match.group().strip())
+            position = match.end()
+        return tokens
+
+    @property
+    def _token(self) -> str:
+        return self._tokens[self._position] if self._position < len(self._tokens) else ""
+
+    def _take(self) -> str:
+        token = self._token
+        self._position += 1
+        return token
+
+    def _expect(self, token: str) -> None:
+        if self._token != token:
+            came = f'"{self._token}"' if self._token else "the end"
+            self._fail(f'"{token}" is due where {came} stands')
+        self._position += 1
+
+    def _sum(self) -> Quantity:
+        total = self._product()
+        while self._token in {"+", "-"}:
+            sign = 1.0 if self._take() == "+" else -1.0
+            term = self._product()
+            dimension = self._shared_dimension([total, term], "added" if sign > 0 else "subtracted")
+            total = self._finite(total.value + sign * term.value, dimension)
+        return total
+
+    def _product(self) -> Quantity:
+        result = self._factor()
+        while self._token in {"*", "/"}:
+            divide = self._take() == "/"
+            factor = self._factor()
+            if divide and factor.value == 0:
+                self._fail("divides by zero")
+            value = result.value / factor.value if divide else result.value * factor.value
+            power = -1 if divide else 1
+            result = self._finite(value, result.dimension.times(factor.dimension, power))
+        return result
+
+    def _factor(self) -> Quantity:
+        self._depth += 1
+        if self._depth > DEEPEST_NESTING:
+            self._fail(f"is nested deeper than {DEEPEST_NESTING} levels")
+        token = self._take()
+        if token == "-":
+            inner = self._factor()
+            result = Quantity(-inner.value, inner.dimension)
+        elif token == "(":
+            result = self._sum()
+            self._expect(")")
+        elif token in _FUNCTIONS and self._token == "(":
+            result = self._call(token)
+        elif token[:1].isdigit() or token[:1] == ".":
+            result = self._finite(float(token), _NUMBER)
+        elif token[:1].isalpha() or token[:1] == "_":
+            result = self._parameter(token)
+        else:
+            self._fail(f'a value is due where "{token}" stands' if token else "is not complete")
+        self._depth -= 1
+        return result
+
+    def _call(self, name: str) -> Quantity:
+        self._expect("(")
+        arguments = [self._sum()]
+        while self._token == ",":
+            self._position += 1
+            arguments.append(self._sum())
+        self._expect(")")
+        dimension = self._shared_dimension(arguments, "compared")
+        return Quantity(_FUNCTIONS[name](a.value for a in arguments), dimension)
+
+    def _shared_dimension(self, terms: list[Quantity], verb: str) -> Dimension:
+        """Find the one dimension of all terms; a plain zero goes with anything."""
+        dimensions = {t.dimension for t in terms if t.value != 0 or t.dimension != _NUMBER}
+        if len(dimensions) > 1:
+            named = " and ".join(sorted(map(describe_dimension, dimensions)))
+            hint = "name the number as a parameter with a unit" if _NUMBER in dimensions else ""
+            self._fail(f"{named} cannot be {verb}", hint)
+        return dimensions.pop() if dimensions else _NUMBER
+
+    def _finite(self, value: float, dimension: Dimension) -> Quantity:
+        if not math.isfinite(value):
+            self._fail("is too large for a number")
+        return Quantity(value, dimension)
+
+    def _fail(self, what: str, hint: str = "") -> NoReturn:
+        raise FormulaError("", f'in "{self._text}": {what}', hint)

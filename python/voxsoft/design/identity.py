@@ -1,0 +1,42 @@
+"""The identity of a design: a hash over all that decides the numbers it gives."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any, Final
+
+from voxsoft.units import round_significant
+
+# Words about the design, ways to vary it, and what a study asks of it: the answer of a
+# simulation depends on none of them. Probes stay in, because results are recorded at them.
+_NOT_PHYSICS: Final = frozenset(
+    {"schema", "name", "description", "parameters", "objectives", "constraints"}
+)
+
+
+def hash_of(document: Mapping[str, Any]) -> str:
+    """Hash a resolved design document: SHA-256 of canonical JSON, in hexadecimal.
+
+    Every number is rounded once, to 12 significant digits, so that the last bits of a formula
+    do not make another design.
+
+    Examples
+    --------
+    >>> hash_of({"voxel_size": 0.1 + 0.2}) == hash_of({"voxel_size": 0.3, "name": "other"})
+    True
+    """
+    physics = {key: value for key, value in document.items() if key not in _NOT_PHYSICS}
+    text = json.dumps(_canonical(physics), sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _canonical(value: object) -> object:
+    if isinstance(value, Mapping):
+        return {str(key): _canonical(entry) for key, entry in value.items() if entry is not None}
+    if isinstance(value, (list, tuple)):
+        return [_canonical(entry) for entry in value]
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return round_significant(float(value)) + 0.0  # -0.0 + 0.0 is 0.0
+    return value

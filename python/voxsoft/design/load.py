@@ -1,0 +1,157 @@
+"""Loads: gravity, cavity pressure, forces, tractions; and the floor."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag, field_validator
+
+from voxsoft import units
+from voxsoft.design.clamp import check_direction
+from voxsoft.design.history import History
+from voxsoft.design.region import Region
+from voxsoft.records import Record
+from voxsoft.units import Acceleration, Length, UnitOf, Vector
+
+Forces = tuple[units.Force, units.Force, units.Force]
+Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
+
+
+class Gravity(Record):
+    """Weight of the whole body. Without this load there is no gravity.
+
+    Parameters
+    ----------
+    value
+        Acceleration; default 9.81 m/s².
+    direction
+        Where down is; default −z. Its length does not matter.
+    history
+        The factor over time; default: constant.
+
+    Examples
+    --------
+    >>> Gravity().value
+    9.81
+    """
+
+    kind: Literal["gravity"] = "gravity"
+    value: Acceleration = 9.81
+    direction: Vector = (0.0, 0.0, -1.0)
+    history: History | None = None
+
+    @field_validator("direction")
+    @classmethod
+    def _has_direction(cls, direction: Vector) -> Vector:
+        return check_direction(direction)
+
+
+def _all_or_index(value: object) -> str:
+    return "all" if isinstance(value, str) else "index"
+
+
+class Pressure(Record):
+    """Gauge pressure in a cavity, a follower load: it stays normal to the deforming wall.
+
+    Parameters
+    ----------
+    value
+        The pressure; negative is a vacuum.
+    cavity
+        ``"all"`` (default), or the index of one cavity; 0 is the largest.
+    history
+        The factor over time; default: constant.
+
+    Examples
+    --------
+    >>> from voxsoft.units import kPa
+    >>> Pressure(value=4 * kPa).cavity
+    'all'
+    """
+
+    kind: Literal["pressure"] = "pressure"
+    value: units.Pressure
+    cavity: Annotated[
+        Annotated[Literal["all"], Tag("all")] | Annotated[int, Field(ge=0), Tag("index")],
+        Discriminator(_all_or_index),
+    ] = "all"
+    history: History | None = None
+
+
+class Force(Record):
+    """A dead force, shared evenly by the vertices in a region.
+
+    Parameters
+    ----------
+    region
+        Where it acts.
+    value
+        Components x, y, z of the total force.
+    history
+        The factor over time; default: constant.
+
+    Examples
+    --------
+    >>> Force(region=Region(x=("100 mm", "100 mm")), value=(0, 0, "-20 mN")).value
+    (0.0, 0.0, -0.02)
+    """
+
+    kind: Literal["force"] = "force"
+    region: Region
+    value: Forces
+    history: History | None = None
+
+
+def _scalar_or_vector(value: object) -> str:
+    return "vector" if isinstance(value, (list, tuple)) else "scalar"
+
+
+class Traction(Record):
+    """Force per area on the outer surface inside a region.
+
+    Parameters
+    ----------
+    region
+        A boundary triangle is loaded if its three vertices are in the region.
+    value
+        Three components (a dead load, per undeformed area), or one number: a pressure that
+        pushes onto the surface and follows it.
+    history
+        The factor over time; default: constant.
+
+    Examples
+    --------
+    >>> Traction(region=Region(z=(0, 0)), value="2 kPa").value
+    2000.0
+    """
+
+    kind: Literal["traction"] = "traction"
+    region: Region
+    value: Annotated[
+        Annotated[units.Pressure, Tag("scalar")] | Annotated[Stresses, Tag("vector")],
+        Discriminator(_scalar_or_vector),
+    ]
+    history: History | None = None
+
+
+AnyLoad = Annotated[Gravity | Pressure | Force | Traction, Field(discriminator="kind")]
+
+
+class Floor(Record):
+    """A horizontal plane without friction that nothing sinks through.
+
+    Parameters
+    ----------
+    z
+        Its height; default 0.
+    stiffness
+        Contact stiffness per vertex in N/m; default: rigid.
+
+    Examples
+    --------
+    >>> Floor(z="-10 mm").z
+    -0.01
+    """
+
+    z: Length = 0.0
+    stiffness: Annotated[float, UnitOf("stiffness", positive=True)] | None = None

@@ -1,0 +1,38 @@
+"""Parts: what is made of what."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Discriminator, Tag
+
+from voxsoft.design.operands import Name, ShapeOrName, name_or_table
+from voxsoft.materials import AnyMaterial
+from voxsoft.records import Record
+
+
+class Part(Record):
+    """A shape made of a material. Where parts overlap, the first one wins.
+
+    Parameters
+    ----------
+    shape
+        Name of a shape of the design, or a shape.
+    material
+        Name of a material card or of one of the design's own materials, or a
+        material.
+    name
+        What results call it; default: the shape's name.
+
+    Examples
+    --------
+    >>> Part(shape="body", material="ecoflex-00-30").material
+    'ecoflex-00-30'
+    """
+
+    shape: ShapeOrName
+    material: Annotated[
+        Annotated[Name, Tag("name")] | Annotated[AnyMaterial, Tag("table")],
+        Discriminator(name_or_table),
+    ]
+    name: Name | None = None

@@ -1,0 +1,96 @@
+"""Places of a design: regions to clamp, load and measure at."""
+
+from __future__ import annotations
+
+from pydantic import Field, model_validator
+
+from voxsoft.design.operands import ShapeOrName
+from voxsoft.errors import DesignError
+from voxsoft.records import Record
+from voxsoft.units import ExtendedLength, Length, Point, PositiveLength, format_quantity
+
+Range = tuple[ExtendedLength, ExtendedLength]
+
+
+class Region(Record):
+    """A place in space: where all given conditions hold.
+
+    Parameters
+    ----------
+    x, y, z
+        Ranges ``(low, high)`` along the axes; equal bounds make a plane, ``-inf`` and ``inf``
+        leave a side open. A missing axis is not limited.
+    center, radius
+        A ball.
+    shape
+        The inside of a shape: its name, or the shape itself.
+
+    Notes
+    -----
+    A region catches the vertices of the mesh that lie in it or within half a voxel of it,
+    so that a plane given in meters finds its layer of vertices.
+
+    Examples
+    --------
+    >>> from voxsoft.units import mm
+    >>> Region(x=(0, 10 * mm)).x
+    (0.0, 0.01)
+    >>> Region(z=("5 mm", "2 mm"))
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: z: starts at 5 mm, above its end at 2 mm. Try: swap the two
+    """
+
+    x: Range | None = None
+    y: Range | None = None
+    z: Range | None = None
+    center: Point | None = None
+    radius: PositiveLength | None = None
+    shape: ShapeOrName | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Region:
+        for axis in ("x", "y", "z"):
+            _check_range(axis, getattr(self, axis))
+        if (self.center is None) != (self.radius is None):
+            raise DesignError("", "a ball needs both center and radius")
+        if not self._conditions():
+            raise DesignError(
+                "", "says nowhere", "give x, y or z ranges, center and radius, or a shape"
+            )
+        return self
+
+    def _conditions(self) -> list[object]:
+        places = (self.x, self.y, self.z, self.radius, self.shape)
+        return [place for place in places if place is not None]
+
+
+class Probe(Region):
+    """A place to measure at: a point, or the average over a region.
+
+    Parameters
+    ----------
+    point
+        A point in the undeformed body; values are interpolated in the voxel that holds it.
+
+    Examples
+    --------
+    >>> Probe(point=("50 mm", 0, 0)).point
+    (0.05, 0.0, 0.0)
+    """
+
+    point: tuple[Length, Length, Length] | None = Field(None)
+
+    @model_validator(mode="after")
+    def _check(self) -> Probe:
+        if self.point is None:
+            super()._check()  # type: ignore[operator]
+        elif self._conditions():
+            raise DesignError("", "has both a point and a region", "keep one of them")
+        return self
+
+
+def _check_range(axis: str, bounds: Range | None) -> None:
+    if bounds is not None and bounds[0] > bounds[1]:
+        low, high = (format_quantity(bound, "length") for bound in bounds)
+        raise DesignError(axis, f"starts at {low}, above its end at {high}", "swap the two")

@@ -1,0 +1,196 @@
+"""From a design document with formulas to one with values only.
+
+A document is what a TOML file holds: nested dicts and lists. :func:`resolve` replaces every
+formula by its value with dimension (:class:`~voxsoft.units.Quantity`), so that the typed models
+can still tell a length from an area.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, Final
+
+from voxsoft.design.formula import evaluate, is_formula
+from voxsoft.design.parameter import Parameter, read_quantity
+from voxsoft.errors import DesignError, FormulaError, Problem, VoxSoftError
+from voxsoft.records import closest, place
+from voxsoft.units import KINDS, Dimension, Number, Quantity, describe_dimension, format_quantity
+
+Document = dict[str, Any]
+
+LONGEST_CHAIN: Final = 50
+DEEPEST_DOCUMENT: Final = 50
+# Free text, where a leading "=" means nothing.
+_PROSE: Final = frozenset({"name", "description"})
+
+
+def resolve(document: Mapping[str, Any]) -> Document:
+    """Replace every formula of a document by its value.
+
+    Parameters
+    ----------
+    document
+        The design document; it is not changed.
+
+    Returns
+    -------
+    dict
+        A new document. A formula has become a :class:`~voxsoft.units.Quantity`, or a
+        :class:`~voxsoft.units.Number` where it has no dimension.
+
+    Raises
+    ------
+    FormulaError
+        Listing every formula that cannot be evaluated.
+    DesignError
+        The document nests too deep.
+
+    Examples
+    --------
+    >>> resolve({"parameters": {"mu": "5 mm"}, "voxel_size": "= mu/2"})["voxel_size"].value
+    0.0025
+    """
+    parameters = _Parameters(document.get("parameters"))
+    problems: list[Problem] = []
+    resolved = _resolve(document, (), parameters, problems)
+    if problems:
+        raise FormulaError.listing(dict.fromkeys(problems))
+    return dict(resolved)
+
+
+def with_parameter_values(document: Mapping[str, Any], overrides: Mapping[str, object]) -> Document:
+    """Give parameters of a document other values.
+
+    Parameters
+    ----------
+    document
+        The design document; it is not changed.
+    overrides
+        New values by name: text with a unit, or a number in SI units.
+
+    Raises
+    ------
+    DesignError
+        A name that is no parameter.
+
+    Examples
+    --------
+    >>> with_parameter_values({"parameters": {"wall": {"value": "5 mm"}}}, {"wall": "2 mm"})
+    {'parameters': {'wall': {'value': '2 mm'}}}
+    """
+    if not overrides:
+        return dict(document)
+    declared = document.get("parameters")
+    parameters = dict(declared) if isinstance(declared, Mapping) else {}
+    unknown = [
+        Problem(name, "is not a parameter of this design", closest(name, map(str, parameters)))
+        for name in overrides
+        if name not in parameters
+    ]
+    if unknown:
+        raise DesignError.listing(unknown)
+    before = _Parameters(declared)
+    for name, value in overrides.items():
+        written = _with_unit(value, before(name).dimension, f"parameters.{name}")
+        old = parameters[name]
+        if isinstance(old, Parameter):
+            old = old.model_dump(exclude_none=True)
+        parameters[name] = {**old, "value": written} if isinstance(old, Mapping) else written
+    return {**document, "parameters": parameters}
+
+
+def _with_unit(value: object, dimension: Dimension, where: str) -> object:
+    """Check the unit of a parameter's new value, or give an SI number the unit it needs."""
+    if is_formula(value):
+        return value
+    quantity = read_quantity(value, where)
+    if isinstance(value, str) and quantity.dimension != dimension and quantity.value != 0:
+        came, due = describe_dimension(quantity.dimension), describe_dimension(dimension)
+        raise DesignError(where, f'"{value}" is {came}; {due} is due')
+    kind = next((k.name for k in KINDS.values() if k.dimension == dimension), "number")
+    return value if isinstance(value, str) else format_quantity(quantity.value, kind)
+
+
+class _Parameters:
+    """Values of parameters by name, evaluated when first asked for."""
+
+    def __init__(self, declared: object) -> None:
+        self._declared = declared if isinstance(declared, Mapping) else {}
+        self._values: dict[str, Quantity] = {}
+        self._asking: list[str] = []
+
+    def __call__(self, name: str) -> Quantity:
+        if name not in self._values:
+            self._values[name] = self._evaluate(name)
+        return self._values[name]
+
+    def _evaluate(self, name: str) -> Quantity:
+        if name not in self._declared:
+            raise FormulaError(
+                "", f'"{name}" is not a parameter', closest(name, map(str, self._declared))
+            )
+        if name in self._asking:
+            circle = [*self._asking[self._asking.index(name) :], name]
+            raise FormulaError("", f"runs in a circle: {' → '.join(circle)}")
+        if len(self._asking) >= LONGEST_CHAIN:
+            raise FormulaError("", f"chains more than {LONGEST_CHAIN} parameters")
+        self._asking.append(name)
+        try:
+            return self._value_of(name)
+        finally:
+            self._asking.pop()
+
+    def _value_of(self, name: str) -> Quantity:
+        declared = self._declared[name]
+        if isinstance(declared, Parameter):
+            return Quantity(declared.value, declared.dimension)
+        value = declared.get("value") if isinstance(declared, Mapping) else declared
+        if is_formula(value):
+            return evaluate(str(value), self)
+        quantity = read_quantity(value, f"parameters.{name}")
+        kind = declared.get("kind") if isinstance(declared, Mapping) else None
+        if quantity.dimension == Dimension() and isinstance(kind, str) and kind in KINDS:
+            return Quantity(quantity.value, KINDS[kind].dimension)
+        return quantity
+
+
+def _resolve(
+    value: object, path: tuple[str | int, ...], parameters: _Parameters, problems: list[Problem]
+) -> Any:  # noqa: ANN401 - a document holds anything
+    if len(path) > DEEPEST_DOCUMENT:
+        raise DesignError(place(path[:3]), f"nests deeper than {DEEPEST_DOCUMENT} levels")
+    if isinstance(value, Mapping):
+        return {k: _resolve(v, (*path, k), parameters, problems) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_resolve(v, (*path, i), parameters, problems) for i, v in enumerate(value)]
+    if not is_formula(value) or (path and path[-1] in _PROSE):
+        return value
+    return _evaluated(str(value), path, parameters, problems)
+
+
+def _evaluated(
+    formula: str, path: tuple[str | int, ...], parameters: _Parameters, problems: list[Problem]
+) -> Quantity | Number | None:
+    try:
+        result = evaluate(formula, parameters)
+        return result if result.dimension != Dimension() else Number(result.value)
+    except FormulaError as error:
+        what = error.what if f'"{formula}"' in error.what else f'in "{formula}": {error.what}'
+        problems.append(Problem(place(path), what, error.hint))
+    except VoxSoftError as error:  # the value of a parameter that the formula uses
+        problems.append(Problem(error.where, error.what, error.hint))
+    return None
+
+
+def formulas(
+    document: object, path: tuple[str | int, ...] = ()
+) -> Iterator[tuple[tuple[str | int, ...], str]]:
+    """Find every formula of a document with its path."""
+    if isinstance(document, Mapping):
+        for key, value in document.items():
+            yield from formulas(value, (*path, key))
+    elif isinstance(document, (list, tuple)):
+        for index, value in enumerate(document):
+            yield from formulas(value, (*path, index))
+    elif is_formula(document) and not (path and path[-1] in _PROSE):
+        yield path, str(document)

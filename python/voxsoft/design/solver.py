@@ -1,0 +1,61 @@
+"""Choices about how a design is solved."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from voxsoft.records import Record
+from voxsoft.units import NonNegativeRate, PositiveTime
+
+
+def _named_or_rate(value: object) -> str:
+    return "named" if value in ("auto", "critical") else "rate"
+
+
+class Solver(Record):
+    """How to solve; whatever is left out is chosen from the design and reported.
+
+    Parameters
+    ----------
+    method
+        ``"xpbd"`` (default): dynamics, run to rest; ``"statics"``: the equilibrium.
+    time_step
+        Length of one step in seconds; smaller is more accurate in motion, and no
+        different at rest.
+    substeps
+        Substeps of each step, at least 1.
+    iterations
+        Passes over the constraints in each substep, at least 1.
+    damping
+        Decay rate of velocities in 1/s, ``"critical"`` (the lowest mode does not swing), or
+        ``"auto"`` (the fastest way to rest).
+    tolerance
+        Largest residual force at rest, relative to the load.
+    max_time
+        Simulated time after which a run that is not at rest stops.
+    end_time
+        Run to this time exactly, at rest or not: for motion over time.
+
+    Examples
+    --------
+    >>> Solver(damping="5 1/s", substeps=4).damping
+    5.0
+    """
+
+    method: Literal["xpbd", "statics"] = "xpbd"
+    time_step: PositiveTime | None = None
+    substeps: int | None = Field(None, ge=1, le=100_000)
+    iterations: int | None = Field(None, ge=1, le=100_000)
+    damping: (
+        Annotated[
+            Annotated[Literal["auto", "critical"], Tag("named")]
+            | Annotated[NonNegativeRate, Tag("rate")],
+            Discriminator(_named_or_rate),
+        ]
+        | None
+    ) = None
+    tolerance: float | None = Field(None, gt=0, lt=1)
+    max_time: PositiveTime | None = None
+    end_time: PositiveTime | None = None

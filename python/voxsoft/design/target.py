@@ -1,0 +1,126 @@
+"""Objectives and constraints: what a study asks of a design."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from pydantic import (
+    Field,
+    SerializationInfo,
+    SerializerFunctionWrapHandler,
+    ValidationInfo,
+    model_serializer,
+    model_validator,
+)
+
+from voxsoft.design.operands import Name
+from voxsoft.design.parameter import AnyQuantity, as_one_kind, read_quantity, write_quantities
+from voxsoft.errors import DesignError
+from voxsoft.records import Record
+from voxsoft.units import read_from_file
+
+Axis = Literal["x", "y", "z"]
+
+
+class Objective(Record):
+    """A metric to make as large or as small as possible.
+
+    Parameters
+    ----------
+    maximize, minimize
+        Name of the metric, such as ``"displacement"``; give one of the two.
+    probe
+        Where it is measured, for a metric that needs a place.
+    axis
+        The component; default: the magnitude.
+    cavity
+        Index of the cavity, for a metric that needs one; 0 is the largest.
+
+    Examples
+    --------
+    >>> rise = Objective(maximize="displacement", probe="top", axis="z")
+    >>> rise.metric, rise.direction
+    ('displacement', 'maximize')
+    """
+
+    maximize: Name | None = None
+    minimize: Name | None = None
+    probe: Name | None = None
+    axis: Axis | None = None
+    cavity: int | None = Field(None, ge=0)
+
+    @model_validator(mode="after")
+    def _one_direction(self) -> Objective:
+        if (self.maximize is None) == (self.minimize is None):
+            raise DesignError("", "needs one of maximize and minimize")
+        return self
+
+    @property
+    def metric(self) -> str:
+        """Name of the metric."""
+        return self.maximize or self.minimize or ""
+
+    @property
+    def direction(self) -> Literal["maximize", "minimize"]:
+        """Which way is better."""
+        return "maximize" if self.maximize else "minimize"
+
+
+class Constraint(Record):
+    """A metric to keep within bounds.
+
+    Parameters
+    ----------
+    metric
+        Name of the metric.
+    probe, axis, cavity
+        As for :class:`Objective`.
+    min, max
+        The bounds, with units where the metric has one; at least one of them.
+    kind
+        The kind of quantity of the bounds, found from their unit.
+
+    Examples
+    --------
+    >>> Constraint(metric="mass", max="30 g").max
+    0.03
+    """
+
+    metric: Name
+    probe: Name | None = None
+    axis: Axis | None = None
+    cavity: int | None = Field(None, ge=0)
+    min: AnyQuantity | None = None
+    max: AnyQuantity | None = None
+    kind: str = "number"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _read_bounds(cls, data: Any, info: ValidationInfo) -> Any:  # noqa: ANN401
+        """Read the bounds as a parameter reads its range: one kind, SI inside."""
+        if not isinstance(data, Mapping):
+            return data
+        from_file = read_from_file(info)
+        bounds = {
+            name: read_quantity(data[name], name)
+            for name in ("min", "max")
+            if data.get(name) is not None
+        }
+        # A bare bound is fine where the metric has no unit, so it cannot be refused here.
+        return {**data, **as_one_kind(bounds, data.get("kind"), from_file=from_file)}
+
+    @model_validator(mode="after")
+    def _bounded(self) -> Constraint:
+        if self.min is None and self.max is None:
+            raise DesignError("", "has no bound", "give min or max")
+        if self.min is not None and self.max is not None and self.min > self.max:
+            raise DesignError("min", "is above max", "swap the two")
+        return self
+
+    @model_serializer(mode="wrap")
+    def _written(
+        self, handler: SerializerFunctionWrapHandler, info: SerializationInfo
+    ) -> dict[str, Any]:
+        """Write the bounds with their units in JSON mode."""
+        return write_quantities(handler(self), self.kind, info)

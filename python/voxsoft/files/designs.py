@@ -1,0 +1,187 @@
+"""Design files: read and write designs as TOML."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from voxsoft.design import Design, set_values
+from voxsoft.errors import DesignError, FileError, Problem, VoxSoftError
+from voxsoft.files.toml_text import line_of
+
+if TYPE_CHECKING:
+    from voxsoft.design.resolution import Document
+
+LARGEST_FILE: Final = 10_000_000  # bytes; a design is a page of text
+
+FilePath = str | os.PathLike[str]
+
+
+def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float | str) -> Design:
+    r"""Read a design from a TOML file.
+
+    Parameters
+    ----------
+    path
+        The file.
+    assignments
+        Changes ``key=value`` as the command line takes them (:func:`voxsoft.design.set_values`).
+    **parameters
+        New values of parameters: text with a unit, or numbers in SI units.
+
+    Returns
+    -------
+    Design
+        The design; relative paths inside it are those of the file's folder.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read, or is not TOML.
+    DesignError
+        The design is not valid; every problem is listed with its line.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "broken.toml"
+    >>> _ = file.write_text('name = "a"\nvoxel_size = "5 kPa"\n[[parts]]\nshape = 1')
+    >>> try:
+    ...     load(file)
+    ... except DesignError as error:
+    ...     print(error.problems[0].where, "·", error.problems[0].what)
+    broken.toml, line 2, voxel_size · "5 kPa" is a pressure; a length is due
+    """
+    text = read_text(path)
+    document = read_document(text, Path(path).name)
+    try:
+        changed = set_values(document, assignments)
+        return Design.from_document(changed, parameters)
+    except DesignError as error:
+        problems = (_with_line(problem, text, Path(path).name) for problem in error.problems)
+        raise type(error).listing(problems) from None
+
+
+def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
+    """Write a design to a TOML file, whole or not at all.
+
+    Parameters
+    ----------
+    design
+        The design.
+    path
+        The file; it is replaced if it exists.
+    resolved
+        Whether to write values in place of formulas.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    write_whole(path, design.to_toml(resolved=resolved))
+
+
+def read_text(path: FilePath) -> str:
+    """Read a text file of at most 10 MB as UTF-8.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable, too large or binary file.
+    """
+    file = Path(path)
+    try:
+        with file.open("rb") as stream:
+            content = stream.read(LARGEST_FILE + 1)
+    except FileNotFoundError:
+        raise FileError(str(path), "there is no such file", "check the path") from None
+    except IsADirectoryError:
+        raise FileError(str(path), "is a folder", "name the file in it") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise FileError(str(path), f"cannot be read: {reason}") from None
+    if len(content) > LARGEST_FILE:
+        raise FileError(file.name, "is larger than 10 MB, too large for a design")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        where = f"{file.name}, line {line}"
+        raise FileError(where, "is not text in UTF-8", "save the file as UTF-8 text") from None
+
+
+def read_document(text: str, name: str) -> Document:
+    """Read TOML text; `name` is the file that an error names.
+
+    Raises
+    ------
+    FileError
+        The text is not TOML, with line and column.
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        where, what = _position(str(error), text, name)
+        raise FileError(where, what, "check quotes, brackets and commas near it") from None
+    except RecursionError:
+        raise FileError(name, "nests brackets too deep for a design") from None
+    except ValueError as error:  # numbers of thousands of digits, impossible dates
+        raise FileError(name, f"holds a value that cannot be read: {error}") from None
+
+
+def write_whole(path: FilePath, text: str) -> None:
+    """Write a file beside its final place and move it there, so that no reader sees half of it.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    file = Path(path)
+    try:
+        handle, beside = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
+    except (OSError, ValueError) as error:
+        raise _cannot_write(path, error) from None
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+        Path(beside).replace(file)
+    except OSError as error:
+        Path(beside).unlink(missing_ok=True)
+        raise _cannot_write(path, error) from None
+
+
+def _cannot_write(path: FilePath, error: Exception) -> VoxSoftError:
+    reason = getattr(error, "strerror", None) or str(error)
+    return FileError(str(path), f"cannot be written: {reason}", "check the folder and free space")
+
+
+_AT: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
+
+
+def _position(message: str, text: str, name: str) -> tuple[str, str]:
+    """Take the position out of the parser's message and put it first."""
+    match = _AT.search(message)
+    what = _AT.sub("", message)
+    what = f"is not TOML: {what[:1].lower()}{what[1:]}"
+    if match and match.group(1):
+        return f"{name}, line {match.group(1)}, column {match.group(2)}", what
+    lines = text.splitlines() or [""]
+    where = f"{name}, line {len(lines)}, column {len(lines[-1]) + 1}"
+    return where, f"{what}; the file ends too early"
+
+
+_STEP: Final = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
+
+
+def _with_line(problem: Problem, text: str, name: str) -> Problem:
+    path: list[Any] = [int(index) if index else key for index, key in _STEP.findall(problem.where)]
+    line = line_of(text, path)
+    where = f"{name}, line {line}" if line else name
+    return Problem(f"{where}, {problem.where}" if problem.where else where, *problem[1:])

@@ -1,0 +1,39 @@
+"""Families: each a valid design whose file is also an example."""
+
+from pathlib import Path
+
+import pytest
+
+from voxsoft.design import families
+from voxsoft.errors import DesignError
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.mark.parametrize("name", families.FAMILIES)
+def test_a_family_is_valid_all_over_its_ranges(name):
+    design = getattr(families, name)()
+    assert design.name == name
+    for parameter, declared in design.parameters.items():
+        for bound in (declared.min, declared.max):
+            if bound is not None:
+                changed = design.with_parameters(**{parameter: bound})
+                assert changed.parameters[parameter].value == pytest.approx(bound, rel=1e-11)
+
+
+@pytest.mark.parametrize("name", families.FAMILIES)
+def test_the_example_is_the_family(name):
+    assert (EXAMPLES / f"{name}.toml").read_text() == families.family_text(name)
+
+
+def test_beam_stations_divide_the_free_length():
+    beam = families.beam(length="50 mm", height="20 mm")
+    assert [beam.probes[f"station-{i}"].point[0] for i in range(1, 10)] == pytest.approx(
+        [0.01 + 0.04 * i / 9 for i in range(1, 10)]
+    )
+    assert beam.probes["station-5"].point[1:] == pytest.approx((0.005, 0.01))
+
+
+def test_an_unknown_family_suggests_one():
+    with pytest.raises(DesignError, match='did you mean "pneunet"'):
+        families.family("pneunets")
