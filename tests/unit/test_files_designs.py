@@ -113,6 +113,29 @@ def test_a_file_that_cannot_be_written_leaves_nothing_behind(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["folder.toml"]
 
 
+MESHED = """
+name = "scan"
+voxel_size = "5 mm"
+[shapes]
+body = { kind = "mesh", path = "scan.stl", unit = "mm" }
+[[parts]]
+shape = "body"
+material = "ecoflex-00-30"
+"""
+
+
+def test_mesh_files_are_found_beside_the_design_and_count_by_content(tmp_path):
+    hashes = []
+    for folder, content in (("a", b"solid"), ("b", b"solid"), ("c", b"other")):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "scan.stl").write_bytes(content)
+        (tmp_path / folder / "design.toml").write_text(MESHED)
+        design = load(tmp_path / folder / "design.toml")
+        assert Path(design.shapes["body"].path) == tmp_path / folder / "scan.stl"
+        hashes.append(design.hash)
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
 VALUES = st.recursive(
     st.one_of(
         st.text(max_size=20),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.units import round_significant
@@ -20,7 +21,7 @@ def hash_of(document: Mapping[str, Any]) -> str:
     """Hash a resolved design document: SHA-256 of canonical JSON, in hexadecimal.
 
     Every number is rounded once, to 12 significant digits, so that the last bits of a formula
-    do not make another design.
+    do not make another design. A mesh file counts by its content.
 
     Examples
     --------
@@ -34,9 +35,20 @@ def hash_of(document: Mapping[str, Any]) -> str:
 
 def _canonical(value: object) -> object:
     if isinstance(value, Mapping):
+        if value.get("kind") == "mesh":
+            value = {**value, "path": _content(str(value.get("path")))}
         return {str(key): _canonical(entry) for key, entry in value.items() if entry is not None}
     if isinstance(value, (list, tuple)):
         return [_canonical(entry) for entry in value]
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return round_significant(float(value)) + 0.0  # -0.0 + 0.0 is 0.0
     return value
+
+
+def _content(path: str) -> str:
+    """Stand in for a mesh file: what it holds counts, not where it lies."""
+    try:
+        with Path(path).open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except (OSError, ValueError):
+        return path

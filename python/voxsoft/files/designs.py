@@ -60,7 +60,7 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     text = read_text(path)
     document = read_document(text, Path(path).name)
     try:
-        changed = set_values(document, assignments)
+        changed = _with_whole_paths(set_values(document, assignments), Path(path).parent)
         return Design.from_document(changed, parameters)
     except DesignError as error:
         problems = (_with_line(problem, text, Path(path).name) for problem in error.problems)
@@ -160,6 +160,19 @@ def write_whole(path: FilePath, text: str) -> None:
 def _cannot_write(path: FilePath, error: Exception) -> VoxSoftError:
     reason = getattr(error, "strerror", None) or str(error)
     return FileError(str(path), f"cannot be written: {reason}", "check the folder and free space")
+
+
+def _with_whole_paths(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
+    """Complete the relative paths of mesh shapes, which are meant from the file's folder."""
+    if isinstance(value, list):
+        return [_with_whole_paths(entry, folder) for entry in value]
+    if not isinstance(value, dict):
+        return value
+    table = {key: _with_whole_paths(entry, folder) for key, entry in value.items()}
+    if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
+        # A path that is absolute already stays as it is.
+        table["path"] = str(folder.absolute() / table["path"])
+    return table
 
 
 _AT: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
