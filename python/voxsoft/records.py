@@ -168,13 +168,21 @@ _DUE = {
 
 
 def _in_words(details: ErrorDetails) -> str:
-    came = repr(details["input"])
-    came = came if len(came) <= 60 else f"{came[:57]}..."
-    due = _DUE.get(details["type"])
-    if due is None:
-        due = details["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
-        due = f"due is {due}" if details["msg"].startswith("Input should be") else due
-    return f"{came} came; {due}"
+    kind, context = details["type"], details.get("ctx", {})
+    if kind == "too_short":
+        return f"has {context['actual_length']} entries; at least {context['min_length']} are due"
+    if kind == "too_long":
+        return f"has more than {context['max_length']} entries"
+    came = details["input"]
+    shown = f'"{came}"' if isinstance(came, str) else repr(came)
+    shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
+    if kind == "literal_error":
+        due = f"{context['expected']} is due".replace("'", '"')
+    elif kind in _DUE:
+        due = _DUE[kind]
+    else:
+        due = details["msg"].replace("Input should be", "due is a value")
+    return f"{shown} came; {due}"
 
 
 def _without_echo(found: Sequence[ErrorDetails], document: object) -> list[ErrorDetails]:

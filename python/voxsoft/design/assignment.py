@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import tomllib
 from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
 from typing import Any
 
 from voxsoft.design.resolution import Document
@@ -21,7 +22,8 @@ def set_values(document: Mapping[str, Any], assignments: Iterable[str]) -> Docum
         A design document; it is not changed.
     assignments
         Texts ``key=value``. A bare name sets the parameter of that name, or else a top-level
-        key; a dotted path sets any key, with list indices as numbers. The value is read as
+        key; a dotted path sets any key, with list indices as numbers, and makes tables that are
+        missing. The value is read as
         TOML (a number, ``true``, a list, a quoted text) or, failing that, taken as text.
 
     Returns
@@ -68,29 +70,24 @@ def _assign(document: Document, key: str, value: object) -> None:
         else:
             parameters[key] = value
         return
+    names = list(parameters) if isinstance(parameters, dict) else []
+    if "." not in key and key not in document and get_close_matches(key, names, n=1):
+        raise DesignError(key, "is not a parameter of this design", closest(key, names))
     *path, last = key.split(".")
     table = _descend(document, path, key)
     if isinstance(table, dict):
-        if not path and last not in table and isinstance(parameters, dict):
-            raise DesignError(
-                key,
-                "is neither a parameter nor a key of this design",
-                closest(key, [*parameters, *table]),
-            )
         table[last] = value
     else:
         table[_index(table, last, key)] = value
 
 
 def _descend(document: Document, path: list[str], key: str) -> Any:  # noqa: ANN401
+    """Follow a path to a table or list, making tables that are not there yet."""
     here: Any = document
     for step in path:
-        if isinstance(here, list):
-            here = here[_index(here, step, key)]
-        elif step in here:
-            here = here[step]
-        else:
-            raise DesignError(key, f'there is no "{step}"', closest(step, map(str, here)))
+        here = (
+            here[_index(here, step, key)] if isinstance(here, list) else here.setdefault(step, {})
+        )
         if not isinstance(here, (dict, list)):
             raise DesignError(key, f'"{step}" holds {here!r}, nothing below it can be set')
     return here

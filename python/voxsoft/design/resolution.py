@@ -147,11 +147,33 @@ class _Parameters:
         value = declared.get("value") if isinstance(declared, Mapping) else declared
         if is_formula(value):
             return evaluate(str(value), self)
-        quantity = read_quantity(value, f"parameters.{name}")
-        kind = declared.get("kind") if isinstance(declared, Mapping) else None
-        if quantity.dimension == Dimension() and isinstance(kind, str) and kind in KINDS:
-            return Quantity(quantity.value, KINDS[kind].dimension)
-        return quantity
+        where = f"parameters.{name}"
+        if value is None:
+            raise DesignError(where, "has no value", 'write one such as "25 mm"')
+        quantity = read_quantity(value, where)
+        if not isinstance(declared, Mapping) or quantity.dimension != Dimension():
+            return quantity
+        return Quantity(quantity.value, _dimension_beside(declared, quantity.value, where))
+
+
+def _dimension_beside(declared: Mapping[str, Any], value: float, where: str) -> Dimension:
+    """Find the dimension of a bare number in a parameter's table: that of its kind.
+
+    A number other than zero beside bounds with units lacks its own, which is best said here:
+    every formula that uses the parameter would fail for the same reason.
+    """
+    kind = declared.get("kind")
+    if isinstance(kind, str) and kind in KINDS:
+        return KINDS[kind].dimension
+    for bound in (declared.get("min"), declared.get("max"), declared.get("step")):
+        if isinstance(bound, str) and not is_formula(bound):
+            dimension = read_quantity(bound, where).dimension
+            if value != 0 and dimension != Dimension():
+                raise DesignError(
+                    where, f"{value:g} has no unit; its range has one", f"add it, as in {bound}"
+                )
+            return dimension
+    return Dimension()
 
 
 def _resolve(
