@@ -333,7 +333,7 @@ def test_a_cavity_without_size_leaves_the_body_whole(radius, height, wall):
     )
     assert design.empty_shapes == ("cavity",)
     assert "cavity" not in design.shapes
-    assert design.shapes["body"] == design.shapes["outer"]
+    assert design.shapes["body"].of == ("outer",)
     assert Design.from_document(design.document).hash == design.hash
     assert design.with_parameters(radius="25 mm", height="35 mm", wall="5 mm").empty_shapes == ()
 
@@ -360,6 +360,20 @@ def test_an_empty_member_leaves_a_subtracted_union():
     design = Design.from_document(document, {"wall": "15 mm", "radius": "15 mm"})
     assert design.empty_shapes == ("cavity",)
     assert design.shapes["holes"].of == ("slit",)
+
+
+def test_differences_of_differences_lose_their_empty_operands():
+    document = changed("shapes", "final", {"kind": "difference", "of": ["body", "hole"]})
+    document["shapes"]["hole"] = {"kind": "sphere", "radius": "= wall - wall"}
+    design = Design.from_document(document, {"wall": "15 mm", "radius": "15 mm"})
+    assert set(design.empty_shapes) == {"cavity", "hole"}
+    assert set(design.shapes) == {"outer", "body", "final"}
+
+
+def test_a_difference_of_itself_is_refused_also_when_the_rest_is_empty():
+    document = changed("shapes", "body", "of", ["body", "cavity"])
+    found = problems(document, wall="15 mm", radius="15 mm")
+    assert found[0].what == "is made of itself: body → body"
 
 
 def test_an_empty_shape_has_no_other_use():

@@ -5,6 +5,7 @@ two caps as high as the body. Such a design is valid; it has no cavity. The rule
 
     An operand that a difference subtracts, and one of whose sizes a *formula* makes zero or
     negative, is empty. A union leaves it out; whatever is made from it alone is empty too.
+    A difference that subtracts nothing else becomes a union of its first operand.
 
 A size that is written as a number and is not positive stays an error.
 """
@@ -55,9 +56,8 @@ def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[s
     cleaned = dict(document)
     if isinstance(shapes, Mapping):
         named = {name: pruning.differences(table) for name, table in shapes.items()}
-        named.update({name: t for name, t in pruning.subtracted.items() if t is not None})
-        gone = {name for name, table in pruning.subtracted.items() if table is None}
-        cleaned["shapes"] = {name: t for name, t in named.items() if name not in gone}
+        named.update(pruning.subtracted)
+        cleaned["shapes"] = {name: table for name, table in named.items() if table is not None}
     for place in ("parts", "clamps", "loads", "probes"):
         if place in document:
             cleaned[place] = pruning.differences(document[place])
@@ -86,7 +86,7 @@ class _Pruning:
         kept = [operand for operand in map(self._operand, rest) if operand is not None]
         if kept or not rest:
             return {**table, _OPERANDS: [first, *kept]}
-        return self._shapes.get(first, first) if isinstance(first, str) else first
+        return {"kind": "union", _OPERANDS: [first]}
 
     def _operand(self, operand: Any) -> Any:  # noqa: ANN401
         """Return a subtracted operand, pruned, or None if it is empty."""
@@ -103,9 +103,11 @@ class _Pruning:
         if _has_vanished(table):
             return None
         operands, kind = table.get(_OPERANDS), table.get("kind")
+        if operands is None:
+            return table
         if not isinstance(operands, list):
-            kept = None if operands is None else self._operand(operands)
-            return table if operands is None else kept and {**table, _OPERANDS: kept}
+            kept = self._operand(operands)
+            return None if kept is None else {**table, _OPERANDS: kept}
         pruned = [self._operand(operand) for operand in operands]
         full = [operand for operand in pruned if operand is not None]
         # The first operand decides a difference; an intersection needs every one.

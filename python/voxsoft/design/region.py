@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from voxsoft.design.operands import ShapeOrName
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import ExtendedLength, Length, Point, PositiveLength, format_quantity
+from voxsoft.units import ExtendedLength, Point, PositiveLength, format_quantity
 
 Range = tuple[ExtendedLength, ExtendedLength]
 
@@ -54,11 +54,13 @@ class Region(Record):
             _check_range(axis, getattr(self, axis))
         if (self.center is None) != (self.radius is None):
             raise DesignError("", "a ball needs both center and radius")
-        if not self._conditions():
-            raise DesignError(
-                "", "says nowhere", "give x, y or z ranges, center and radius, or a shape"
-            )
+        self._check_conditions()
         return self
+
+    def _check_conditions(self) -> None:
+        if not self._conditions():
+            hint = "give x, y or z ranges, center and radius, or a shape"
+            raise DesignError("", "says nowhere", hint)
 
     def _conditions(self) -> list[object]:
         places = (self.x, self.y, self.z, self.radius, self.shape)
@@ -79,15 +81,13 @@ class Probe(Region):
     (0.05, 0.0, 0.0)
     """
 
-    point: tuple[Length, Length, Length] | None = Field(None)
+    point: Point | None = None
 
-    @model_validator(mode="after")
-    def _check(self) -> Probe:
+    def _check_conditions(self) -> None:
         if self.point is None:
-            super()._check()  # type: ignore[operator]
+            super()._check_conditions()
         elif self._conditions():
             raise DesignError("", "has both a point and a region", "keep one of them")
-        return self
 
 
 def _check_range(axis: str, bounds: Range | None) -> None:
