@@ -59,7 +59,7 @@ def plain_error(error: ValidationError, model: type[Record], document: object) -
     causes = [details.get("ctx", {}).get("error") for details in found]
     only_formulas = all(isinstance(cause, FormulaError) for cause in causes)
     error_type = FormulaError if only_formulas else model.error_type
-    return error_type.listing(dict.fromkeys(problems))
+    return error_type.listing(_merged(problems))
 
 
 def place(path: Iterable[str | int]) -> str:
@@ -195,9 +195,23 @@ def _without_echo(found: Sequence[ErrorDetails], document: object) -> list[Error
     return [
         details
         for details, path in zip(found, paths, strict=True)
-        if details["type"] not in {"string_type", "too_short"}
+        if details["type"] not in {"string_type", "literal_error", "too_short"}
         or not any(len(other) > len(path) and other[: len(path)] == path for other in paths)
     ]
+
+
+def _merged(problems: Sequence[Problem]) -> Iterator[Problem]:
+    """Say once what came where, with all that is due: each branch of a union has its own say."""
+    by_place: dict[tuple[str, str], list[Problem]] = {}
+    for problem in dict.fromkeys(problems):
+        came = problem.what.partition(" came; ")[0] if " came; " in problem.what else problem.what
+        by_place.setdefault((problem.where, came), []).append(problem)
+    for (where, came), same in by_place.items():
+        if len(same) == 1:
+            yield same[0]
+        else:
+            dues = (p.what.removeprefix(f"{came} came; ").removesuffix(" is due") for p in same)
+            yield Problem(where, f"{came} came; {', or '.join(dues)} is due", same[0].hint)
 
 
 def _field_names(model: type[Record], path: Sequence[str | int], document: object) -> set[str]:

@@ -25,6 +25,10 @@ class Joint(Record):
 Joint.model_rebuild()
 
 
+class Arrow(Record):
+    along: Literal["x", "y"] | tuple[float, float] = "x"
+
+
 class Scene(Record):
     shapes: dict[str, Annotated[Ball | Joint, Field(discriminator="kind")]] = Field({})
     count: int = 1
@@ -66,6 +70,15 @@ def test_a_faulty_operand_is_reported_once_and_inside():
     found = problems(shapes={"a": {"kind": "joint", "of": [{"kind": "ball", "radius": "1 kPa"}]}})
     assert any("is a pressure" in p.what for p in found)
     assert not any("text is due" in p.what for p in found)
+
+
+def test_the_branches_of_a_union_are_told_in_one_sentence():
+    with pytest.raises(DesignError) as caught:
+        Arrow(along="w")
+    assert caught.value.problems == (Problem("along", '"w" came; "x" or "y", or a list is due'),)
+    with pytest.raises(DesignError) as caught:
+        Arrow(along=(0, "q"))
+    assert [p.where for p in caught.value.problems] == ["along[1]"]
 
 
 def test_tables_in_tables_see_the_context_of_the_file():
