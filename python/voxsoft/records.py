@@ -192,12 +192,27 @@ def _without_echo(found: Sequence[ErrorDetails], document: object) -> list[Error
     also fails as text; and a list with a faulty entry also fails as too short.
     """
     paths = [tuple(_real_keys(details, document)) for details in found]
+    known = list(zip(found, paths, strict=True))
     return [
         details
-        for details, path in zip(found, paths, strict=True)
-        if details["type"] not in {"string_type", "literal_error", "too_short"}
-        or not any(len(other) > len(path) and other[: len(path)] == path for other in paths)
+        for details, path in known
+        if not any(_echoes(details, path, other, other_path) for other, other_path in known)
     ]
+
+
+def _echoes(
+    details: ErrorDetails,
+    path: tuple[str | int, ...],
+    other: ErrorDetails,
+    other_path: tuple[str | int, ...],
+) -> bool:
+    """Whether an `other` finding is the one that the input's author needs."""
+    if path == other_path:
+        wrong_unit = isinstance(other.get("ctx", {}).get("error"), UnitError)
+        wrong_kind = other["type"] in {"union_tag_invalid", "union_tag_not_found"}
+        return details["type"] in {"string_type", "tuple_type"} and (wrong_unit or wrong_kind)
+    inside = len(other_path) > len(path) and other_path[: len(path)] == path
+    return inside and details["type"] in {"string_type", "literal_error", "too_short"}
 
 
 def _merged(problems: Sequence[Problem]) -> Iterator[Problem]:

@@ -27,7 +27,7 @@ from voxsoft.design import (
     Traction,
 )
 from voxsoft.errors import DesignError, FormulaError, UnitError
-from voxsoft.shapes import Box
+from voxsoft.shapes import Box, Function
 from voxsoft.units import kPa, mm
 
 CYLINDER = {
@@ -430,6 +430,20 @@ def test_a_design_made_in_python_writes_units_and_formulas():
     again = Design.from_document(document)
     assert again.hash == design.hash
     assert again.with_parameters(length="50 mm").shapes["body"].size[0] == 0.05
+
+
+def test_a_python_function_works_until_it_would_have_to_be_written():
+    ball = Function(function=lambda x, y, z: x - 1, low=(0, 0, 0), high=(1, 1, 1))
+    design = beam(shapes={"body": ball}, parameters={"mu": "5 mm"}, voxel_size="= mu")
+    assert design.with_parameters(mu="2 mm").voxel_size == 0.002
+    for use in (lambda: design.hash, design.to_toml, lambda: design.document):
+        with pytest.raises(DesignError, match="Python function"):
+            use()
+    assert "Function" in str(design)
+
+
+def test_a_printed_design_is_its_file():
+    assert str(Design.from_document(CYLINDER)).splitlines()[0] == 'schema = "voxsoft/1"'
 
 
 def test_designs_travel_between_processes():

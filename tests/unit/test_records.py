@@ -19,9 +19,10 @@ class Ball(Record):
 
 class Joint(Record):
     kind: Literal["joint"] = "joint"
-    of: tuple["str | Ball | Joint", ...]
+    of: tuple["str | Operand", ...]
 
 
+Operand = Annotated[Ball | Joint, Field(discriminator="kind")]
 Joint.model_rebuild()
 
 
@@ -79,6 +80,11 @@ def test_the_branches_of_a_union_are_told_in_one_sentence():
     with pytest.raises(DesignError) as caught:
         Arrow(along=(0, "q"))
     assert [p.where for p in caught.value.problems] == ["along[1]"]
+
+
+def test_a_wrong_kind_of_operand_is_all_that_is_said():
+    (found,) = problems(shapes={"a": {"kind": "joint", "of": [{"kind": "bal"}]}})
+    assert found.where == "shapes.a.of[0].kind"
 
 
 def test_tables_in_tables_see_the_context_of_the_file():

@@ -14,6 +14,7 @@ from pydantic import (
     ValidationInfo,
     model_validator,
 )
+from pydantic_core import PydanticSerializationError
 
 from voxsoft.design.assignment import set_values
 from voxsoft.design.clamp import Clamp
@@ -173,6 +174,12 @@ class Design(Record):
             raise DesignError.listing(problems)
         return design
 
+    def __str__(self) -> str:
+        try:
+            return self.to_toml()
+        except DesignError:
+            return repr(self)
+
     @property
     def empty_shapes(self) -> tuple[str, ...]:
         """Names of subtracted shapes of which the parameters leave nothing."""
@@ -208,8 +215,18 @@ class Design(Record):
 
     @property
     def resolved(self) -> Document:
-        """The design as plain data with every value in place of its formula."""
-        dumped = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        """The design as plain data with every value in place of its formula.
+
+        Raises
+        ------
+        DesignError
+            A shape is made of a Python function: such a design has no document and no hash.
+        """
+        try:
+            dumped = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+        except PydanticSerializationError as error:
+            what = "hold a Python function, which no file can hold"
+            raise DesignError("shapes", what, "write it as an expression") from error
         return {key: value for key, value in dumped.items() if value not in ("", {}, [])}
 
     @property

@@ -136,12 +136,12 @@ def finger(**parameters: float | str) -> Design:
     Parameters
     ----------
     **parameters
-        ``length`` (default 80 mm), ``width`` (20 mm), ``skin`` (2 mm), ``period`` (10 mm),
-        ``thickness`` (2 mm).
+        ``length`` (default 80 mm), ``width`` (24 mm), ``skin`` (2 mm), ``period`` (16 mm),
+        ``thickness`` (3 mm).
 
     Examples
     --------
-    >>> finger(period="8 mm").shapes["lattice"].period
-    0.008
+    >>> finger(period="20 mm").shapes["lattice"].period
+    0.02
     """
     return family("finger", **parameters)
