@@ -6,6 +6,7 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.errors import DesignError
+from voxsoft.shapes import voxelize
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -37,3 +38,30 @@ def test_beam_stations_divide_the_free_length():
 def test_an_unknown_family_suggests_one():
     with pytest.raises(DesignError, match='did you mean "pneunet"'):
         families.family("pneunets")
+
+
+@pytest.mark.parametrize(
+    ("name", "part", "cavities"),
+    [
+        ("beam", 0, 0),
+        ("cylinder", 0, 1),
+        ("sphere", 0, 1),
+        ("pneunet", 0, 0),
+        ("pneunet", 1, 1),  # the duct joins all chambers to one
+    ],
+)
+def test_a_family_has_the_cavities_that_its_loads_need(name, part, cavities):
+    design = families.family(name)
+    shape = design.shapes[design.parts[part].shape]
+    voxels = voxelize(shape, design.voxel_size, names=design.shapes)
+    assert len(voxels.cavities) == cavities
+
+
+def test_the_gyroid_fills_the_finger_in_part():
+    design = families.finger()
+    filled, whole = (
+        voxelize(design.shapes[name], design.voxel_size, names=design.shapes).count
+        for name in ("body", "outside")
+    )
+    # The skin alone is 1 - (10/12)^2 (36/40) = 37 % of the outside.
+    assert 0.4 < filled / whole < 0.8
