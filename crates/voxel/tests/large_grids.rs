@@ -6,7 +6,10 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
-use voxsoft_voxel::{Contact, Grid, StitchError, cavities, components, mesh_bytes, tet_mesh};
+use voxsoft_voxel::{
+    Contact, Grid, StitchError, cavities, components, hinges, leaks, mesh_bytes, tet_mesh,
+    wall_thickness,
+};
 
 /// The system's allocator with a record of the peak.
 struct Counting;
@@ -105,12 +108,16 @@ fn stitching_is_linear_in_the_number_of_voxels() {
             let grid = gyroid(n);
             let voxels = grid.count();
             PEAK.store(NOW.load(Relaxed), Relaxed);
-            let start = Instant::now();
-            let mesh = tet_mesh(&grid, u64::MAX).unwrap();
-            let nanoseconds = start.elapsed().as_nanos() as f64 / voxels as f64;
+            let mut vertices = 0;
+            let timed = || {
+                let start = Instant::now();
+                vertices = tet_mesh(&grid, u64::MAX).unwrap().vertices.len();
+                start.elapsed().as_nanos() as f64 / voxels as f64
+            };
+            // The best of several runs is the one that other programs disturbed least.
+            let nanoseconds = std::iter::repeat_with(timed).take(5).fold(f64::INFINITY, f64::min);
             println!(
-                "gyroid {n}³: {voxels} voxels, {} vertices, {nanoseconds:.0} ns and {} bytes at the peak per voxel",
-                mesh.vertices.len(),
+                "gyroid {n}³: {voxels} voxels, {vertices} vertices, {nanoseconds:.0} ns and {} bytes at the peak per voxel",
                 PEAK.load(Relaxed) / voxels
             );
             nanoseconds
@@ -118,4 +125,35 @@ fn stitching_is_linear_in_the_number_of_voxels() {
         .collect();
     // 64 times the voxels may cost no more than twice the time each (caches, first touch).
     assert!(nanoseconds[2] < 2.0 * nanoseconds[0], "{nanoseconds:?}");
+}
+
+#[test]
+#[ignore = "slow: 512³ cells"]
+fn leaks_hinges_and_walls_of_512_cubed_stay_under_a_gibibyte() {
+    let grid = gyroid(512);
+    PEAK.store(NOW.load(Relaxed), Relaxed);
+    let start = Instant::now();
+    let found = leaks(&grid, 2).len();
+    println!(
+        "512³: {found} leaks, {:.2} s, {} MiB",
+        start.elapsed().as_secs_f64(),
+        PEAK.load(Relaxed) >> 20
+    );
+    let start = Instant::now();
+    let joints = hinges(&grid).len();
+    println!(
+        "512³: {joints} hinges, {:.2} s",
+        start.elapsed().as_secs_f64()
+    );
+    let start = Instant::now();
+    let walls = wall_thickness(&grid);
+    println!(
+        "512³: thinnest {:?}, {:.2} s",
+        walls.thinnest,
+        start.elapsed().as_secs_f64()
+    );
+    assert_eq!(walls.histogram.iter().sum::<u64>() as usize, grid.count());
+    let peak = PEAK.load(Relaxed);
+    println!("512³: peak {} MiB", peak >> 20);
+    assert!(peak < GIB, "{peak} bytes");
 }
