@@ -1,10 +1,10 @@
 //! Triply periodic surfaces and strut lattices.
 //!
-//! A surface g = 0 is turned into a distance. Along a normal of a minimal surface that solves
-//! ∇²g = −(κk)²g, g'' = −(κk)²g to leading order (the mean curvature vanishes), so g runs as a sine and the distance is
-//! s = asin(q)/(κk) with q = κg/√(|∇g|²/k² + κ²g²) and k = 2π/period. The inverse sine is cut after its fifth
-//! power, which keeps its slope finite. Walls of a given thickness are metric to first order for every surface
-//! here, and to third order for gyroid, P and D.
+//! A surface g = 0 is turned into a distance. All functions here solve ∇²g = −(κk)²g, or are sums of two that do;
+//! on a normal at the distance d that reads g'' = −(κk)²g − 2Hg', with the mean curvature H. Without the last term g runs as
+//! a sine, and the distance is s = asin(q)/(κk) with q = κg/√(|∇g|²/k² + κ²g²) and k = 2π/period. The last term
+//! shifts both faces of a wall the same way by Hd², so a wall's thickness is right up to a relative error of second order
+//! in thickness/period. The inverse sine is cut after its fifth power, which keeps its slope finite.
 use std::f64::consts::TAU;
 
 use crate::bounds::Bounds;

@@ -118,7 +118,11 @@ impl Worker {
             cells: vec![0; tile.cells()],
             undefined: vec![],
         };
-        let edges: &[usize] = if of.compiled.is_some() { &EDGES } else { &SAMPLED_EDGES };
+        let edges: &[usize] = if of.compiled.is_some() {
+            &EDGES
+        } else {
+            &SAMPLED_EDGES
+        };
         self.open(of, &tile, of.compiled.as_ref(), range, edges, &mut canvas)?;
         let Canvas {
             cells, undefined, ..

@@ -55,7 +55,8 @@ def read_surface(path: Path) -> Surface:
 def _first_that_reads(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Try meshio, then trimesh, which takes some STL, OBJ and PLY dialects that meshio does not."""
     readers: tuple[Callable[[Path], tuple[NDArray[np.float64], NDArray[np.int64]]], ...]
-    readers = (_read_by_meshio, _read_by_trimesh)
+    is_vtk = path.suffix.lower() in (".vtk", ".vtu")
+    readers = (_read_by_meshio,) if is_vtk else (_read_by_meshio, _read_by_trimesh)
     reasons = []
     for read in readers:
         try:

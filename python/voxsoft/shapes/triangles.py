@@ -12,6 +12,7 @@ References
 
 from __future__ import annotations
 
+import atexit
 from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Literal
@@ -68,6 +69,10 @@ def _solid(path: Path, changed: int, factor: float) -> _Solid:
     """Read a file once for as long as it does not change."""
     surface = read_surface(path)
     return _Solid(surface.points * factor, surface.triangles, str(path))
+
+
+# libigl's objects must go before its module does, or it reports them as leaked.
+atexit.register(_solid.cache_clear)
 
 
 class _Solid:
