@@ -1,6 +1,7 @@
 """Types of the private Rust module."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,3 +147,74 @@ class Shape:
     def sample(
         self, origin: _Point, voxel_size: float, shape: _Cells, memory_limit: int
     ) -> NDArray[np.uint8]: ...
+
+_Material = tuple[bool, float, float, float]
+_History = tuple[Sequence[float], Sequence[float]] | None
+
+def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...
+
+class ProblemParts:
+    def __init__(self) -> None: ...
+    def clamp(
+        self,
+        vertices: NDArray[np.uint32],
+        axes: Sequence[bool],
+        displacement: Sequence[float] | None = None,
+        axis: Sequence[float] = ...,
+        angle: float = 0.0,
+        center: Sequence[float] = ...,
+        history: _History = None,
+    ) -> None: ...
+    def gravity(self, acceleration: Sequence[float], history: _History = None) -> None: ...
+    def pressure(
+        self, triangles: NDArray[np.uint32], pressure: float, history: _History = None
+    ) -> None: ...
+    def forces(
+        self,
+        vertices: NDArray[np.uint32],
+        forces: NDArray[np.float64],
+        history: _History = None,
+    ) -> None: ...
+    def floor(self, z: float) -> None: ...
+
+class Problem:
+    def __init__(
+        self,
+        vertices: NDArray[np.float64],
+        tets: NDArray[np.uint32],
+        tet_part: NDArray[np.uint8],
+        tet_block: NDArray[np.uint32],
+        materials: Sequence[_Material],
+        parts: ProblemParts,
+    ) -> None: ...
+    def with_materials(self, materials: Sequence[_Material]) -> Problem: ...
+    @property
+    def mass(self) -> float: ...
+    @property
+    def masses(self) -> NDArray[np.float64]: ...
+    def edges(self) -> tuple[NDArray[np.uint32], NDArray[np.float64], NDArray[np.float64]]: ...
+    def elastic(self, positions: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]: ...
+    def relax(
+        self,
+        *,
+        tolerance: float,
+        max_steps: int,
+        start: NDArray[np.float64] | None = None,
+        progress: Callable[[int, float, float], None] | None = None,
+    ) -> dict[str, Any]: ...
+    def simulate(
+        self,
+        *,
+        time_step: float,
+        substeps: int | None,
+        iterations: int,
+        damping: float | None,
+        retardation: float,
+        end_time: float | None,
+        max_time: float,
+        tolerance: float,
+        record_interval: float | None = None,
+        sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
+        frames: bool = False,
+        progress: Callable[[int, float, float], None] | None = None,
+    ) -> dict[str, Any]: ...

@@ -90,6 +90,14 @@ class FormulaError(DesignError):
     """A formula that cannot be read, names something unknown, or runs in a circle."""
 
 
+class NoCavityError(DesignError):
+    """A pressure is asked for where there is no enclosed cavity."""
+
+
+class DisconnectedError(DesignError):
+    """A piece of the body is held by nothing."""
+
+
 class ShapeError(VoxSoftError, ValueError):
     """A shape that cannot be built or sampled."""
 

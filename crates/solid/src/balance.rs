@@ -8,8 +8,12 @@ use crate::{Problem, elastic};
 pub struct Balance {
     /// Norm of the forces left over on free vertices in N.
     pub residual: f64,
-    /// Norm against which the residual counts: the larger of all external and all support forces, N.
+    /// Norm against which the residual counts, in N: that of the external forces, or, where there
+    /// are none (a motion is prescribed), that of the reactions. Reactions of a cantilever are
+    /// many times its load, so a residual small against them would still leave it unbent.
     pub scale: f64,
+    /// The larger of the norms of external forces and reactions in N.
+    pub largest: f64,
     /// Elastic plus external force on every vertex in N.
     pub net: Vec<Vec3>,
     /// What clamps and floor answer with: minus the net force on held axes, N.
@@ -19,7 +23,20 @@ pub struct Balance {
 impl Balance {
     /// The residual without units; zero for a body without any force.
     pub fn relative_residual(&self) -> f64 {
-        if self.residual == 0.0 { 0.0 } else { self.residual / self.scale }
+        if self.residual == 0.0 {
+            0.0
+        } else {
+            self.residual / self.scale
+        }
+    }
+
+    /// The residual over the largest forces there are: beyond all bounds only in a step that blows up.
+    pub fn excess(&self) -> f64 {
+        if self.residual == 0.0 {
+            0.0
+        } else {
+            self.residual / self.largest
+        }
     }
 
     /// The total reaction in N.
@@ -50,7 +67,9 @@ pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
         for axis in 0..3 {
             let force = net[vertex][axis];
             applied += external[vertex][axis].powi(2);
-            if problem.held()[vertex][axis] || rests_on_floor(problem, vertex, axis, positions, force) {
+            if problem.held()[vertex][axis]
+                || rests_on_floor(problem, vertex, axis, positions, force)
+            {
                 reactions[vertex][axis] = -force;
                 supported += force * force;
             } else {
@@ -58,8 +77,15 @@ pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
             }
         }
     }
-    let scale = f64::max(applied, supported).sqrt();
-    Balance { residual: residual.sqrt(), scale, net, reactions }
+    let scale = if applied > 0.0 { applied } else { supported }.sqrt();
+    let largest = f64::max(applied, supported).sqrt();
+    Balance {
+        residual: residual.sqrt(),
+        scale,
+        largest,
+        net,
+        reactions,
+    }
 }
 
 /// The floor carries a vertex that touches it and is pressed down.
@@ -70,7 +96,11 @@ pub fn rests_on_floor(
     positions: &[Vec3],
     force: f64,
 ) -> bool {
-    axis == 2 && force < 0.0 && problem.floor().is_some_and(|floor| positions[vertex][2] <= floor.z)
+    axis == 2
+        && force < 0.0
+        && problem
+            .floor()
+            .is_some_and(|floor| positions[vertex][2] <= floor.z)
 }
 
 /// The volume in m³ enclosed by triangles whose normals point out of the solid, into the cavity.

@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use crate::color::{color_order, interleave};
 use crate::lattice::Stiffness;
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{LatticeMaterial, ProblemError};
@@ -62,16 +63,19 @@ pub struct Tet {
     pub stiffness: f64,
 }
 
-/// Masses and constraints. Constraints are grouped in blocks (a voxel each) in a colour order:
-/// blocks of one colour share no vertex.
+/// Masses and constraints.
+///
+/// Constraints are solved in chunks of several blocks (voxels) of one colour; blocks of one colour
+/// share no vertex. Within a chunk, constraints of different blocks alternate. An edge belongs to
+/// the first block that holds it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     rest: Vec<Vec3>,
     masses: Vec<f64>,
     edges: Vec<Edge>,
     tets: Vec<Tet>,
-    block_edges: Vec<u32>,
-    block_tets: Vec<u32>,
+    chunk_edges: Vec<u32>,
+    chunk_tets: Vec<u32>,
     colors: Vec<u32>,
 }
 
@@ -80,48 +84,64 @@ impl Body {
     pub fn new(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<Self, ProblemError> {
         check(mesh, materials)?;
         let order = color_order(mesh);
-        let volumes: Vec<f64> = mesh.tets.iter().map(|t| volume(&mesh.vertices, *t)).collect();
+        let volumes: Vec<f64> = mesh
+            .tets
+            .iter()
+            .map(|t| volume(&mesh.vertices, *t))
+            .collect();
         if let Some(tet) = volumes.iter().position(|v| v.is_nan() || *v <= 0.0) {
-            return Err(ProblemError::RestVolume { tet, volume: volumes[tet] });
+            return Err(ProblemError::RestVolume {
+                tet,
+                volume: volumes[tet],
+            });
         }
 
         let mut masses = vec![0.0; mesh.vertices.len()];
-        let mut tets = Vec::with_capacity(mesh.tets.len());
-        let mut edges: Vec<Edge> = Vec::new();
+        let mut found: Vec<Edge> = Vec::new();
         let mut edge_index: HashMap<[u32; 2], usize> = HashMap::new();
-        let (mut block_edges, mut block_tets) = (vec![0], vec![0]);
-        for block in &order.blocks {
-            let side = f64::cbrt(block.iter().map(|&t| volumes[t]).sum());
-            for &t in block {
-                let material = materials[usize::from(mesh.tet_part[t])];
-                for vertex in mesh.tets[t] {
-                    masses[vertex as usize] += material.density() * volumes[t] / 4.0;
+        let (mut tets, mut edge_order) = (Vec::with_capacity(mesh.tets.len()), Vec::new());
+        let (mut chunk_edges, mut chunk_tets) = (vec![0], vec![0]);
+        for chunk in &order.chunks {
+            let mut owned: Vec<Vec<usize>> = Vec::with_capacity(chunk.len());
+            for block in chunk {
+                let first_new = found.len();
+                let side = f64::cbrt(block.iter().map(|&t| volumes[t]).sum());
+                for &t in block {
+                    let material = materials[usize::from(mesh.tet_part[t])];
+                    for vertex in mesh.tets[t] {
+                        masses[vertex as usize] += material.density() * volumes[t] / 4.0;
+                    }
+                    for (pair, opposite) in TET_EDGES {
+                        let ends = pair.map(|corner| mesh.tets[t][corner]);
+                        let apexes = opposite.map(|corner| mesh.tets[t][corner]);
+                        let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+                        let index = *edge_index.entry(key).or_insert_with(|| {
+                            found.push(unstressed_edge(&mesh.vertices, key));
+                            found.len() - 1
+                        });
+                        let share = dihedral(&mesh.vertices, key, apexes) / TAU;
+                        let edge = &mut found[index];
+                        edge.stiffness += edge_stiffness(material, edge.length, share, side)
+                            .ok_or(ProblemError::NotVoxels { tet: t })?;
+                    }
                 }
-                tets.push(volume_constraint(mesh.tets[t], volumes[t], material));
-                for (pair, opposite) in TET_EDGES {
-                    let ends = pair.map(|corner| mesh.tets[t][corner]);
-                    let apexes = opposite.map(|corner| mesh.tets[t][corner]);
-                    let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                    let index = *edge_index.entry(key).or_insert_with(|| {
-                        edges.push(unstressed_edge(&mesh.vertices, key));
-                        edges.len() - 1
-                    });
-                    let share = dihedral(&mesh.vertices, key, apexes) / TAU;
-                    let edge = &mut edges[index];
-                    edge.stiffness += edge_stiffness(material, edge.length, share, side)
-                        .ok_or(ProblemError::NotVoxels { tet: t })?;
-                }
+                owned.push((first_new..found.len()).collect());
             }
-            block_edges.push(edges.len() as u32);
-            block_tets.push(tets.len() as u32);
+            tets.extend(interleave(chunk).map(|t| {
+                let material = materials[usize::from(mesh.tet_part[t])];
+                volume_constraint(mesh.tets[t], volumes[t], material)
+            }));
+            edge_order.extend(interleave(&owned));
+            chunk_edges.push(edge_order.len() as u32);
+            chunk_tets.push(tets.len() as u32);
         }
         Ok(Self {
             rest: mesh.vertices.clone(),
             masses,
-            edges,
+            edges: edge_order.into_iter().map(|index| found[index]).collect(),
             tets,
-            block_edges,
-            block_tets,
+            chunk_edges,
+            chunk_tets,
             colors: order.colors,
         })
     }
@@ -141,25 +161,24 @@ impl Body {
         self.masses.iter().sum()
     }
 
-    /// All edge constraints, block after block.
+    /// All edge constraints, chunk after chunk.
     pub fn edges(&self) -> &[Edge] {
         &self.edges
     }
 
-    /// All volume constraints, block after block.
+    /// All volume constraints, chunk after chunk.
     pub fn tets(&self) -> &[Tet] {
         &self.tets
     }
 
-    /// The blocks in the order of solution: the ranges of their edges and tetrahedra. An edge
-    /// belongs to the first block that holds it.
-    pub fn blocks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+    /// The chunks in the order of solution: the ranges of their edges and tetrahedra.
+    pub fn chunks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         let range = |ends: &[u32], i: usize| ends[i] as usize..ends[i + 1] as usize;
-        (0..self.block_tets.len() - 1)
-            .map(move |i| (range(&self.block_edges, i), range(&self.block_tets, i)))
+        (0..self.chunk_tets.len() - 1)
+            .map(move |i| (range(&self.chunk_edges, i), range(&self.chunk_tets, i)))
     }
 
-    /// Where each colour ends in [`Body::blocks`].
+    /// Where each colour ends in [`Body::chunks`]: chunks of one colour share no vertex.
     pub fn colors(&self) -> &[u32] {
         &self.colors
     }
@@ -185,11 +204,22 @@ fn check(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<(), ProblemError>
         ("blocks of tetrahedra", mesh.tet_block.len()),
     ] {
         if got != expected {
-            return Err(ProblemError::Length { what, got, expected });
+            return Err(ProblemError::Length {
+                what,
+                got,
+                expected,
+            });
         }
     }
-    if mesh.vertices.iter().flatten().any(|value| !value.is_finite()) {
-        return Err(ProblemError::NotFinite { what: "the vertices" });
+    if mesh
+        .vertices
+        .iter()
+        .flatten()
+        .any(|value| !value.is_finite())
+    {
+        return Err(ProblemError::NotFinite {
+            what: "the vertices",
+        });
     }
     let in_range = |what, index: usize, count: usize| {
         if index < count {
@@ -200,53 +230,24 @@ fn check(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<(), ProblemError>
     };
     for tet in &mesh.tets {
         for &vertex in tet {
-            in_range("vertex of a tetrahedron", vertex as usize, mesh.vertices.len())?;
+            in_range(
+                "vertex of a tetrahedron",
+                vertex as usize,
+                mesh.vertices.len(),
+            )?;
         }
     }
     for &part in &mesh.tet_part {
-        in_range("material of a tetrahedron", usize::from(part), materials.len())?;
+        in_range(
+            "material of a tetrahedron",
+            usize::from(part),
+            materials.len(),
+        )?;
     }
     for &block in &mesh.tet_block {
         in_range("block of a tetrahedron", block as usize, expected)?;
     }
     Ok(())
-}
-
-struct ColorOrder {
-    /// The tetrahedra of each block, blocks sorted by colour.
-    blocks: Vec<Vec<usize>>,
-    colors: Vec<u32>,
-}
-
-/// Greedy colouring: a block takes the lowest colour that none of its vertices has seen. Voxels in
-/// C order get the eight colours of their parities where the grid is dense.
-fn color_order(mesh: &Mesh) -> ColorOrder {
-    let count = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
-    let mut members = vec![Vec::new(); count];
-    for (tet, &block) in mesh.tet_block.iter().enumerate() {
-        members[block as usize].push(tet);
-    }
-    let mut seen = vec![0u128; mesh.vertices.len()];
-    let mut by_color: Vec<Vec<Vec<usize>>> = Vec::new();
-    for block in members.into_iter().filter(|block| !block.is_empty()) {
-        let vertices = || block.iter().flat_map(|&t| mesh.tets[t]).map(|v| v as usize);
-        let taken = vertices().fold(0, |taken, v| taken | seen[v]);
-        // A vertex with more than 128 blocks around it cannot be coloured apart; such blocks share
-        // the last colour, which only costs parallelism because blocks are solved in order.
-        let color = (taken.trailing_ones() as usize).min(127);
-        vertices().for_each(|v| seen[v] |= 1 << color);
-        if by_color.len() <= color {
-            by_color.resize(color + 1, Vec::new());
-        }
-        by_color[color].push(block);
-    }
-    let mut end = 0;
-    let colors = by_color.iter().map(|blocks| {
-        end += blocks.len() as u32;
-        end
-    });
-    let colors = colors.collect();
-    ColorOrder { blocks: by_color.into_iter().flatten().collect(), colors }
 }
 
 /// The signed volume of a tetrahedron in m³.
@@ -260,12 +261,20 @@ fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial)
         Stiffness::Moduli { bulk, .. } => bulk / volume,
         Stiffness::Compliances { volume, .. } => 1.0 / volume,
     };
-    Tet { vertices, volume, stiffness }
+    Tet {
+        vertices,
+        volume,
+        stiffness,
+    }
 }
 
 fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {
     let length = norm(sub(vertices[a as usize], vertices[b as usize]));
-    Edge { vertices: [a, b], length, stiffness: 0.0 }
+    Edge {
+        vertices: [a, b],
+        length,
+        stiffness: 0.0,
+    }
 }
 
 /// The stiffness that one tetrahedron adds to one of its edges, or `None` for a raw compliance away

@@ -30,7 +30,11 @@ pub struct Motion {
 impl Clamp {
     /// Holds all axes of the vertices where they are.
     pub fn fixed(vertices: Vec<u32>) -> Self {
-        Self { vertices, axes: [true; 3], motion: None }
+        Self {
+            vertices,
+            axes: [true; 3],
+            motion: None,
+        }
     }
 
     /// Where the clamp wants a vertex with the rest position `rest` at `time` (s), the motion being
@@ -41,6 +45,9 @@ impl Clamp {
         };
         let factor = ramp * motion.history.at(time);
         let turned = rotate(sub(rest, motion.center), motion.axis, factor * motion.angle);
-        add(add(motion.center, turned), scale(factor, motion.displacement))
+        add(
+            add(motion.center, turned),
+            scale(factor, motion.displacement),
+        )
     }
 }

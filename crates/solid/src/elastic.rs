@@ -107,9 +107,15 @@ pub fn add_stiffness_product(
     for tet in body.tets() {
         let (_, gradients) = tet.evaluate(positions);
         let vertices = tet.vertices.map(|v| v as usize);
-        let change: f64 = (0..4).map(|i| dot(gradients[i], direction[vertices[i]])).sum();
+        let change: f64 = (0..4)
+            .map(|i| dot(gradients[i], direction[vertices[i]]))
+            .sum();
         for i in 0..4 {
-            axpy(&mut product[vertices[i]], tet.stiffness * change, gradients[i]);
+            axpy(
+                &mut product[vertices[i]],
+                tet.stiffness * change,
+                gradients[i],
+            );
         }
     }
 }

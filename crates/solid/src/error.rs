@@ -53,7 +53,9 @@ pub enum ProblemError {
         entry: usize,
     },
     /// A raw compliance belongs to voxels, and these blocks are not voxels of one size.
-    #[error("raw compliances need a mesh of voxels: tetrahedron {tet} is not one of five in a cube")]
+    #[error(
+        "raw compliances need a mesh of voxels: tetrahedron {tet} is not one of five in a cube"
+    )]
     NotVoxels {
         /// The first tetrahedron that is out of place.
         tet: usize,

@@ -36,6 +36,7 @@
 pub mod balance;
 pub mod body;
 mod clamp;
+mod color;
 pub mod elastic;
 mod error;
 mod history;

@@ -39,6 +39,9 @@ impl Load {
 
     /// A load that does not vary with time.
     pub fn constant(kind: LoadKind) -> Self {
-        Self { kind, history: History::constant() }
+        Self {
+            kind,
+            history: History::constant(),
+        }
     }
 }

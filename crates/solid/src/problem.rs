@@ -39,7 +39,13 @@ impl Problem {
         for load in &loads {
             check_load(load, count)?;
         }
-        Ok(Self { body, clamps, loads, floor, held })
+        Ok(Self {
+            body,
+            clamps,
+            loads,
+            floor,
+            held,
+        })
     }
 
     /// The body.
@@ -77,10 +83,16 @@ impl Problem {
                         axpy(force, factor * mass, *acceleration);
                     }
                 }
-                LoadKind::Pressure { triangles, pressure } => {
+                LoadKind::Pressure {
+                    triangles,
+                    pressure,
+                } => {
                     add_pressure(triangles, factor * pressure, positions, forces);
                 }
-                LoadKind::Forces { vertices, forces: values } => {
+                LoadKind::Forces {
+                    vertices,
+                    forces: values,
+                } => {
                     for (&vertex, value) in vertices.iter().zip(values) {
                         axpy(&mut forces[vertex as usize], factor, *value);
                     }
@@ -127,9 +139,16 @@ fn check_load(load: &Load, count: usize) -> Result<(), ProblemError> {
     };
     match &load.kind {
         LoadKind::Gravity(acceleration) => finite(acceleration),
-        LoadKind::Pressure { triangles, pressure } => {
+        LoadKind::Pressure {
+            triangles,
+            pressure,
+        } => {
             finite(&[*pressure])?;
-            check_indices("vertex of a pressure triangle", triangles.as_flattened(), count)
+            check_indices(
+                "vertex of a pressure triangle",
+                triangles.as_flattened(),
+                count,
+            )
         }
         LoadKind::Forces { vertices, forces } => {
             finite(forces.as_flattened())?;
@@ -147,7 +166,11 @@ fn check_load(load: &Load, count: usize) -> Result<(), ProblemError> {
 
 fn check_indices(what: &'static str, vertices: &[u32], count: usize) -> Result<(), ProblemError> {
     match vertices.iter().find(|&&vertex| vertex as usize >= count) {
-        Some(&index) => Err(ProblemError::Index { what, index: index as usize, count }),
+        Some(&index) => Err(ProblemError::Index {
+            what,
+            index: index as usize,
+            count,
+        }),
         None => Ok(()),
     }
 }

@@ -8,7 +8,7 @@ use voxsoft_solid::{Body, Problem, State, elastic};
 
 use crate::damping;
 use crate::outcome::{
-    Answer, BLOW_UP_RESIDUAL, MAX_BACK_OFFS, Observer, Progress, Status, farthest, find_breakdown,
+    Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status, farthest, find_breakdown,
     travel_limit,
 };
 use crate::stiffness::largest_eigenvalue;
@@ -80,7 +80,9 @@ pub fn simulate(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let limit = travel_limit(problem);
-    let mut substeps = settings.substeps.unwrap_or_else(|| enough_substeps(problem, settings));
+    let mut substeps = settings
+        .substeps
+        .unwrap_or_else(|| enough_substeps(problem, settings));
     let mut run = Stepper::new(problem, start, settings);
     let mut checkpoint = run.state.clone();
     let (mut steps, mut back_offs) = (0u64, 0u32);
@@ -90,10 +92,16 @@ pub fn simulate(
         let now = balance(problem, &run.state.positions, run.state.time);
         let residual = now.relative_residual();
         let broken = find_breakdown(problem, &run.state.positions, limit, run.state.time);
-        let blown_up = broken.is_some() || residual.is_nan() || residual > BLOW_UP_RESIDUAL;
+        let excess = now.excess();
+        let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up
             && settings.end_time.is_none()
-            && window.stuck(run.state.time, run.damping_rate, residual, settings.tolerance);
+            && window.stuck(
+                run.state.time,
+                run.damping_rate,
+                residual,
+                settings.tolerance,
+            );
         if (blown_up || stuck) && back_offs < MAX_BACK_OFFS {
             back_offs += 1;
             substeps *= 2;
@@ -102,18 +110,23 @@ pub fn simulate(
             }
             window = Window::default();
         } else if blown_up {
-            let place = broken
-                .unwrap_or_else(|| farthest(problem, &run.state.positions, run.state.time));
+            let place =
+                broken.unwrap_or_else(|| farthest(problem, &run.state.positions, run.state.time));
             run.restore(&checkpoint);
             break (Status::Diverged, residual, Some(place));
         } else {
             checkpoint.clone_from(&run.state);
-            let slot = settings
-                .record_interval
-                .map_or(-1, |interval| (run.state.time / interval + 1e-9).floor() as i64);
+            let slot = settings.record_interval.map_or(-1, |interval| {
+                (run.state.time / interval + 1e-9).floor() as i64
+            });
             let record = slot > recorded;
             recorded = recorded.max(slot);
-            let progress = Progress { steps, state: &run.state, residual, record };
+            let progress = Progress {
+                steps,
+                state: &run.state,
+                residual,
+                record,
+            };
             if let ControlFlow::Break(()) = observer(&progress) {
                 break (Status::Cancelled, residual, None);
             }
@@ -128,7 +141,9 @@ pub fn simulate(
                 _ => {}
             }
         }
-        let left = settings.end_time.map_or(f64::INFINITY, |end| end - run.state.time);
+        let left = settings
+            .end_time
+            .map_or(f64::INFINITY, |end| end - run.state.time);
         let substep = settings.time_step.min(left) / f64::from(substeps);
         for _ in 0..substeps {
             run.substep(substep);
@@ -148,7 +163,9 @@ pub fn simulate(
 
 fn enough_substeps(problem: &Problem, settings: &Dynamics) -> u32 {
     let highest = largest_eigenvalue(problem, problem.body().masses()).sqrt();
-    (settings.time_step * highest / SUBSTEP_FREQUENCY).ceil().max(1.0) as u32
+    (settings.time_step * highest / SUBSTEP_FREQUENCY)
+        .ceil()
+        .max(1.0) as u32
 }
 
 /// Watches whether the residual still falls.
@@ -168,7 +185,11 @@ impl Window {
         let stuck = residual > tolerance
             && matches!((self.lowest_before, self.lowest),
                 (Some(before), Some(now)) if now > 0.8 * before);
-        *self = Self { start: time, lowest_before: self.lowest, lowest: None };
+        *self = Self {
+            start: time,
+            lowest_before: self.lowest,
+            lowest: None,
+        };
         stuck
     }
 }
@@ -184,7 +205,9 @@ struct Stepper<'a> {
     forces: Vec<Vec3>,
     forces_before: Vec<Vec3>,
     edge_multipliers: Vec<f64>,
+    edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
+    tet_compliances: Vec<f64>,
     /// The rate in 1/s in force.
     damping_rate: f64,
     /// The substep before, in s; zero at the start.
@@ -195,17 +218,25 @@ impl<'a> Stepper<'a> {
     fn new(problem: &'a Problem, start: State, settings: &'a Dynamics) -> Self {
         let body = problem.body();
         let count = body.rest().len();
-        let inverse = |(mass, held): (&f64, &[bool; 3])| held.map(|h| if h { 0.0 } else { 1.0 / mass });
+        let inverse =
+            |(mass, held): (&f64, &[bool; 3])| held.map(|h| if h { 0.0 } else { 1.0 / mass });
         Self {
             problem,
             settings,
             state: start,
-            inverse_masses: body.masses().iter().zip(problem.held()).map(inverse).collect(),
+            inverse_masses: body
+                .masses()
+                .iter()
+                .zip(problem.held())
+                .map(inverse)
+                .collect(),
             start: vec![[0.0; 3]; count],
             forces: vec![[0.0; 3]; count],
             forces_before: vec![[0.0; 3]; count],
             edge_multipliers: vec![0.0; body.edges().len()],
+            edge_compliances: body.edges().iter().map(|e| 1.0 / e.stiffness).collect(),
             tet_multipliers: vec![0.0; body.tets().len()],
+            tet_compliances: body.tets().iter().map(|t| 1.0 / t.stiffness).collect(),
             damping_rate: match settings.damping {
                 Damping::Rate(rate) => rate,
                 Damping::Critical => 0.0,
@@ -231,7 +262,8 @@ impl<'a> Stepper<'a> {
         for _ in 0..self.settings.iterations {
             self.sweep(h);
         }
-        self.problem.place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
+        self.problem
+            .place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
         self.lift_to_floor();
         for vertex in 0..self.start.len() {
             let moved = sub(self.state.positions[vertex], self.start[vertex]);
@@ -277,7 +309,8 @@ impl<'a> Stepper<'a> {
                 self.state.positions[vertex][axis] += h * velocity[axis];
             }
         }
-        self.problem.place_clamps(time, 1.0, &mut self.state.positions);
+        self.problem
+            .place_clamps(time, 1.0, &mut self.state.positions);
     }
 
     fn update_damping(&mut self) {
@@ -301,24 +334,40 @@ impl<'a> Stepper<'a> {
         let body: &Body = self.problem.body();
         let positions = &mut self.state.positions;
         let lag = self.settings.retardation / h;
-        for (edges, tets) in body.blocks() {
+        for (edges, tets) in body.chunks() {
             for i in edges {
                 let edge = &body.edges()[i];
                 let [a, b] = edge.vertices.map(|v| v as usize);
                 let (constraint, gradient) = edge.evaluate(positions);
                 let mut rate = 0.0;
                 if lag > 0.0 {
-                    let moved = sub(sub(positions[a], self.start[a]), sub(positions[b], self.start[b]));
+                    let moved = sub(
+                        sub(positions[a], self.start[a]),
+                        sub(positions[b], self.start[b]),
+                    );
                     rate = lag * dot(gradient, moved);
                 }
-                let compliance = 1.0 / edge.stiffness;
-                let inertia = weight(gradient, add(self.inverse_masses[a], self.inverse_masses[b]));
+                let compliance = self.edge_compliances[i];
+                let inertia = weight(
+                    gradient,
+                    add(self.inverse_masses[a], self.inverse_masses[b]),
+                );
                 let multiplier = &mut self.edge_multipliers[i];
                 let change = -(constraint + rate + compliance * *multiplier)
                     / ((1.0 + lag) * h * h * inertia + compliance);
                 *multiplier += change;
-                push(&mut positions[a], h * h * change, self.inverse_masses[a], gradient);
-                push(&mut positions[b], -h * h * change, self.inverse_masses[b], gradient);
+                push(
+                    &mut positions[a],
+                    h * h * change,
+                    self.inverse_masses[a],
+                    gradient,
+                );
+                push(
+                    &mut positions[b],
+                    -h * h * change,
+                    self.inverse_masses[b],
+                    gradient,
+                );
             }
             for i in tets {
                 let tet = &body.tets()[i];
@@ -331,14 +380,19 @@ impl<'a> Stepper<'a> {
                         rate += lag * dot(gradient, sub(positions[vertex], self.start[vertex]));
                     }
                 }
-                let compliance = 1.0 / tet.stiffness;
+                let compliance = self.tet_compliances[i];
                 let multiplier = &mut self.tet_multipliers[i];
                 let change = -(constraint + rate + compliance * *multiplier)
                     / ((1.0 + lag) * h * h * inertia + compliance);
                 *multiplier += change;
                 for (vertex, gradient) in vertices.into_iter().zip(gradients) {
                     let inverse_mass = self.inverse_masses[vertex];
-                    push(&mut positions[vertex], h * h * change, inverse_mass, gradient);
+                    push(
+                        &mut positions[vertex],
+                        h * h * change,
+                        inverse_mass,
+                        gradient,
+                    );
                 }
             }
         }

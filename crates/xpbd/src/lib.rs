@@ -13,7 +13,8 @@
 //! The textbook step starts every substep from `λ = 0`, predicts free flight, and lets one sweep
 //! of projections repair it. With one sweep the repair is incomplete, and the state at rest depends
 //! on the step and on the order of constraints: an 18×2×2 beam with a bulk modulus of 100 kPa sags
-//! 0.4 mm too far at substeps of 0.1 ms and 13 mm at 0.8 ms, and drifts sideways. Here a substep
+//! 0.4 mm too far at substeps of 0.1 ms and 13 mm at 0.8 ms, and drifts sideways (the example
+//! `textbook_step` shows it). Here a substep
 //! starts from `λ = −C/α` at its first position. At rest the prediction is then the state itself,
 //! all corrections vanish, and the state at rest is that of the energies, for any step, any number
 //! of sweeps and any order.

@@ -69,7 +69,7 @@ pub(crate) const MAX_BACK_OFFS: u32 = 10;
 
 /// A residual this many times the loads and reactions is no motion that they could cause. Unstable
 /// steps pass 1e3 within a few dozen steps; the sound transients in the tests stay under 10.
-pub(crate) const BLOW_UP_RESIDUAL: f64 = 300.0;
+pub(crate) const BLOW_UP_EXCESS: f64 = 300.0;
 
 /// How far a vertex may go from its rest position, in body sizes beyond the clamps' own motion.
 const BLOW_UP_SIZES: f64 = 10.0;
@@ -99,7 +99,11 @@ pub(crate) fn find_breakdown(
         distance.is_nan() || distance > limit
     };
     let vertex = (0..positions.len()).find(beyond)?;
-    Some(Breakdown { vertex, rest: rest[vertex], when })
+    Some(Breakdown {
+        vertex,
+        rest: rest[vertex],
+        when,
+    })
 }
 
 /// The vertex that has gone farthest, for a run that blew up without leaving the limits.
@@ -109,5 +113,9 @@ pub(crate) fn farthest(problem: &Problem, positions: &[Vec3], when: f64) -> Brea
     let vertex = (0..positions.len())
         .max_by(|&a, &b| distance(a).total_cmp(&distance(b)))
         .unwrap_or(0);
-    Breakdown { vertex, rest: rest[vertex], when }
+    Breakdown {
+        vertex,
+        rest: rest[vertex],
+        when,
+    }
 }

@@ -8,7 +8,7 @@ use voxsoft_solid::{Problem, State, elastic};
 
 use crate::damping;
 use crate::outcome::{
-    Answer, BLOW_UP_RESIDUAL, Breakdown, MAX_BACK_OFFS, Observer, Progress, Status, farthest,
+    Answer, BLOW_UP_EXCESS, Breakdown, MAX_BACK_OFFS, Observer, Progress, Status, farthest,
     find_breakdown, travel_limit,
 };
 use crate::stiffness::largest_eigenvalue;
@@ -25,7 +25,10 @@ pub struct Relaxation {
 
 impl Default for Relaxation {
     fn default() -> Self {
-        Self { tolerance: 1e-4, max_steps: 400_000 }
+        Self {
+            tolerance: 1e-4,
+            max_steps: 400_000,
+        }
     }
 }
 
@@ -58,7 +61,10 @@ pub fn relax(
     let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
     let limit = travel_limit(problem);
 
-    let mut state = State { time: f64::INFINITY, ..start };
+    let mut state = State {
+        time: f64::INFINITY,
+        ..start
+    };
     state.velocities.fill([0.0; 3]);
     let mut checkpoint = state.clone();
     let mut masses = vec![0.0; count];
@@ -76,18 +82,23 @@ pub fn relax(
     };
 
     loop {
-        let ramp = if moves { (step as f64 / RAMP as f64).min(1.0) } else { 1.0 };
+        let ramp = if moves {
+            (step as f64 / RAMP as f64).min(1.0)
+        } else {
+            1.0
+        };
         if step.is_multiple_of(LOOK) {
             let look = balance(problem, &state.positions, state.time);
             let broken: Option<Breakdown> =
                 find_breakdown(problem, &state.positions, limit, taken as f64);
             let residual = look.relative_residual();
-            if broken.is_some() || residual.is_nan() || residual > BLOW_UP_RESIDUAL {
+            let excess = look.excess();
+            if broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS {
                 let broken =
                     broken.unwrap_or_else(|| farthest(problem, &state.positions, taken as f64));
                 // A body that grows past all bounds while forces stay moderate is not an unstable
                 // step: the material cannot carry the load.
-                let runaway = residual < BLOW_UP_RESIDUAL;
+                let runaway = excess < BLOW_UP_EXCESS;
                 if runaway || back_offs == MAX_BACK_OFFS {
                     let status = Status::Diverged;
                     return finish(checkpoint, status, residual, taken, back_offs, Some(broken));
@@ -114,9 +125,21 @@ pub fn relax(
                 checkpoint.clone_from(&state);
                 checkpoint_step = step;
             }
-            let progress = Progress { steps: taken, state: &state, residual, record: false };
+            let progress = Progress {
+                steps: taken,
+                state: &state,
+                residual,
+                record: false,
+            };
             if let ControlFlow::Break(()) = observer(&progress) {
-                return finish(checkpoint, Status::Cancelled, residual, taken, back_offs, None);
+                return finish(
+                    checkpoint,
+                    Status::Cancelled,
+                    residual,
+                    taken,
+                    back_offs,
+                    None,
+                );
             }
         }
 

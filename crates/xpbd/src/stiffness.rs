@@ -15,7 +15,9 @@ pub(crate) fn largest_eigenvalue(problem: &Problem, masses: &[f64]) -> f64 {
     let mut eigenvalue = 0.0;
     for _ in 0..POWER_ITERATIONS {
         hold(problem, &mut direction);
-        let square: f64 = (0..count).map(|i| masses[i] * dot(direction[i], direction[i])).sum();
+        let square: f64 = (0..count)
+            .map(|i| masses[i] * dot(direction[i], direction[i]))
+            .sum();
         if square == 0.0 {
             return 0.0;
         }
@@ -44,5 +46,9 @@ fn hold(problem: &Problem, direction: &mut [Vec3]) {
 /// A start vector with a part in every mode: fractional parts of multiples of irrational numbers.
 fn scrambled(vertex: usize) -> Vec3 {
     let fraction = |irrational: f64| (vertex as f64 * irrational).fract() - 0.5;
-    [fraction(0.618_033_988_75), fraction(0.414_213_562_37), fraction(0.732_050_807_57)]
+    [
+        fraction(0.618_033_988_75),
+        fraction(0.414_213_562_37),
+        fraction(0.732_050_807_57),
+    ]
 }

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag
 
 from voxsoft.records import Record
-from voxsoft.units import NonNegativeRate, PositiveTime
+from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
 
 def _named_or_rate(value: object) -> str:
@@ -31,6 +31,8 @@ class Solver(Record):
     damping
         Decay rate of velocities in 1/s, ``"critical"`` (the lowest mode does not swing), or
         ``"auto"`` (the fastest way to rest).
+    retardation
+        Retardation time of Kelvin–Voigt damping in seconds: stress follows strain and its rate.
     tolerance
         Largest residual force at rest, relative to the load.
     max_time
@@ -56,6 +58,7 @@ class Solver(Record):
         ]
         | None
     ) = None
+    retardation: NonNegativeTime | None = None
     tolerance: float | None = Field(None, gt=0, lt=1)
     max_time: PositiveTime | None = None
     end_time: PositiveTime | None = None

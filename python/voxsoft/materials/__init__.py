@@ -14,10 +14,11 @@ True
 """
 
 from voxsoft.materials.card import Card, card_names, load_card, material_of
-from voxsoft.materials.lattice import CompliantLattice, Lattice
+from voxsoft.materials.lattice import SILICONE_DENSITY, CompliantLattice, Lattice
 from voxsoft.materials.model import AnyMaterial, Material
 
 __all__ = [
+    "SILICONE_DENSITY",
     "AnyMaterial",
     "Card",
     "CompliantLattice",

@@ -49,7 +49,7 @@ class Card(Record):
     material: AnyMaterial
     source: str = ""
     caution: str = ""
-    calibration: dict[str, Any] = {}
+    calibration: dict[str, Any] = Field(default_factory=dict)
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Card:

@@ -1,0 +1,85 @@
+"""What every benchmark needs: the machine, medians, peak memory, text and JSON."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import resource
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+
+def machine() -> dict[str, Any]:
+    """The machine and the versions a figure belongs to."""
+    model = platform.processor() or platform.machine()
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace").splitlines()
+        model = next(line.split(":")[1].strip() for line in lines if "model name" in line)
+    except (OSError, StopIteration):
+        pass
+    return {
+        "processor": model,
+        "cores": os.cpu_count(),
+        "system": platform.platform(terse=True),
+        "python": platform.python_version(),
+        "voxsoft": version("voxsoft"),
+    }
+
+
+def median_seconds(task: Callable[[], object], repeats: int = 5) -> float:
+    """Median wall-clock time of a task; run it once before to warm up."""
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        task()
+        times.append(time.perf_counter() - start)
+    return statistics.median(times)
+
+
+def peak_bytes() -> int:
+    """The largest memory this process has held so far."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else peak * 1024
+
+
+class Report:
+    """Rows of a benchmark, printed as text or, with ``--json``, as one object."""
+
+    def __init__(self, description: str) -> None:
+        parser = argparse.ArgumentParser(description=description)
+        parser.add_argument("--json", action="store_true", help="print one JSON object")
+        self._json = parser.parse_args().json
+        self._title = description
+        self.rows: list[dict[str, Any]] = []
+
+    def add(self, name: str, value: float, unit: str, ratio: float | None = None) -> None:
+        """Add a figure; `ratio` compares it with what its name says."""
+        self.rows.append({"name": name, "value": value, "unit": unit, "ratio": ratio})
+        if not self._json:
+            print(f"{name}: {value:.4g} {unit}", file=sys.stderr, flush=True)
+
+    def show(self) -> None:
+        """Print everything."""
+        if self._json:
+            print(json.dumps({"machine": machine(), "rows": self.rows}, indent=2))
+            return
+        table = Table(title=self._title, title_justify="left")
+        table.add_column("figure")
+        for column in ("value", "unit", "ratio"):
+            table.add_column(column, justify="right")
+        for row in self.rows:
+            ratio = "" if row["ratio"] is None else f"{row['ratio']:.3g}"
+            table.add_row(row["name"], f"{row['value']:.4g}", row["unit"], ratio)
+        console = Console()
+        console.print(table)
+        console.print(", ".join(f"{key} {value}" for key, value in machine().items()))

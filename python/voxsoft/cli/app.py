@@ -1,0 +1,49 @@
+"""The commands joined into one program."""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from voxsoft.cli.calibrate import calibrate
+from voxsoft.cli.check import check
+from voxsoft.cli.export import export
+from voxsoft.cli.mesh import mesh
+from voxsoft.cli.new import new
+from voxsoft.cli.run import run
+from voxsoft.cli.study import optimize, sweep
+
+app = typer.Typer(
+    name="voxsoft",
+    help="Describe, mesh, simulate, calibrate and optimise soft robots.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    pretty_exceptions_show_locals=False,
+)
+for command in (new, check, mesh, run, calibrate, sweep, optimize, export):
+    app.command()(command)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"voxsoft {version('voxsoft')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _program(
+    show_version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Describe, mesh, simulate, calibrate and optimise soft robots."""
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

@@ -1,0 +1,86 @@
+"""Progress: a bar with the time left on a terminal, a plain line now and then elsewhere."""
+
+from __future__ import annotations
+
+import time
+from types import TracebackType
+from typing import Self
+
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+from voxsoft.cli.output import console, say
+
+#: Seconds between two plain lines where there is no terminal.
+PLAIN_PERIOD = 5.0
+
+
+class ProgressBar:
+    """A bar over a known number of steps.
+
+    Parameters
+    ----------
+    title
+        What is being done.
+    total
+        How many steps there are.
+
+    Examples
+    --------
+    >>> with ProgressBar("trials", total=2) as bar:
+    ...     bar.advance_to(1)
+    ...     bar.advance_to(2, "best 3 mm")
+    """
+
+    def __init__(self, title: str, total: int) -> None:
+        self._title, self._total, self._done = title, total, 0
+        self._started = self._spoken = time.monotonic()
+        self._bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            TextColumn("{task.fields[note]}"),
+            console=console(),
+        )
+        self._task = self._bar.add_task(title, total=total, note="")
+        self._fancy = console().is_terminal
+
+    def __enter__(self) -> Self:
+        if self._fancy:
+            self._bar.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._fancy:
+            self._bar.stop()
+        elif self._done:
+            self._speak("")
+
+    def advance_to(self, done: int, note: str = "") -> None:
+        """Show that `done` steps are done, with a short note such as the best value so far."""
+        self._done = done
+        if self._fancy:
+            self._bar.update(self._task, completed=done, note=note)
+        elif time.monotonic() - self._spoken > PLAIN_PERIOD:
+            self._speak(note)
+
+    def _speak(self, note: str) -> None:
+        self._spoken = time.monotonic()
+        elapsed = self._spoken - self._started
+        left = elapsed / max(self._done, 1) * (self._total - self._done)
+        tail = f", {note}" if note else ""
+        say(f"{self._title}: {self._done}/{self._total}, {elapsed:.0f} s, {left:.0f} s left{tail}")

@@ -1,0 +1,100 @@
+"""Run folders: what a simulation leaves on disk."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from voxsoft.errors import FileError
+from voxsoft.files.designs import write_whole
+from voxsoft.files.meshes import write_mesh
+from voxsoft.simulation import Result, named_regions
+
+
+def write_run(result: Result, folder: str | os.PathLike[str]) -> Path:
+    """Write a run folder: ``design.toml`` (resolved), ``summary.json`` and ``result.vtu``.
+
+    Parameters
+    ----------
+    result
+        What came out.
+    folder
+        Where; made if it does not exist, files in it are replaced.
+
+    Raises
+    ------
+    FileError
+        The folder cannot be written.
+    """
+    folder = make_folder(folder)
+    write_whole(folder / "design.toml", result.design.to_toml(resolved=True))
+    summary = result.summary() | {
+        "design": result.design.name,
+        "hash": result.design.hash,
+        "voxel_size": result.design.voxel_size,
+        **provenance(),
+    }
+    write_json(folder / "summary.json", summary)
+    write_mesh(
+        folder / "result.vtu",
+        result.mesh,
+        point_data={
+            "displacement": result.displacements,
+            "velocity": result.velocities,
+            "reaction": result.reactions,
+        },
+        regions=named_regions(result.design, result.mesh),
+    )
+    if len(result.history.times) > 1:
+        write_whole(folder / "history.csv", _history_csv(result))
+    return folder
+
+
+def provenance() -> dict[str, Any]:
+    """Versions and the time: what every record says of its making."""
+    packages = ("voxsoft", "numpy", "optuna")
+    return {
+        "versions": {name: version(name) for name in packages},
+        "written": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
+
+
+def make_folder(folder: str | os.PathLike[str]) -> Path:
+    """Make a folder and its parents; :class:`FileError` where that fails."""
+    path = Path(folder)
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(str(path), f"cannot be made a folder: {error.strerror}") from error
+    return path
+
+
+def write_json(path: Path, value: Mapping[str, Any]) -> None:
+    """Write an object as JSON; numbers that are not finite become null."""
+
+    def plain(item: object) -> object:
+        if isinstance(item, float):
+            return item if np.isfinite(item) else None
+        if isinstance(item, Mapping):
+            return {str(key): plain(value) for key, value in item.items()}
+        if isinstance(item, (list, tuple)):
+            return [plain(value) for value in item]
+        return item
+
+    write_whole(path, json.dumps(plain(value), indent=2, ensure_ascii=False) + "\n")
+
+
+def _history_csv(result: Result) -> str:
+    names = list(result.history.probes)
+    header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
+    columns = [result.history.times[:, None], *(result.history.probes[name] for name in names)]
+    rows = np.hstack(columns)
+    lines = [",".join(header), *(",".join(f"{value:.9g}" for value in row) for row in rows)]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,144 @@
+"""Metrics: the numbers a user wants from positions at rest or over time.
+
+Plain functions of arrays. :data:`METRICS` lists the names that objectives and constraints of a
+design may use, with the kind of quantity each gives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: Metric name → kind of quantity (a key of :data:`voxsoft.units.KINDS`).
+METRICS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "displacement": "length",
+        "rotation": "angle",
+        "mass": "mass",
+        "volume": "volume",
+        "cavity_volume": "volume",
+        "cavity_volume_change": "volume",
+        "elastic_energy": "energy",
+        "reaction": "force",
+        "max_displacement": "length",
+        "max_stretch": "number",
+    }
+)
+
+#: Metrics that are measured at a probe.
+PROBE_METRICS: Final = frozenset({"displacement", "rotation"})
+
+#: Metrics with components along the axes; without an axis they give the magnitude.
+AXIS_METRICS: Final = frozenset({"displacement", "reaction"})
+
+
+def mean_displacement(
+    rest: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    vertices: NDArray[np.uint32],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Weighted mean displacement of some vertices.
+
+    Parameters
+    ----------
+    rest, positions
+        Vertices at rest and now, (n, 3), m.
+    vertices, weights
+        Indices (k,) and weights (k,) that sum to 1.
+
+    Returns
+    -------
+    ndarray of shape (3,)
+        In m.
+
+    Examples
+    --------
+    >>> rest = np.zeros((2, 3))
+    >>> mean_displacement(rest, rest + [0, 0, 1], np.array([0, 1]), np.array([0.5, 0.5]))
+    array([0., 0., 1.])
+    """
+    moved: NDArray[np.float64] = weights @ (positions[vertices] - rest[vertices])
+    return moved
+
+
+def mean_rotation(
+    rest: NDArray[np.float64], positions: NDArray[np.float64], vertices: NDArray[np.uint32]
+) -> float:
+    """Angle in rad by which some vertices have turned as a whole.
+
+    The best rotation in the sense of least squares (Kabsch 1976, doi 10.1107/S0567739476001873);
+    for a tip section of a bending actuator this is its bending angle.
+
+    Parameters
+    ----------
+    rest, positions
+        Vertices at rest and now, (n, 3), m.
+    vertices
+        At least three vertices that are not on one line.
+
+    Returns
+    -------
+    float
+        Between 0 and π; NaN where the vertices do not define a rotation.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> turned = square @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    >>> round(np.degrees(mean_rotation(square, turned, np.arange(4, dtype=np.uint32))), 6)
+    90.0
+    """
+    before = rest[vertices] - rest[vertices].mean(axis=0)
+    after = positions[vertices] - positions[vertices].mean(axis=0)
+    left, values, right = np.linalg.svd(before.T @ after)
+    if values[1] <= 1e-12 * values[0] or len(vertices) < 3:
+        return float("nan")
+    handed = np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    cosine = (np.trace(left @ handed @ right) - 1.0) / 2.0
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]) -> float:
+    """Volume in m³ of a cavity whose triangles point out of the solid, into the cavity.
+
+    Parameters
+    ----------
+    triangles
+        A closed surface, (t, 3).
+    positions
+        Vertices now, (n, 3), m.
+
+    Examples
+    --------
+    >>> corners = np.eye(4, 3, k=-1)  # the origin and the three unit vectors
+    >>> inward = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], dtype=np.int32)
+    >>> round(enclosed_volume(inward, corners), 6)
+    0.166667
+    """
+    a, b, c = positions[triangles].transpose(1, 0, 2)
+    return float(-np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+def max_stretch(
+    edges: NDArray[np.int32], rest: NDArray[np.float64], positions: NDArray[np.float64]
+) -> float:
+    """Largest ratio of an edge's length now to its length at rest.
+
+    Examples
+    --------
+    >>> rest = np.array([[0.0, 0, 0], [1, 0, 0]])
+    >>> max_stretch(np.array([[0, 1]], dtype=np.int32), rest, rest * 1.5)
+    1.5
+    """
+
+    def lengths(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        squares: NDArray[np.float64] = np.square(points[edges[:, 0]] - points[edges[:, 1]])
+        found: NDArray[np.float64] = np.sqrt(squares.sum(axis=1))
+        return found
+
+    return float(np.max(lengths(positions) / lengths(rest)))

@@ -1,0 +1,23 @@
+"""From a design to its state at rest or its motion over time."""
+
+from voxsoft.simulation.check import CheckReport, Finding, check
+from voxsoft.simulation.places import Place
+from voxsoft.simulation.result import History, Result, Status
+from voxsoft.simulation.run import ProgressCallback, relax, simulate
+from voxsoft.simulation.setup import Setup, named_regions, pieces
+
+__all__ = [
+    "CheckReport",
+    "Finding",
+    "History",
+    "Place",
+    "ProgressCallback",
+    "Result",
+    "Setup",
+    "Status",
+    "check",
+    "named_regions",
+    "pieces",
+    "relax",
+    "simulate",
+]

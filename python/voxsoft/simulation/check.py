@@ -1,0 +1,219 @@
+"""The doctor: what would go wrong with a design or a body of voxels, found before it is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+
+from voxsoft.design import Design
+from voxsoft.design.discretize import voxels_of
+from voxsoft.errors import VoxSoftError
+from voxsoft.materials import SILICONE_DENSITY
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.setup import Setup
+from voxsoft.voxels import Cavity, Leak, Voxels
+
+Severity = Literal["error", "warning"]
+
+#: Walls bend as they should from two voxels of thickness on.
+GOOD_WALL = 2
+
+# Measured on one core of a 2.4 GHz server: time for one constraint and step of relaxation, and
+# bytes of the core's tables for one constraint.
+_SECONDS_PER_CONSTRAINT_STEP = 2e-8
+_BYTES_PER_CONSTRAINT = 120
+# Voxels and their hinges are listed by name up to this number.
+_LISTED = 5
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something wrong (``error``) or doubtful (``warning``), where it is, and what to try."""
+
+    severity: Severity
+    where: str
+    what: str
+    hint: str
+
+
+@dataclass(frozen=True)
+class CheckReport:
+    """What :func:`check` found.
+
+    Attributes
+    ----------
+    findings
+        Errors and warnings, errors first.
+    voxels, vertices, tets
+        Sizes of the mesh.
+    cavities, leaks
+        Enclosed chambers, and chambers that are open somewhere.
+    mass
+        In kg.
+    thinnest_wall
+        In voxels; None for an empty body.
+    seconds, memory
+        What one run to rest is likely to take: an order of magnitude.
+    """
+
+    findings: tuple[Finding, ...]
+    voxels: int = 0
+    vertices: int = 0
+    tets: int = 0
+    cavities: tuple[Cavity, ...] = field(default=(), repr=False)
+    leaks: tuple[Leak, ...] = field(default=(), repr=False)
+    mass: float = 0.0
+    thinnest_wall: int | None = None
+    seconds: float = 0.0
+    memory: float = 0.0
+
+    @property
+    def valid(self) -> bool:
+        """Whether there is no error; warnings are allowed."""
+        return not any(finding.severity == "error" for finding in self.findings)
+
+    def summary(self) -> dict[str, Any]:
+        """Everything as plain data in SI units (the ``--json`` of ``check``)."""
+        return {
+            "valid": self.valid,
+            "problems": [
+                {"severity": f.severity, "where": f.where, "what": f.what, "try": f.hint}
+                for f in self.findings
+            ],
+            "voxels": self.voxels,
+            "vertices": self.vertices,
+            "tets": self.tets,
+            "cavities": [
+                {"volume": c.volume, "area": c.area, "bounds": c.bounds.tolist(), "leaks": []}
+                for c in self.cavities
+            ]
+            + [
+                {"volume": leak.volume, "leaks": [list(cell) for cell in leak.openings]}
+                for leak in self.leaks
+            ],
+            "mass": self.mass,
+            "thinnest_wall": self.thinnest_wall,
+            "seconds": self.seconds,
+            "memory": self.memory,
+        }
+
+
+def check(body: Design | Voxels) -> CheckReport:
+    """Examine a design, or a body of voxels without loads.
+
+    Parameters
+    ----------
+    body
+        A design is checked for everything that would stop or spoil its simulation; voxels for
+        pieces, hinges, leaks and walls.
+
+    Returns
+    -------
+    CheckReport
+        Never raises for a bad design: what is wrong is in the findings.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> report = check(families.beam())
+    >>> report.valid, report.voxels, report.thinnest_wall
+    (True, 80, 2)
+    """
+    try:
+        voxels = voxels_of(body) if isinstance(body, Design) else body
+        mesh = voxels.mesh()
+    except VoxSoftError as error:
+        return CheckReport(tuple(_errors(error)))
+    findings = [*_findings_of_voxels(voxels), *_findings_of_mesh(mesh)]
+    mass = voxels.volume * SILICONE_DENSITY
+    if isinstance(body, Design):
+        setup = Setup(body, mesh)
+        try:
+            setup.check()
+            mass = setup.problem.mass
+        except VoxSoftError as error:
+            findings += _errors(error)
+    constraints = len(mesh.edges) + len(mesh.tets)
+    thinnest = voxels.wall_thickness.thinnest
+    return CheckReport(
+        findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
+        voxels=voxels.count,
+        vertices=len(mesh.vertices),
+        tets=len(mesh.tets),
+        cavities=voxels.cavities,
+        leaks=voxels.leaks,
+        mass=mass,
+        thinnest_wall=None if thinnest is None else thinnest.thickness,
+        seconds=constraints * _steps_to_rest(voxels) * _SECONDS_PER_CONSTRAINT_STEP,
+        memory=float(constraints * _BYTES_PER_CONSTRAINT),
+    )
+
+
+def _errors(error: VoxSoftError) -> Iterator[Finding]:
+    for problem in error.problems:
+        yield Finding("error", problem.where, problem.what, problem.hint)
+
+
+def _findings_of_voxels(voxels: Voxels) -> Iterator[Finding]:
+    hint = "thicken the body there by a voxel, or make the voxels smaller"
+    for hinge in voxels.hinges[:_LISTED]:
+        yield Finding(
+            "warning",
+            f"voxels {hinge.cells[0]} and {hinge.cells[1]}",
+            f"touch at {'an edge' if hinge.contact == 'edge' else 'a corner'} only: a hinge",
+            hint,
+        )
+    if len(voxels.hinges) > _LISTED:
+        what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
+        yield Finding("warning", "voxels", what, hint)
+    pieces = voxels.components("face")
+    if len(pieces) > 1:
+        sizes = ", ".join(f"{piece.count:,}" for piece in pieces[:_LISTED])
+        yield Finding(
+            "warning",
+            "voxels",
+            f"the body is in {len(pieces)} pieces of {sizes} voxels"
+            + (" and more" if len(pieces) > _LISTED else ""),
+            "join them by whole faces of voxels, or clamp each of them",
+        )
+    for leak in voxels.leaks[:_LISTED]:
+        cells = ", ".join(str(cell) for cell in leak.openings[:3])
+        yield Finding(
+            "warning",
+            f"voxel {leak.openings[0]}",
+            f"a chamber of {leak.volume * 1e6:.3g} mL is open through {cells}",
+            "close the opening by a voxel, unless it is meant to be open",
+        )
+    thinnest = voxels.wall_thickness.thinnest
+    if thinnest is not None and thinnest.thickness < GOOD_WALL:
+        yield Finding(
+            "warning",
+            f"voxel {thinnest.cell}",
+            f"the wall is {thinnest.thickness} voxel thick there and bends too stiffly",
+            f"make the voxels smaller: {GOOD_WALL} or more across a wall",
+        )
+
+
+def _findings_of_mesh(mesh: Mesh) -> Iterator[Finding]:
+    quality = mesh.quality
+    if not quality.conforming or quality.smallest_tet <= 0.0:
+        yield Finding(
+            "error",
+            "mesh",
+            "is not conforming, or holds a tetrahedron without volume",
+            "report this with the design: no shape should do that",
+        )
+
+
+def _steps_to_rest(voxels: Voxels) -> float:
+    """Steps of relaxation: proportional to the highest over the lowest frequency.
+
+    A slender body of length ``L`` and thickness ``t`` in voxels bends with a frequency of order
+    ``t/L²`` of that of a voxel; 10 was measured on the paper's beam (L = 18, t = 2).
+    """
+    extents = np.sort(np.diff(voxels.bounds, axis=0)[0]) / voxels.voxel_size
+    thickness, length = max(float(extents[0]), 1.0), float(extents[-1])
+    return float(max(200.0, 10.0 * length**2 / thickness))

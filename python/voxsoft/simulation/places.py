@@ -1,0 +1,146 @@
+"""From named places to vertices: regions for clamps and loads, probes to measure at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Probe, Region
+from voxsoft.errors import DesignError
+from voxsoft.mesh import Mesh
+from voxsoft.shapes import Shape
+from voxsoft.units import format_quantity
+
+# A tie at exactly half a voxel goes to neither side.
+_HALF = 0.5 * (1 - 1e-6)
+
+
+@dataclass(frozen=True)
+class Place:
+    """Vertices with weights that sum to one: what a probe averages over."""
+
+    vertices: NDArray[np.uint32]
+    weights: NDArray[np.float64]
+
+
+def vertices_in(
+    region: Region, mesh: Mesh, shapes: Mapping[str, Shape], where: str
+) -> NDArray[np.uint32]:
+    """Indices of the vertices in a region or within half a voxel of it.
+
+    Parameters
+    ----------
+    region
+        The place.
+    mesh
+        The mesh whose vertices are tested.
+    shapes
+        Named shapes that a region may refer to.
+    where
+        The place in the design, for messages.
+
+    Raises
+    ------
+    DesignError
+        No vertex is caught.
+    """
+    reach = _HALF * voxel_size(mesh)
+    caught = np.flatnonzero(_inside(region, mesh.vertices, shapes, reach)).astype(np.uint32)
+    if caught.size == 0:
+        raise DesignError(where, f"catches no vertex; the body spans {_span(mesh)}", _TRY)
+    return caught
+
+
+_TRY = "move or widen the region so that it touches the body"
+
+
+def place_of(probe: Probe, mesh: Mesh, shapes: Mapping[str, Shape], where: str) -> Place:
+    """Vertices and weights that a probe averages over.
+
+    A point takes the corners of the tetrahedron around it, with barycentric weights. A range of
+    zero width takes the two layers of vertices next to it, weighted for linear interpolation
+    between them. Everything else weighs all vertices in the region alike.
+
+    Raises
+    ------
+    DesignError
+        A point outside the body, or a region that catches no vertex.
+    """
+    if probe.point is not None:
+        return _point(np.asarray(probe.point), mesh, where)
+    size = voxel_size(mesh)
+    weights = np.ones(len(mesh.vertices))
+    reach = np.full(3, _HALF * size)
+    for axis, name in enumerate("xyz"):
+        bounds = getattr(probe, name)
+        if bounds is not None and bounds[0] == bounds[1]:
+            reach[axis] = size
+            weights *= 1.0 - np.abs(mesh.vertices[:, axis] - bounds[0]) / size
+    weights = np.where(_inside(probe, mesh.vertices, shapes, reach), weights, 0.0)
+    # Layers a whole voxel away have the weight 0 up to rounding.
+    weights[weights < 1e-9] = 0.0
+    caught = np.flatnonzero(weights)
+    if caught.size == 0:
+        raise DesignError(where, f"catches no vertex; the body spans {_span(mesh)}", _TRY)
+    return Place(caught.astype(np.uint32), weights[caught] / weights[caught].sum())
+
+
+def voxel_size(mesh: Mesh) -> float:
+    """The voxel size in m, or for another mesh the edge of a cube with five mean tetrahedra."""
+    if mesh.voxel_size is not None:
+        return float(mesh.voxel_size)
+    return float(np.cbrt(5.0 * mesh.quality.volume / len(mesh.tets)))
+
+
+def _inside(
+    region: Region,
+    points: NDArray[np.float64],
+    shapes: Mapping[str, Shape],
+    reach: float | NDArray[np.float64],
+) -> NDArray[np.bool_]:
+    reach = np.broadcast_to(reach, (3,))
+    inside = np.ones(len(points), dtype=bool)
+    for axis, name in enumerate("xyz"):
+        bounds = getattr(region, name)
+        if bounds is not None:
+            inside &= points[:, axis] >= bounds[0] - reach[axis]
+            inside &= points[:, axis] <= bounds[1] + reach[axis]
+    if region.center is not None and region.radius is not None:
+        distance = np.linalg.norm(points - np.asarray(region.center), axis=1)
+        inside &= distance <= region.radius + reach.min()
+    if region.shape is not None:
+        shape = shapes[region.shape] if isinstance(region.shape, str) else region.shape
+        inside &= shape.evaluate(points, names=shapes) <= reach.min()
+    return inside
+
+
+def _point(point: NDArray[np.float64], mesh: Mesh, where: str) -> Place:
+    corners = mesh.vertices[mesh.tets]
+    base = corners[:, 0]
+    frames = np.swapaxes(corners[:, 1:] - base[:, None], 1, 2)
+    inner = np.linalg.solve(frames, (point - base)[..., None])[..., 0]
+    coordinates = np.column_stack([1.0 - inner.sum(axis=1), inner])
+    # A point on the true surface may lie a little outside the voxels: it is measured at the
+    # nearest spot of the tetrahedron that it is least outside of.
+    best = int(np.argmax(coordinates.min(axis=1)))
+    weights = np.clip(coordinates[best], 0.0, None)
+    weights /= weights.sum()
+    if np.linalg.norm(weights @ corners[best] - point) > 0.5 * voxel_size(mesh):
+        shown = ", ".join(format_quantity(float(value), "length") for value in point)
+        raise DesignError(
+            where,
+            f"the point ({shown}) is outside the body, which spans {_span(mesh)}",
+            "move the point into the body",
+        )
+    return Place(mesh.tets[best].astype(np.uint32), weights)
+
+
+def _span(mesh: Mesh) -> str:
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    return ", ".join(
+        f"{name} {format_quantity(float(a), 'length')} to {format_quantity(float(b), 'length')}"
+        for name, a, b in zip("xyz", low, high, strict=True)
+    )

@@ -1,0 +1,240 @@
+"""One call from a design to its result."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from voxsoft import _core
+from voxsoft.design import Design, Solver
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.result import History, Result, Status
+from voxsoft.simulation.setup import Setup
+
+#: Called now and then with (steps, time in s, residual).
+ProgressCallback = Callable[[int, float, float], None]
+
+DEFAULT_TOLERANCE = 1e-4
+DEFAULT_MAX_STEPS = 400_000
+DEFAULT_MAX_TIME = 60.0
+DEFAULT_TIME_STEP = 0.01
+DEFAULT_RECORD_INTERVAL = 0.02
+
+
+def simulate(
+    design: Design | Setup,
+    *,
+    record_interval: float | None = None,
+    frames: bool = False,
+    progress: ProgressCallback | None = None,
+    **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
+) -> Result:
+    """Simulate a design until it comes to rest, or to an end time.
+
+    Without time settings the state at rest is found by dynamic relaxation, which is quick and
+    knows no time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or
+    a `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
+    dynamics); both come to rest in the same state. Real time is damped critically on the way to
+    rest and not at all on the way to an end time, unless `damping` says otherwise.
+
+    Parameters
+    ----------
+    design
+        What to simulate; a :class:`Setup` saves meshing again.
+    record_interval
+        Record probes every so many seconds; default 1/50 s in runs over time.
+    frames
+        Whether to record all vertices as well.
+    progress
+        Called about ten times a second with (steps, time, residual); an exception it raises
+        ends the run.
+    **settings
+        Fields of :class:`voxsoft.design.Solver` that replace the design's own: ``time_step``,
+        ``substeps``, ``iterations``, ``damping``, ``tolerance``, ``max_time``, ``end_time`` ...
+
+    Returns
+    -------
+    Result
+        With ``status`` ``ok``, ``not-at-rest`` or ``diverged``.
+
+    Raises
+    ------
+    DesignError
+        The design cannot be solved: no clamp, a probe outside the body, ...
+    NoCavityError, DisconnectedError
+        Special cases of that, which a study counts apart.
+    SimulationError
+        The chosen method does not exist.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> result = simulate(families.beam())
+    >>> result.status
+    'ok'
+    """
+    setup = design if isinstance(design, Setup) else Setup.of(design)
+    solver = _settings(setup.design.solver, settings)
+    if solver.method != "xpbd":
+        raise SimulationError("solver.method", f'"{solver.method}" is not there yet', 'use "xpbd"')
+    started = time.perf_counter()
+    if _wants_time(solver):
+        used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
+    else:
+        used, report = _relaxation(setup.problem, solver, progress)
+    return result_of(setup, used, report, time.perf_counter() - started)
+
+
+def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int) -> Result:
+    """Bring one variant of a setup's problem to rest (other materials, say).
+
+    Parameters
+    ----------
+    setup
+        Where the problem came from.
+    problem
+        The problem to solve, from :meth:`Setup.problem_with`.
+    tolerance
+        Largest relative residual at rest.
+    max_steps
+        Steps after which the run counts as not at rest.
+    """
+    started = time.perf_counter()
+    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
+    report = problem.relax(tolerance=tolerance, max_steps=max_steps)
+    return result_of(setup, used, report, time.perf_counter() - started)
+
+
+def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
+    return own if not changes else Solver(**{**own.model_dump(), **changes})
+
+
+def _wants_time(solver: Solver) -> bool:
+    timed = (
+        solver.end_time,
+        solver.time_step,
+        solver.substeps,
+        solver.iterations,
+        solver.retardation,
+    )
+    return any(value is not None for value in timed) or isinstance(solver.damping, float)
+
+
+def _relaxation(
+    problem: _core.Problem, solver: Solver, progress: ProgressCallback | None
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    tolerance = solver.tolerance or DEFAULT_TOLERANCE
+    report = problem.relax(tolerance=tolerance, max_steps=DEFAULT_MAX_STEPS, progress=progress)
+    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
+    return {**used, "max_steps": DEFAULT_MAX_STEPS}, report
+
+
+def _dynamics(
+    setup: Setup,
+    problem: _core.Problem,
+    solver: Solver,
+    record_interval: float | None,
+    frames: bool,
+    progress: ProgressCallback | None,
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    damping = _damping_rate(solver)
+    asked: dict[str, Any] = {
+        "time_step": solver.time_step or DEFAULT_TIME_STEP,
+        "substeps": solver.substeps,
+        "iterations": solver.iterations or 1,
+        "damping": damping,
+        "retardation": solver.retardation or 0.0,
+        "end_time": solver.end_time,
+        "max_time": solver.max_time or DEFAULT_MAX_TIME,
+        "tolerance": solver.tolerance or DEFAULT_TOLERANCE,
+    }
+    report = problem.simulate(
+        **asked,
+        record_interval=record_interval or DEFAULT_RECORD_INTERVAL,
+        sensors=[(place.vertices, place.weights) for place in setup.places.values()],
+        frames=frames,
+        progress=progress,
+    )
+    used = {"method": "xpbd", "way": "dynamics", **asked, "substep": report["substep"]}
+    return used | {"damping": "critical" if damping is None else damping}, report
+
+
+def _damping_rate(solver: Solver) -> float | None:
+    """The rate in 1/s; None for critical, which a run to rest wants and a run over time does not."""
+    if isinstance(solver.damping, float):
+        return solver.damping
+    if solver.damping == "critical" or solver.end_time is None:
+        return None
+    return 0.0
+
+
+_STATUSES: dict[str, Status] = {
+    "at-rest": "ok",
+    "end-time": "ok",
+    "not-at-rest": "not-at-rest",
+    "diverged": "diverged",
+}
+
+
+def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], seconds: float) -> Result:
+    """Wrap the core's report in a :class:`Result`."""
+    rest = setup.mesh.vertices
+    still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
+    records = report["records"]
+    history = History(
+        times=report["record_times"],
+        probes={
+            name: records[:, index] - still[index] if len(records) else np.zeros((0, 3))
+            for index, name in enumerate(setup.places)
+        },
+        frames=report["frames"],
+    )
+    return Result(
+        design=setup.design,
+        mesh=setup.mesh,
+        places=setup.places,
+        status=_STATUSES[report["status"]],
+        message=_sentence(report),
+        positions=report["positions"],
+        velocities=report["velocities"],
+        residual=report["residual"],
+        reactions=report["reactions"],
+        reaction=tuple(report["reaction"]),
+        reaction_moment=tuple(report["reaction_moment"]),
+        load=tuple(report["load"]),
+        load_moment=tuple(report["load_moment"]),
+        elastic_energy=report["elastic_energy"],
+        mass=setup.problem.mass,
+        solver=used,
+        steps=report["steps"],
+        back_offs=report["back_offs"],
+        time=report["time"],
+        seconds=seconds,
+        history=history,
+    )
+
+
+def _sentence(report: dict[str, Any]) -> str:
+    residual = f"residual {report['residual']:.1e} of the load"
+    steps = f"{report['steps']} steps"
+    match report["status"]:
+        case "at-rest":
+            return f"at rest after {steps}, {residual}"
+        case "end-time":
+            return f"reached the end time after {steps}, {residual}"
+        case "not-at-rest":
+            return (
+                f"not at rest after {steps}, {residual}; raise max_time, or check that the body "
+                "is held well enough to find a rest"
+            )
+        case _:
+            _, place, when = report["breakdown"]
+            point = ", ".join(f"{value * 1e3:.1f}" for value in place)
+            return (
+                f"diverged at ({point}) mm, after {when:.6g} "
+                f"{'s' if report['substep'] else 'steps'} and {report['back_offs']} halvings of "
+                "the step: the material cannot carry the load, or it is a mechanism"
+            )

@@ -1,0 +1,255 @@
+"""From a design to a mechanical problem: mesh, materials, clamps, loads, probes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import (
+    Clamp,
+    Design,
+    Force,
+    Gravity,
+    Pressure,
+    Probe,
+    Region,
+    Traction,
+)
+from voxsoft.design import History as LoadHistory
+from voxsoft.design.discretize import mesh_of
+from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
+from voxsoft.materials import Material
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.places import Place, place_of, vertices_in
+
+Triangles = NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Setup:
+    """A design made ready for a solver.
+
+    Attributes
+    ----------
+    design
+        Where it came from.
+    mesh
+        Its tetrahedra.
+
+    Notes
+    -----
+    Everything else is derived on first use and kept; :meth:`with_materials` shares all of it.
+    """
+
+    design: Design
+    mesh: Mesh
+
+    @classmethod
+    def of(cls, design: Design) -> Setup:
+        """Voxelise and mesh a design and check that it can be loaded.
+
+        Raises
+        ------
+        DesignError
+            Nothing holds the body, or a clamp, load or probe catches nothing.
+        DisconnectedError
+            A piece of the body is held by no clamp.
+        NoCavityError
+            A pressure is asked for and there is no such cavity.
+        """
+        setup = cls(design, mesh_of(design))
+        setup.check()
+        return setup
+
+    def check(self) -> None:
+        """Raise the error that keeps this setup from being solved, if any."""
+        self._check_cavities()
+        self._check_support()
+        _ = self.places
+
+    @cached_property
+    def places(self) -> dict[str, Place]:
+        """What each probe averages over."""
+        return {
+            name: place_of(probe, self.mesh, self.design.shapes, f"probes.{name}")
+            for name, probe in self.design.probes.items()
+        }
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """The problem of the Rust core, with the design's own materials."""
+        mesh = self.mesh
+        blocks = mesh.tet_voxel if mesh.tet_voxel is not None else np.arange(len(mesh.tets))
+        return _core.Problem(
+            mesh.vertices,
+            mesh.tets.astype(np.uint32),
+            mesh.tet_part - np.uint8(1),
+            blocks.astype(np.uint32),
+            [self.design.material_of(part).core for part in self.design.parts],
+            self._parts(),
+        )
+
+    def problem_with(self, materials: list[Material]) -> _core.Problem:
+        """The same problem with other materials, one for each part of the design."""
+        return self.problem.with_materials([material.core for material in materials])
+
+    def _parts(self) -> _core.ProblemParts:
+        parts = _core.ProblemParts()
+        for clamp, vertices in zip(self.design.clamps, self.clamped, strict=True):
+            parts.clamp(vertices, [axis in clamp.axes for axis in "xyz"], **_motion(clamp))
+        for index, load in enumerate(self.design.loads):
+            where, history = f"loads[{index}]", _times_and_factors(load.history)
+            if isinstance(load, Gravity):
+                down = np.asarray(load.direction) / np.linalg.norm(load.direction)
+                parts.gravity((load.value * down).tolist(), history)
+            elif isinstance(load, Pressure):
+                for triangles in self._pressurized(load):
+                    parts.pressure(triangles.astype(np.uint32), load.value, history)
+            elif isinstance(load, Force):
+                vertices = vertices_in(load.region, self.mesh, self.design.shapes, where)
+                share = np.tile(np.asarray(load.value) / len(vertices), (len(vertices), 1))
+                parts.forces(vertices, share, history)
+            else:
+                self._add_traction(parts, load, where, history)
+        if self.design.floor is not None:
+            parts.floor(self.design.floor.z)
+        return parts
+
+    def _pressurized(self, load: Pressure) -> Iterator[Triangles]:
+        cavities = self.mesh.cavities
+        for cavity in cavities if load.cavity == "all" else [cavities[load.cavity]]:
+            yield cavity.triangles
+
+    def _add_traction(
+        self, parts: _core.ProblemParts, load: Traction, where: str, history: _CoreHistory
+    ) -> None:
+        region = vertices_in(load.region, self.mesh, self.design.shapes, where)
+        inside = np.zeros(len(self.mesh.vertices), dtype=bool)
+        inside[region] = True
+        triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
+        if len(triangles) == 0:
+            raise DesignError(where, "the region holds no triangle of the surface")
+        if isinstance(load.value, float):
+            parts.pressure(triangles.astype(np.uint32), load.value, history)
+            return
+        a, b, c = self.mesh.vertices[triangles].transpose(1, 0, 2)
+        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+        forces = np.zeros_like(self.mesh.vertices)
+        for corner in range(3):
+            np.add.at(forces, triangles[:, corner], np.outer(areas / 3.0, load.value))
+        loaded = np.unique(triangles).astype(np.uint32)
+        parts.forces(loaded, forces[loaded], history)
+
+    @cached_property
+    def clamped(self) -> list[NDArray[np.uint32]]:
+        """The vertices of each clamp."""
+        return [
+            vertices_in(clamp.region, self.mesh, self.design.shapes, f"clamps[{index}].region")
+            for index, clamp in enumerate(self.design.clamps)
+        ]
+
+    def _check_cavities(self) -> None:
+        count = len(self.mesh.cavities)
+        for index, load in enumerate(self.design.loads):
+            if not isinstance(load, Pressure):
+                continue
+            where = f"loads[{index}]"
+            if count == 0:
+                raise NoCavityError(
+                    where,
+                    "there is no enclosed cavity to put a pressure in",
+                    "make walls and caps at least one voxel thick, or the voxels smaller; "
+                    "`voxsoft check` shows where a chamber leaks",
+                )
+            if load.cavity != "all" and load.cavity >= count:
+                raise NoCavityError(
+                    f"{where}.cavity", f"{load.cavity} is past the last of {count} cavities"
+                )
+
+    def _check_support(self) -> None:
+        """Every piece must be held, unless it may fly (a run to an end time) or lie on a floor."""
+        if self.design.solver.end_time is not None or self.design.floor is not None:
+            return
+        if not self.design.clamps:
+            raise DesignError(
+                "clamps",
+                "nothing holds the body: it would fall or fly for ever",
+                "add a clamp, a floor, or an end_time to watch it fly",
+            )
+        held = np.zeros(len(self.mesh.vertices), dtype=bool)
+        held[np.concatenate(self.clamped)] = True
+        for piece in pieces(self.mesh):
+            if not held[piece].any():
+                center = self.mesh.vertices[piece].mean(axis=0) * 1e3
+                raise DisconnectedError(
+                    "parts",
+                    f"a piece of {len(piece)} vertices around "
+                    f"({center[0]:.1f}, {center[1]:.1f}, {center[2]:.1f}) mm touches no clamp",
+                    "join it to the rest by whole faces of voxels, or clamp it",
+                )
+
+
+def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
+    """Vertices of every clamp and probe that catches any, by name: what a mesh file carries."""
+    regions: dict[str, NDArray[np.uint32]] = {}
+    places: dict[str, Region] = {
+        **{f"clamp_{index}": clamp.region for index, clamp in enumerate(design.clamps)},
+        **{f"probe_{name}": probe for name, probe in design.probes.items()},
+    }
+    for name, region in places.items():
+        try:
+            if isinstance(region, Probe):
+                regions[name] = place_of(region, mesh, design.shapes, name).vertices
+            else:
+                regions[name] = vertices_in(region, mesh, design.shapes, name)
+        except DesignError:
+            continue  # A place outside the body is a finding of `check`, not of an export.
+    return regions
+
+
+def pieces(mesh: Mesh) -> list[NDArray[np.intp]]:
+    """Vertices of each piece of a mesh, largest first: tetrahedra joined by whole faces.
+
+    Tetrahedra that share only an edge or a vertex hinge on it and count as separate pieces.
+    """
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    faces = np.sort(mesh.tets[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]], axis=2)
+    order = np.lexsort(faces.reshape(-1, 3).T)
+    flat = faces.reshape(-1, 3)[order]
+    twins = np.flatnonzero((flat[1:] == flat[:-1]).all(axis=1))
+    first, second = order[twins] // 4, order[twins + 1] // 4
+    links = coo_array((np.ones(len(first)), (first, second)), shape=(len(mesh.tets),) * 2)
+    _, labels = connected_components(links, directed=False)
+    found = [np.unique(mesh.tets[labels == label]) for label in np.unique(labels)]
+    return sorted(found, key=len, reverse=True)
+
+
+_CoreHistory = tuple[list[float], list[float]] | None
+
+
+def _times_and_factors(history: LoadHistory | None) -> _CoreHistory:
+    return None if history is None else (list(history.time), list(history.factor))
+
+
+def _motion(clamp: Clamp) -> dict[str, Any]:
+    motion = clamp.motion
+    if motion is None:
+        return {}
+    turn: dict[str, Any] = {}
+    if motion.rotation is not None:
+        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
+        turn = {
+            "axis": axis.tolist(),
+            "angle": motion.rotation.angle,
+            "center": motion.rotation.center,
+        }
+    history = _times_and_factors(motion.history)
+    return {"displacement": motion.displacement, "history": history, **turn}
