@@ -18,6 +18,9 @@ type PyLeak<'py> = (PyRegion<'py>, usize, Vec<(u32, u32, u32)>);
 /// Thickness in cells, and a cell.
 type PyWall = (u16, (u32, u32, u32));
 
+/// Thickness at each cell, histogram, thinnest place.
+type PyWallThickness<'py> = (Bound<'py, PyArray3<u16>>, Vec<u64>, Option<PyWall>);
+
 #[pyclass(frozen, name = "Grid", module = "voxsoft._core")]
 pub struct PyGrid(pub Arc<voxel::Grid>);
 
@@ -254,11 +257,7 @@ impl PyGrid {
             .collect()
     }
 
-    /// Thickness at each cell, histogram, thinnest place.
-    fn wall_thickness<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyArray3<u16>>, Vec<u64>, Option<PyWall>)> {
+    fn wall_thickness<'py>(&self, py: Python<'py>) -> PyResult<PyWallThickness<'py>> {
         let walls = gate::run(py, |_| voxel::wall_thickness(&self.0))?;
         let cells = walls.cells.into_pyarray(py).reshape(self.0.shape())?;
         Ok((cells, walls.histogram, walls.thinnest.map(wall)))
