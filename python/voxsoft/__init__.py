@@ -94,7 +94,7 @@ _HOME_OF: Final = {name: home for home, names in _HOMES.items() for name in name
 def __getattr__(name: str) -> Any:  # noqa: ANN401 - any public object
     if name == "__version__":
         return version("voxsoft")
-    if name.startswith("__"):
+    if name.startswith("_"):
         raise AttributeError(name)
     home = import_module(_HOME_OF.get(name, "voxsoft.shapes"))
     if not hasattr(home, name):
