@@ -1,0 +1,150 @@
+"""Which trials to evaluate next: all points of a grid, or what a sampler suggests."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import optuna
+from optuna.distributions import BaseDistribution
+from optuna.samplers import BaseSampler
+from optuna.trial import FrozenTrial, TrialState, create_trial
+
+from voxsoft.search.genetic_sampler import GeneticSampler
+from voxsoft.search.samplers import grid_values, sampler_named
+from voxsoft.study.trial import OUTCOME_KEY
+
+#: Trials a sampler suggests before it sees their outcomes, unless the user says otherwise.
+DEFAULT_BATCH = 8
+
+Distributions = Mapping[str, BaseDistribution]
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A trial that is to be evaluated."""
+
+    number: int
+    parameters: Mapping[str, Any]
+
+
+#: Batches of proposals; each is taken once the trials of the one before are stored.
+Proposals = Iterator[Iterable[Proposal]]
+
+
+def grid_proposals(study: optuna.Study, space: Distributions) -> Proposals:
+    """Propose every point of a grid that the study does not hold, in one batch.
+
+    The last parameter of the space varies fastest. Trials that an earlier run left unfinished
+    come first.
+    """
+    yield unfinished(study, space)
+    values = grid_values(space)
+    there = {_key(trial.params) for trial in study.get_trials(deepcopy=False)}
+    points = (
+        dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())
+    )
+    # Lazily: a trial enters the storage only when a worker is about to be free.
+    yield (_create(study, space, point) for point in points if _key(point) not in there)
+
+
+def sampled_proposals(
+    study: optuna.Study,
+    space: Distributions,
+    budget: int,
+    batch: int | None,
+    sampler: Callable[[int], BaseSampler],
+) -> Proposals:
+    """Propose what a sampler suggests, in batches, until the study holds `budget` trials.
+
+    Parameters
+    ----------
+    study
+        Where suggestions become trials.
+    space
+        The distribution of each parameter.
+    budget
+        Number of trials in the end, those of earlier runs included.
+    batch
+        Trials suggested before their outcomes are seen; default: a generation for the genetic
+        algorithm, else :data:`DEFAULT_BATCH`. Batches start at multiples of it, so that a study
+        that was stopped suggests what it would have suggested.
+    sampler
+        From the number of the next trial to the sampler that suggests it.
+    """
+    study.sampler = sampler(0)
+    yield unfinished(study, space)
+    while (held := len(study.get_trials(deepcopy=False))) < budget:
+        study.sampler = sampler(held)
+        size = batch or DEFAULT_BATCH
+        room = size - held % size
+        if batch is None and isinstance(study.sampler, GeneticSampler):
+            room = study.sampler.room(study)
+        numbers = range(held, min(held + room, budget))
+        yield [_ask(study, space, sampler(number)) for number in numbers]
+
+
+def seeded_samplers(
+    name: str,
+    space: Distributions,
+    seed: int,
+    constraints: Callable[[FrozenTrial], tuple[float, ...]] | None,
+) -> Callable[[int], BaseSampler]:
+    """Make a sampler anew for each trial, seeded by the study's seed and the trial's number.
+
+    A study that was stopped and resumed then suggests the same trials as one that ran through.
+    Optuna's samplers keep what they learn in the study, not in themselves.
+    """
+    if name == "genetic":
+        # Its generations are bred from one stream of random numbers.
+        genetic = sampler_named(name, space, seed=seed, constraints=constraints)
+        return lambda number: genetic
+
+    def sampler(number: int) -> BaseSampler:
+        (own_seed,) = np.random.SeedSequence([seed, number]).generate_state(1)
+        return sampler_named(name, space, seed=int(own_seed), constraints=constraints)
+
+    return sampler
+
+
+def unfinished(study: optuna.Study, space: Distributions) -> list[Proposal]:
+    """Take up the trials that an earlier run began and did not finish."""
+    return [
+        _completed(study, space, trial)
+        for trial in study.get_trials(deepcopy=False, states=(TrialState.RUNNING,))
+        if OUTCOME_KEY not in trial.user_attrs
+    ]
+
+
+def _completed(study: optuna.Study, space: Distributions, trial: FrozenTrial) -> Proposal:
+    """Give a trial the parameters it lacks, if the earlier run stopped while it was set up."""
+    if set(trial.params) >= set(space):
+        return Proposal(trial.number, dict(trial.params))
+    return _proposal(optuna.Trial(study, trial._trial_id), space)
+
+
+def _create(study: optuna.Study, space: Distributions, point: Mapping[str, Any]) -> Proposal:
+    """Put a given point into the storage, with a single write."""
+    template = create_trial(state=TrialState.RUNNING, params=dict(point), distributions=dict(space))
+    trial_id = study._storage.create_new_trial(study._study_id, template)
+    return Proposal(study._storage.get_trial(trial_id).number, dict(point))
+
+
+def _ask(study: optuna.Study, space: Distributions, sampler: BaseSampler) -> Proposal:
+    study.sampler = sampler
+    return _proposal(study.ask(), space)
+
+
+def _proposal(trial: optuna.Trial, space: Distributions) -> Proposal:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
+        parameters = {name: trial._suggest(name, domain) for name, domain in space.items()}
+    return Proposal(trial.number, parameters)
+
+
+def _key(parameters: Mapping[str, Any]) -> frozenset[tuple[str, Any]]:
+    return frozenset(parameters.items())

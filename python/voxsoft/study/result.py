@@ -1,0 +1,252 @@
+"""What a study found."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Objective
+from voxsoft.errors import MissingPackageError, StudyError
+from voxsoft.records import closest
+from voxsoft.simulation import Status
+from voxsoft.study.trial import Trial
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class StudyResult:
+    """All finished trials of a study.
+
+    Attributes
+    ----------
+    name
+        Name of the study.
+    folder
+        Where it is stored, or None for a database.
+    trials
+        Every finished trial in order of its number, whatever its status.
+    objectives
+        What was asked, by name.
+    parameters
+        Names of the parameters, in the order of the space.
+    """
+
+    name: str
+    folder: Path | None
+    trials: tuple[Trial, ...]
+    objectives: Mapping[str, Objective]
+    parameters: tuple[str, ...]
+
+    @property
+    def counts(self) -> dict[Status, int]:
+        """Number of trials by status; every status is there, also with 0."""
+        found = Counter(trial.status for trial in self.trials)
+        return {status: found[status] for status in get_args(Status)}
+
+    @property
+    def best(self) -> Trial | None:
+        """The best feasible trial by the first objective, or None if there is none."""
+        return self.ranking[0] if self.ranking else None
+
+    @cached_property
+    def ranking(self) -> tuple[Trial, ...]:
+        """The feasible trials, best by the first objective first."""
+        return self.ranked_by(next(iter(self.objectives)))
+
+    def ranked_by(self, objective: str) -> tuple[Trial, ...]:
+        """Return the feasible trials, best first; equal ones in order of their number.
+
+        Parameters
+        ----------
+        objective
+            Name of the objective to rank by.
+
+        Raises
+        ------
+        StudyError
+            An unknown objective.
+        """
+        name = self._objective(objective)
+        sign = self._sign(name)
+        feasible = [trial for trial in self.trials if trial.feasible]
+        return tuple(sorted(feasible, key=lambda trial: sign * trial.objectives[name]))
+
+    @cached_property
+    def pareto_front(self) -> tuple[Trial, ...]:
+        """Feasible trials that no other beats in one objective without losing in another.
+
+        In order of the first objective, best first. Of trials with the same design only the
+        first is listed.
+        """
+        candidates = [trial for trial in self.ranking if trial.same_as is None]
+        costs = np.array([self._costs(trial) for trial in candidates])
+        return tuple(
+            trial
+            for trial, cost in zip(candidates, costs, strict=True)
+            if not ((costs <= cost).all(axis=1) & (costs < cost).any(axis=1)).any()
+        )
+
+    def scatter(
+        self, objective: str | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return what a scatter of parameters coloured by an objective needs.
+
+        Parameters
+        ----------
+        objective
+            Default: the first.
+
+        Returns
+        -------
+        points : (m, p) array
+            Parameters in SI units, in the order of :attr:`parameters`. Choices that are no
+            numbers are numbered in the order in which they appear.
+        values : (m,) array
+            The objective in SI units.
+        """
+        name = self._objective(objective)
+        ok = [trial for trial in self.trials if trial.status == "ok"]
+        columns = [_numbers([trial.parameters[key] for trial in ok]) for key in self.parameters]
+        values = np.array([trial.objectives[name] for trial in ok], dtype=np.float64)
+        return np.column_stack(columns), values
+
+    def history(
+        self, objective: str | None = None
+    ) -> tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.float64]]:
+        """Return how an objective went from trial to trial.
+
+        Parameters
+        ----------
+        objective
+            Default: the first.
+
+        Returns
+        -------
+        numbers : (m,) array
+            Numbers of the feasible trials.
+        values : (m,) array
+            Their objective in SI units.
+        best : (m,) array
+            The best value up to each of them.
+        """
+        name = self._objective(objective)
+        feasible = [trial for trial in self.trials if trial.feasible]
+        numbers = np.array([trial.number for trial in feasible], dtype=np.int64)
+        values = np.array([trial.objectives[name] for trial in feasible], dtype=np.float64)
+        sign = self._sign(name)
+        return numbers, values, sign * np.minimum.accumulate(sign * values)
+
+    def table(self) -> pd.DataFrame:
+        """Return one row for each trial.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: ``number``, ``status``, the parameters, the objectives, other metrics,
+            ``feasible``, ``same_as`` (the trial that solved the same design), ``seconds``,
+            ``hash``, ``message``. SI units; missing numbers are NaN, never 0.
+        """
+        import pandas as pd
+
+        measured = dict.fromkeys(
+            name for trial in self.trials for name in trial.metrics if name not in self.objectives
+        )
+        columns: dict[str, Any] = {
+            "number": [trial.number for trial in self.trials],
+            "status": [trial.status for trial in self.trials],
+        }
+        for name in self.parameters:
+            columns[name] = [trial.parameters.get(name) for trial in self.trials]
+        for name in self.objectives:
+            columns[name] = [trial.objectives.get(name, np.nan) for trial in self.trials]
+        for name in measured:
+            key = name if name not in columns else f"{name} (metric)"
+            columns[key] = [trial.metrics.get(name, np.nan) for trial in self.trials]
+        columns["feasible"] = [trial.feasible for trial in self.trials]
+        columns["same_as"] = pd.array([trial.same_as for trial in self.trials], dtype="Int64")
+        columns["seconds"] = [trial.seconds for trial in self.trials]
+        columns["hash"] = [trial.hash for trial in self.trials]
+        columns["message"] = [trial.message for trial in self.trials]
+        return pd.DataFrame(columns)
+
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
+        """Write :meth:`table` as comma-separated text.
+
+        Raises
+        ------
+        StudyError
+            The file cannot be written.
+        """
+        _write(path, lambda: self.table().to_csv(path, index=False))
+
+    def to_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Write :meth:`table` as a Parquet file.
+
+        Raises
+        ------
+        MissingPackageError
+            The package `pyarrow` is not installed.
+        StudyError
+            The file cannot be written.
+        """
+        if find_spec("pyarrow") is None:
+            raise MissingPackageError(
+                "to_parquet", "needs the package pyarrow", 'pip install "voxsoft[parquet]"'
+            )
+        _write(path, lambda: self.table().to_parquet(path, index=False, engine="pyarrow"))
+
+    def summary(self) -> dict[str, Any]:
+        """Return plain data in SI units: the ``--json`` of ``sweep`` and ``optimize``."""
+        best = self.best
+        return {
+            "trials": len(self.trials),
+            "counts": dict(self.counts),
+            "best": None
+            if best is None
+            else {
+                "number": best.number,
+                "parameters": dict(best.parameters),
+                "objectives": dict(best.objectives),
+            },
+            "pareto_front": [trial.number for trial in self.pareto_front],
+            "folder": None if self.folder is None else str(self.folder),
+        }
+
+    def _objective(self, name: str | None) -> str:
+        if name is None:
+            return next(iter(self.objectives))
+        if name not in self.objectives:
+            raise StudyError("objective", f'"{name}" is not known', closest(name, self.objectives))
+        return name
+
+    def _sign(self, objective: str) -> float:
+        """1 where smaller is better, -1 where larger is."""
+        return 1.0 if self.objectives[objective].direction == "minimize" else -1.0
+
+    def _costs(self, trial: Trial) -> list[float]:
+        return [self._sign(name) * trial.objectives[name] for name in self.objectives]
+
+
+def _numbers(values: list[Any]) -> NDArray[np.float64]:
+    if all(isinstance(value, int | float) for value in values):
+        return np.array(values, dtype=np.float64)
+    order = {value: float(index) for index, value in enumerate(dict.fromkeys(values))}
+    return np.array([order[value] for value in values], dtype=np.float64)
+
+
+def _write(path: str | os.PathLike[str], write: Callable[[], object]) -> None:
+    try:
+        write()
+    except OSError as error:
+        raise StudyError(os.fspath(path), f"cannot be written: {error.strerror or error}") from None

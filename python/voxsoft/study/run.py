@@ -1,0 +1,209 @@
+"""Evaluate proposals on workers and store every outcome as it comes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+import optuna
+from optuna.trial import TrialState
+
+from voxsoft.design import Constraint, Design, Objective
+from voxsoft.errors import StudyError, VoxSoftError
+from voxsoft.study.event import ProgressCallback, TrialEvent
+from voxsoft.study.outcome import Evaluate, Outcome
+from voxsoft.study.proposals import Proposal
+from voxsoft.study.trial import OUTCOME_KEY, Trial, outcome_of, read_trial, record_of
+from voxsoft.study.workers import Workers
+
+Build = Callable[[Mapping[str, Any]], Design]
+
+
+@dataclass(frozen=True)
+class _Job:
+    number: int
+    design: Design
+    hash: str
+
+
+@dataclass
+class StudyRun:
+    """One run of a study: proposals in, stored trials out.
+
+    Parameters
+    ----------
+    study
+        Where trials are stored; only this process writes it.
+    build
+        From parameters to the design.
+    evaluate
+        From the design to its outcome, on a worker.
+    objectives, constraints
+        Of the study, by name.
+    workers
+        Who evaluates.
+    progress
+        Called after each trial.
+    total
+        Number of trials in the end, for `progress`.
+    """
+
+    study: optuna.Study
+    build: Build
+    evaluate: Evaluate
+    objectives: Mapping[str, Objective]
+    constraints: Mapping[str, Constraint]
+    workers: Workers
+    progress: ProgressCallback | None
+    total: int
+    _running: dict[Future[Outcome], _Job] = field(default_factory=dict)
+    _twins: dict[str, list[_Job]] = field(default_factory=dict)
+    _solved: dict[str, tuple[int, Outcome]] = field(default_factory=dict)
+    _best: float | None = None
+    _done: int = 0
+
+    def __post_init__(self) -> None:
+        """Take over what earlier runs stored."""
+        for stored in self.study.get_trials(deepcopy=False):
+            if OUTCOME_KEY not in stored.user_attrs:
+                continue
+            record = stored.user_attrs[OUTCOME_KEY]
+            if stored.state == TrialState.RUNNING:  # stopped between the two writes of a trial
+                self._tell(stored.number, outcome_of(record))
+            self._learn(read_trial(stored, self.objectives, self.constraints), outcome_of(record))
+
+    def evaluate_all(self, batches: Iterable[Iterable[Proposal]]) -> None:
+        """Evaluate batch after batch; each is asked for once the one before is stored."""
+        for batch in batches:
+            for proposal in batch:
+                self._begin(proposal)
+                # A few more than run at once wait at the workers, so that none is idle.
+                while len(self._running) >= 2 * self.workers.slots:
+                    self._collect()
+            while self._running:
+                self._collect()
+
+    def _begin(self, proposal: Proposal) -> None:
+        try:
+            design = self.build(proposal.parameters)
+        except VoxSoftError as error:
+            self._store(proposal.number, Outcome("failed", str(error)), "", None)
+            return
+        job = _Job(proposal.number, design, design.hash)
+        if job.hash in self._solved:
+            self._share(job)
+        elif any(job.hash == other.hash for other in self._running.values()):
+            self._twins.setdefault(job.hash, []).append(job)
+        else:
+            self._submit(job)
+
+    def _submit(self, job: _Job) -> None:
+        try:
+            future = self.workers.submit(self.evaluate, job.design)
+        except BrokenExecutor:
+            # Noticed by the pool before any of its futures said so.
+            self._recover([])
+            future = self.workers.submit(self.evaluate, job.design)
+        self._running[future] = job
+
+    def _collect(self) -> None:
+        """Store what has finished; wait for at least one trial."""
+        lost = []
+        finished, _ = wait(self._running, return_when=FIRST_COMPLETED)
+        for future in sorted(finished, key=lambda done: self._running[done].number):
+            job = self._running.pop(future)
+            if isinstance(future.exception(), BrokenExecutor):
+                lost.append(job)
+            else:
+                self._finish(job, _outcome(future, self.objectives))
+        if lost:
+            self._recover(lost)
+
+    def _recover(self, lost: list[_Job]) -> None:
+        """Go on after a worker died: it takes all trials of its pool with it.
+
+        Each of them is tried once more, alone, so that the one to blame fails and no other.
+        """
+        for future in list(self._running):
+            job = self._running.pop(future)
+            if isinstance(future.exception(), BrokenExecutor):
+                lost.append(job)
+            else:
+                self._finish(job, _outcome(future, self.objectives))
+        self.workers.recover()
+        for job in sorted(lost, key=lambda job: job.number):
+            future = self.workers.submit(self.evaluate, job.design)
+            if isinstance(future.exception(), BrokenExecutor):
+                self.workers.recover()
+                message = "the worker process died twice while it evaluated this design"
+                self._finish(job, Outcome("failed", message))
+            else:
+                self._finish(job, _outcome(future, self.objectives))
+
+    def _finish(self, job: _Job, outcome: Outcome) -> None:
+        self._store(job.number, outcome, job.hash, None)
+        for twin in self._twins.pop(job.hash, []):
+            self._share(twin)
+
+    def _share(self, job: _Job) -> None:
+        number, outcome = self._solved[job.hash]
+        shared = Outcome(outcome.status, outcome.message, outcome.metrics)
+        self._store(job.number, shared, job.hash, number)
+
+    def _store(self, number: int, outcome: Outcome, design_hash: str, same_as: int | None) -> None:
+        record = record_of(outcome, design_hash, same_as)
+        trial_id = self.study._storage.get_trial_id_from_study_id_trial_number(
+            self.study._study_id, number
+        )
+        self.study._storage.set_trial_user_attr(trial_id, OUTCOME_KEY, record)
+        self._tell(number, outcome)
+        stored = self.study._storage.get_trial(trial_id)
+        trial = read_trial(stored, self.objectives, self.constraints)
+        self._learn(trial, outcome)
+        if self.progress is not None:
+            total = max(self.total, self._done)
+            self.progress(TrialEvent(trial, self._best, self._done, total))
+
+    def _tell(self, number: int, outcome: Outcome) -> None:
+        """Tell the sampler. Designs that cannot be solved are pruned: it learns to avoid them."""
+        if outcome.status == "ok":
+            values = [outcome.metrics[name] for name in self.objectives]
+            self.study.tell(number, values)
+        else:
+            failed = outcome.status == "failed"
+            self.study.tell(number, state=TrialState.FAIL if failed else TrialState.PRUNED)
+
+    def _learn(self, trial: Trial, outcome: Outcome) -> None:
+        self._done += 1
+        if trial.hash and trial.same_as is None:
+            self._solved[trial.hash] = (trial.number, outcome)
+        if trial.feasible:
+            name, objective = next(iter(self.objectives.items()))
+            better = min if objective.direction == "minimize" else max
+            value = trial.objectives[name]
+            self._best = value if self._best is None else better(value, self._best)
+
+
+def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Outcome:
+    """Read the answer of a worker; whatever went wrong there becomes a status."""
+    try:
+        outcome = future.result()
+    except CancelledError:
+        raise StudyError(
+            "workers",
+            "the connection to the workers was lost",
+            "start the study again; finished trials are kept",
+        ) from None
+    except Exception as error:
+        return Outcome("failed", f"{type(error).__name__}: {error}")
+    if outcome.status != "ok":
+        return outcome
+    wrong = [name for name in objectives if not isfinite(outcome.metrics.get(name, float("nan")))]
+    if wrong:
+        value = outcome.metrics.get(wrong[0], "missing")
+        message = f'the objective "{wrong[0]}" is {value}'
+        return Outcome("failed", message, outcome.metrics, outcome.seconds)
+    return outcome

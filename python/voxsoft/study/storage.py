@@ -1,0 +1,151 @@
+"""Where the trials of a study are kept: a folder, or a database that Optuna can reach."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Final, Literal
+
+import optuna
+from optuna.storages import BaseStorage, JournalStorage
+
+from voxsoft.errors import StudyError
+from voxsoft.study.definition import require_same
+from voxsoft.study.journal import StudyJournal
+
+Direction = Literal["maximize", "minimize"]
+
+JOURNAL_NAME: Final = "study.journal"
+DEFINITION_NAME: Final = "study.json"
+
+_DEFINITION_KEY: Final = "definition"
+
+
+class TrialStorage:
+    """The stored trials of one study.
+
+    Parameters
+    ----------
+    name
+        Name of the study in the storage.
+    directions
+        ``maximize`` or ``minimize`` for each objective.
+    definition
+        What the study is about; a storage that holds another definition is refused.
+    place
+        A folder, or an Optuna storage: its URL or the object.
+
+    Raises
+    ------
+    StudyError
+        The place cannot be used, or holds a study that was defined otherwise.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        directions: Sequence[Direction],
+        definition: Mapping[str, Any],
+        place: Path | str | BaseStorage,
+    ) -> None:
+        self._name, self._directions, self._place = name, list(directions), place
+        self._define(definition)
+
+    @property
+    def where(self) -> str:
+        """The folder, or the name of the study in its database."""
+        return str(self._place) if isinstance(self._place, Path) else f'study "{self._name}"'
+
+    @contextlib.contextmanager
+    def open(self, *, write: bool) -> Iterator[optuna.Study]:
+        """Open the study; for writing, no other process may write it until the end.
+
+        A study in a database is not locked: let one process at a time run it.
+        """
+        with _errors_named(self.where):
+            if not isinstance(self._place, Path):
+                yield self._study(self._place)
+                return
+            with StudyJournal(self._place / JOURNAL_NAME, write=write) as journal:
+                yield self._study(JournalStorage(journal))
+
+    def _study(self, storage: str | BaseStorage) -> optuna.Study:
+        with _quiet():
+            return optuna.load_study(
+                study_name=self._name,
+                storage=storage,
+                # Any but Optuna's default, which would warn where it does not fit.
+                sampler=optuna.samplers.RandomSampler(),
+            )
+
+    def _define(self, definition: Mapping[str, Any]) -> None:
+        stored = self._stored_definition()
+        if stored is not None:
+            require_same(stored, definition, self.where)
+            return
+        with _errors_named(self.where), contextlib.ExitStack() as stack:
+            storage: str | BaseStorage
+            if isinstance(self._place, Path):
+                self._write_definition(self._place, definition)
+                path = self._place / JOURNAL_NAME
+                storage = JournalStorage(stack.enter_context(StudyJournal(path, write=True)))
+            else:
+                storage = self._place
+            with _quiet():
+                study = optuna.create_study(
+                    study_name=self._name,
+                    storage=storage,
+                    directions=self._directions,
+                    load_if_exists=True,
+                )
+            study.set_user_attr(_DEFINITION_KEY, dict(definition))
+
+    def _stored_definition(self) -> dict[str, Any] | None:
+        if isinstance(self._place, Path) and not (self._place / JOURNAL_NAME).exists():
+            return None
+        try:
+            with self.open(write=False) as study:
+                stored = study.user_attrs.get(_DEFINITION_KEY)
+                trials = len(study.get_trials(deepcopy=False))
+        except KeyError:  # no study of this name yet
+            return None
+        if stored is None and trials:
+            raise StudyError(
+                self.where, "holds trials that VoxSoft did not write", "use another study name"
+            )
+        return stored
+
+    @staticmethod
+    def _write_definition(folder: Path, definition: Mapping[str, Any]) -> None:
+        """Write a copy of the definition for people; the journal holds the one that counts."""
+        text = json.dumps(definition, indent=2, ensure_ascii=False) + "\n"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / DEFINITION_NAME).write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise StudyError(
+                str(error.filename or folder), f"cannot be written: {error.strerror}"
+            ) from None
+
+
+@contextlib.contextmanager
+def _errors_named(where: str) -> Iterator[None]:
+    """Turn the errors of a database into ours."""
+    try:
+        yield
+    except optuna.exceptions.StorageInternalError as error:
+        cause = error.__cause__ or error
+        raise StudyError(where, f"the storage failed: {cause}") from error
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep Optuna from announcing that it made a study."""
+    before = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.WARNING)
+    try:
+        yield
+    finally:
+        optuna.logging.set_verbosity(before)

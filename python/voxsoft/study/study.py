@@ -1,0 +1,352 @@
+"""The study: what a user makes, runs, and resumes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from concurrent.futures import Executor
+from math import prod
+from pathlib import Path
+from typing import Any, TypeVar
+
+import optuna
+from optuna.samplers import BaseSampler
+from optuna.storages import BaseStorage
+from optuna.trial import FrozenTrial
+
+from voxsoft.design import Constraint, Design, Objective, families
+from voxsoft.errors import StudyError
+from voxsoft.search.samplers import grid_values
+from voxsoft.study.definition import definition
+from voxsoft.study.event import ProgressCallback
+from voxsoft.study.outcome import Evaluate, evaluate_design
+from voxsoft.study.proposals import (
+    Proposals,
+    grid_proposals,
+    sampled_proposals,
+    seeded_samplers,
+)
+from voxsoft.study.result import StudyResult
+from voxsoft.study.run import StudyRun
+from voxsoft.study.space import Domain, read_space, space_of
+from voxsoft.study.storage import TrialStorage
+from voxsoft.study.trial import OUTCOME_KEY, read_trial, violations
+from voxsoft.study.workers import make_workers
+
+Family = Design | Callable[..., Design]
+
+_Target = TypeVar("_Target", Objective, Constraint)
+
+
+class Study:
+    """A design family, a space of its parameters, and what makes a design good.
+
+    Trials are stored as they finish. A study that was stopped, by Ctrl-C, a crash or a power
+    cut, goes on when the same lines run again, and never repeats a finished trial. Parameters
+    that lead to the same design are solved once.
+
+    Parameters
+    ----------
+    family
+        A parametric :class:`~voxsoft.design.Design`, or a function from parameters (as keywords)
+        to a design. Default: the paper's cylindrical actuator, 105 designs.
+    space
+        What each parameter may be, by name: ``(low, high)``, ``(low, high, step)``,
+        ``(low, high, "log")`` in SI units or texts with units, or a list of choices. Default:
+        every parameter of the design that has a min and a max. A function needs a space.
+    objectives
+        By name; several make a study with a Pareto front. Default: those of the design.
+    constraints
+        Metrics to keep within bounds, by name. Default: those of the design. A trial that
+        breaks one is recorded and not feasible.
+    folder
+        Where trials are stored; default ``studies/NAME``. One process at a time writes it.
+    storage
+        An Optuna storage, as its URL or object; trials then go there and not to the folder.
+    name
+        Default: the name of the design or function.
+    seed
+        Decides every suggestion of a sampler, whatever the number of workers.
+    evaluate
+        From a design to an :class:`~voxsoft.study.Outcome` that holds each objective and
+        constraint under its name; default: simulate. It must be importable where the workers
+        are.
+
+    Raises
+    ------
+    StudyError
+        No space, no objective, or a folder that holds another study.
+    DesignError
+        An objective or constraint that cannot be read.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> from voxsoft.design import families
+    >>> with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as threads:
+    ...     study = Study(families.cylinder(), {"wall": ("5 mm", "10 mm", "5 mm")}, folder=folder)
+    ...     result = study.grid(executor=threads)
+    >>> result.counts["ok"], result.best.parameters
+    (2, {'wall': 0.005})
+    """
+
+    def __init__(
+        self,
+        family: Family | None = None,
+        space: Mapping[str, object] | None = None,
+        objectives: Mapping[str, Objective | Mapping[str, Any]] | None = None,
+        constraints: Mapping[str, Constraint | Mapping[str, Any]] | None = None,
+        *,
+        folder: str | os.PathLike[str] | None = None,
+        storage: str | BaseStorage | None = None,
+        name: str | None = None,
+        seed: int = 0,
+        evaluate: Evaluate = evaluate_design,
+    ) -> None:
+        family = families.cylinder() if family is None else family
+        self.name = name or _name_of(family)
+        self.family, self.seed, self._evaluate = family, seed, evaluate
+        self.space = _read_space(family, space)
+        own = family if isinstance(family, Design) else None
+        self.objectives = _read_targets(Objective, objectives, own.objectives if own else {})
+        self.constraints = _read_targets(Constraint, constraints, own.constraints if own else {})
+        if not self.objectives:
+            raise StudyError(
+                "objectives",
+                "are missing",
+                'write {"rise": {"maximize": "displacement", "probe": "top", "axis": "z"}}',
+            )
+        place = Path(folder or Path("studies", self.name)) if storage is None else storage
+        self.folder = place if isinstance(place, Path) else None
+        self._storage = TrialStorage(
+            self.name,
+            [objective.direction for objective in self.objectives.values()],
+            definition(family, self.space, self.objectives, self.constraints, evaluate, seed),
+            place,
+        )
+
+    def grid(
+        self,
+        *,
+        executor: Executor | None = None,
+        scheduler: str | None = None,
+        workers: int | None = None,
+        progress: ProgressCallback | None = None,
+    ) -> StudyResult:
+        """Evaluate every combination of steps and choices that the study does not hold yet.
+
+        Parameters
+        ----------
+        executor
+            Any :class:`concurrent.futures.Executor`; default: a pool of processes of this
+            machine. A worker that dies costs nothing but time: its trial is tried again, and
+            fails if the worker dies again.
+        scheduler
+            Address of a running Dask scheduler, ``"tcp://host:port"``, in place of an executor.
+        workers
+            Number of processes; default: one for each core.
+        progress
+            Called with a :class:`~voxsoft.study.TrialEvent` after each trial.
+
+        Returns
+        -------
+        StudyResult
+            All finished trials, those of earlier runs included.
+
+        Raises
+        ------
+        StudyError
+            A range without a step; a storage that is full, damaged or in use; workers that do
+            not start.
+        KeyboardInterrupt
+            After Ctrl-C; finished trials are stored, and the message says how to go on.
+        """
+        space, total = self._distributions, self.grid_size
+        return self._run(
+            lambda study: grid_proposals(study, space),
+            total,
+            executor,
+            scheduler,
+            workers,
+            progress,
+        )
+
+    def optimize(
+        self,
+        sampler: str | BaseSampler,
+        budget: int,
+        *,
+        batch: int | None = None,
+        executor: Executor | None = None,
+        scheduler: str | None = None,
+        workers: int | None = None,
+        progress: ProgressCallback | None = None,
+    ) -> StudyResult:
+        """Let a sampler choose trials until the study holds `budget` of them.
+
+        Parameters
+        ----------
+        sampler
+            A key of :data:`voxsoft.search.samplers.SAMPLERS`, or a sampler of Optuna. Named
+            samplers know the constraints and follow the seed of the study; ``"grid"`` is
+            :meth:`grid` and ends with it.
+        budget
+            Number of trials in the end, whatever their status, those of earlier runs included.
+        batch
+            Trials that are suggested before their outcomes are seen. Suggestions depend on it,
+            and not on the number of workers. Default: a generation for ``"genetic"``, else 8;
+            a cluster of more workers than that needs a larger one to be busy.
+        executor, scheduler, workers, progress
+            As for :meth:`grid`.
+
+        Returns
+        -------
+        StudyResult
+            All finished trials, those of earlier runs included.
+
+        Raises
+        ------
+        StudyError
+            As for :meth:`grid`; an unknown sampler, or one that cannot take the objectives.
+        MissingPackageError
+            ``"gp"`` without PyTorch.
+        KeyboardInterrupt
+            After Ctrl-C; finished trials are stored, and the message says how to go on.
+        """
+        if budget < 1 or (batch is not None and batch < 1):
+            raise StudyError("budget" if budget < 1 else "batch", "at least 1 is due")
+        if sampler == "grid":
+            return self.grid(
+                executor=executor, scheduler=scheduler, workers=workers, progress=progress
+            )
+        space = self._distributions
+        if isinstance(sampler, str):
+            constraints = self._violations if self.constraints else None
+            samplers = seeded_samplers(sampler, space, self.seed, constraints)
+        else:
+            own: BaseSampler = sampler
+            samplers = lambda number: own  # noqa: E731
+        return self._run(
+            lambda study: sampled_proposals(study, space, budget, batch, samplers),
+            budget,
+            executor,
+            scheduler,
+            workers,
+            progress,
+        )
+
+    def result(self) -> StudyResult:
+        """Return what is stored so far, also while another process runs the study."""
+        with self._storage.open(write=False) as study:
+            return self._result(study)
+
+    @property
+    def grid_size(self) -> int:
+        """Number of combinations of steps and choices.
+
+        Raises
+        ------
+        StudyError
+            A range without a step.
+        """
+        return prod(len(values) for values in grid_values(self._distributions).values())
+
+    @property
+    def _distributions(self) -> dict[str, optuna.distributions.BaseDistribution]:
+        return {name: domain.distribution for name, domain in self.space.items()}
+
+    def _run(
+        self,
+        proposals: Callable[[optuna.Study], Proposals],
+        total: int,
+        executor: Executor | None,
+        scheduler: str | None,
+        workers: int | None,
+        progress: ProgressCallback | None,
+    ) -> StudyResult:
+        with self._storage.open(write=True) as study:
+            evaluators = make_workers(executor, scheduler, workers)
+            finished = False
+            try:
+                StudyRun(
+                    study,
+                    self._build,
+                    self._evaluate,
+                    self.objectives,
+                    self.constraints,
+                    evaluators,
+                    progress,
+                    total,
+                ).evaluate_all(proposals(study))
+                finished = True
+            except KeyboardInterrupt:
+                raise KeyboardInterrupt(self._how_to_resume(study, total)) from None
+            finally:
+                evaluators.close(now=not finished)
+            return self._result(study)
+
+    def _build(self, parameters: Mapping[str, Any]) -> Design:
+        """Make the design of one trial, which asks for what the study asks."""
+        family = self.family
+        if isinstance(family, Design):
+            design = family.with_parameters(**parameters)
+        else:
+            design = family(**parameters)
+            if not isinstance(design, Design):
+                raise TypeError(f"{_name_of(family)} returned {design!r}; a Design is due")
+        targets = {"objectives": self.objectives, "constraints": self.constraints}
+        return design.model_copy(update=targets)
+
+    def _violations(self, trial: FrozenTrial) -> tuple[float, ...]:
+        return violations(trial.user_attrs[OUTCOME_KEY]["metrics"], self.constraints)
+
+    def _result(self, study: optuna.Study) -> StudyResult:
+        return StudyResult(
+            self.name,
+            self.folder,
+            tuple(
+                read_trial(stored, self.objectives, self.constraints)
+                for stored in study.get_trials(deepcopy=False)
+                if OUTCOME_KEY in stored.user_attrs
+            ),
+            self.objectives,
+            tuple(self.space),
+        )
+
+    def _how_to_resume(self, study: optuna.Study, total: int) -> str:
+        done = len(self._result(study).trials)
+        return (
+            f"stopped after {done} of {max(total, done)} trials, which are kept in "
+            f"{self._storage.where}; run the same study again to go on"
+        )
+
+
+def _name_of(family: Family) -> str:
+    if isinstance(family, Design):
+        return family.name
+    return str(getattr(family, "__name__", type(family).__name__)).strip("<>")
+
+
+def _read_space(family: Family, given: Mapping[str, object] | None) -> dict[str, Domain]:
+    if isinstance(family, Design):
+        return space_of(family) if given is None else read_space(given, family)
+    if given is None:
+        raise StudyError(
+            "space", "is due where the family is a function", 'write {"wall": (0.005, 0.015)}'
+        )
+    return read_space(given, None)
+
+
+def _read_targets(
+    model: type[_Target],
+    given: Mapping[str, _Target | Mapping[str, Any]] | None,
+    own: Mapping[str, _Target],
+) -> dict[str, _Target]:
+    """Read the targets given to the study, or take those of the design."""
+    if given is None:
+        return dict(own)
+    return {
+        name: model(**target) if isinstance(target, Mapping) else target
+        for name, target in given.items()
+    }

@@ -1,0 +1,123 @@
+"""One evaluated design of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from optuna.trial import FrozenTrial
+
+from voxsoft.design import Constraint
+from voxsoft.simulation import Status
+from voxsoft.study.outcome import Outcome
+
+#: Where the outcome of a trial is kept among the attributes of Optuna's trial.
+OUTCOME_KEY = "outcome"
+
+
+@dataclass(frozen=True)
+class Trial:
+    """One evaluated design, whatever became of it.
+
+    Attributes
+    ----------
+    number
+        Its place in the study, from 0.
+    parameters
+        By name, in SI units.
+    status, message
+        How the evaluation ended; only ``ok`` trials have objectives that may be compared.
+    objectives
+        By name, in SI units; empty unless the status is ``ok``.
+    metrics
+        Everything else that was measured, if anything was.
+    feasible
+        Whether the status is ``ok`` and every constraint holds.
+    hash
+        Identity of the design; empty if there was none.
+    same_as
+        Number of the trial with the same design whose outcome this trial shares, or None if it
+        was evaluated itself.
+    seconds
+        Wall-clock time of the evaluation; 0 for a shared outcome.
+    """
+
+    number: int
+    parameters: Mapping[str, Any]
+    status: Status
+    message: str
+    objectives: Mapping[str, float]
+    metrics: Mapping[str, float]
+    feasible: bool
+    hash: str
+    same_as: int | None
+    seconds: float
+
+
+def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[str, Any]:
+    """Write an outcome as plain data, as :func:`read_trial` reads it."""
+    return {
+        "status": outcome.status,
+        "message": outcome.message,
+        "metrics": {name: float(value) for name, value in outcome.metrics.items()},
+        "seconds": outcome.seconds,
+        "hash": design_hash,
+        "same_as": same_as,
+    }
+
+
+def outcome_of(record: Mapping[str, Any]) -> Outcome:
+    """Read back the outcome that :func:`record_of` wrote."""
+    return Outcome(record["status"], record["message"], record["metrics"], record["seconds"])
+
+
+def read_trial(
+    stored: FrozenTrial, objectives: Mapping[str, Any], constraints: Mapping[str, Constraint]
+) -> Trial:
+    """Read a finished trial from Optuna's.
+
+    Parameters
+    ----------
+    stored
+        A trial with an outcome among its attributes.
+    objectives, constraints
+        Those of the study, by name.
+    """
+    record = stored.user_attrs[OUTCOME_KEY]
+    metrics, ok = record["metrics"], record["status"] == "ok"
+    return Trial(
+        number=stored.number,
+        parameters=dict(stored.params),
+        status=record["status"],
+        message=record["message"],
+        objectives={name: metrics[name] for name in objectives} if ok else {},
+        metrics={
+            name: value for name, value in metrics.items() if name not in objectives or not ok
+        },
+        feasible=ok and max(violations(metrics, constraints), default=0.0) <= 0.0,
+        hash=record["hash"],
+        same_as=record["same_as"],
+        seconds=record["seconds"],
+    )
+
+
+def violations(
+    metrics: Mapping[str, float], constraints: Mapping[str, Constraint]
+) -> tuple[float, ...]:
+    """Say by how much each bound is broken: at most 0 where it holds, infinite if unknown.
+
+    Examples
+    --------
+    >>> light = Constraint(metric="mass", max="30 g")
+    >>> violations({"light": 0.05}, {"light": light})
+    (0.02,)
+    """
+    found = []
+    for name, constraint in constraints.items():
+        value = metrics.get(name)
+        if constraint.min is not None:
+            found.append(float("inf") if value is None else constraint.min - value)
+        if constraint.max is not None:
+            found.append(float("inf") if value is None else value - constraint.max)
+    return tuple(found)

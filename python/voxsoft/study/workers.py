@@ -1,0 +1,205 @@
+"""Who evaluates the trials: processes of this machine, any executor, or a Dask cluster."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
+from contextlib import suppress
+from typing import Any, Protocol, TypeVar
+
+from voxsoft.errors import MissingPackageError, StudyError
+
+Answer = TypeVar("Answer")
+
+
+class Workers(Protocol):
+    """What evaluates trials, some side by side."""
+
+    @property
+    def slots(self) -> int:
+        """How many trials run side by side."""
+        ...
+
+    def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
+        """Start a task, or queue it."""
+        ...
+
+    def recover(self) -> None:
+        """Make ready for more after a worker died (:class:`BrokenExecutor`)."""
+        ...
+
+    def close(self, *, now: bool) -> None:
+        """Let go of everything that this object started, also of running tasks if `now`."""
+        ...
+
+
+def make_workers(executor: Executor | None, scheduler: str | None, count: int | None) -> Workers:
+    """Choose who evaluates.
+
+    Parameters
+    ----------
+    executor
+        Any executor; it is used as it is and left open.
+    scheduler
+        Address of a running Dask scheduler, ``"tcp://host:port"``.
+    count
+        Processes on this machine; default: one for each core this process may use. With an
+        executor: how many trials to hand it at a time (default the same).
+
+    Raises
+    ------
+    StudyError
+        Both an executor and a scheduler, a count below 1, workers that do not start, or a
+        scheduler that does not answer.
+    MissingPackageError
+        A scheduler without the package `distributed`.
+    """
+    if executor is not None and scheduler is not None:
+        raise StudyError("scheduler", "cannot be used together with an executor", "give one")
+    if count is not None and count < 1:
+        raise StudyError("workers", f"{count} is not possible; at least 1 is due")
+    if scheduler is not None:
+        return DaskCluster(scheduler)
+    slots = count or _usable_cores()
+    return LocalProcesses(slots) if executor is None else ForeignExecutor(executor, slots)
+
+
+class LocalProcesses:
+    """Worker processes on this machine, which stay warm between trials.
+
+    Processes start afresh (`forkserver`, or `spawn` where there is none): a forked copy of a
+    process that has run threads, as the solver does, can hang.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.slots = count
+        self._start()
+
+    def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
+        """Start a task, or queue it."""
+        return self._pool.submit(task, *arguments)
+
+    def recover(self) -> None:
+        """Replace the pool: a pool that lost a worker takes no more tasks."""
+        self.close(now=True)
+        self._start()
+
+    def close(self, *, now: bool) -> None:
+        """End the processes, also those that run a task if `now`."""
+        if now:
+            # Python 3.14 has kill_workers() for this; earlier ones keep the same table.
+            for process in list((self._pool._processes or {}).values()):
+                process.kill()
+        self._pool.shutdown(wait=not now, cancel_futures=True)
+
+    def _start(self) -> None:
+        methods = multiprocessing.get_all_start_methods()
+        context = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+        if context.get_start_method() == "forkserver":
+            # Imported once by the server; every worker starts as a copy of it.
+            context.set_forkserver_preload(["voxsoft.study.outcome"])
+        self._pool = ProcessPoolExecutor(
+            self.slots,
+            mp_context=context,
+            initializer=_prepare_worker,
+            initargs=(max(1, _usable_cores() // self.slots),),
+        )
+        try:
+            self._pool.submit(os.getpid).result()
+        except BrokenExecutor:
+            raise StudyError(
+                "workers",
+                "the worker processes ended before they could start",
+                'in a script, start the study below `if __name__ == "__main__":`, because the '
+                "workers import the script; or pass executor=ThreadPoolExecutor()",
+            ) from None
+
+
+class ForeignExecutor:
+    """An executor of the user's, which stays open."""
+
+    def __init__(self, executor: Executor, slots: int) -> None:
+        self._executor, self.slots = executor, slots
+
+    def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
+        """Start a task, or queue it."""
+        return self._executor.submit(task, *arguments)
+
+    def recover(self) -> None:
+        """Give up: only the user can replace a broken executor."""
+        raise StudyError(
+            "executor",
+            "broke, as one of its workers died",
+            "start the study again with a new executor; finished trials are kept. Without "
+            "executor= the study replaces dead workers itself",
+        )
+
+    def close(self, *, now: bool) -> None:
+        """Leave the executor to the user."""
+
+
+class DaskCluster:
+    """A running Dask cluster, which replaces lost workers and repeats their tasks itself."""
+
+    def __init__(self, address: str) -> None:
+        try:
+            import distributed
+        except ImportError:
+            raise MissingPackageError(
+                "scheduler", "needs the package distributed", 'pip install "voxsoft[dask]"'
+            ) from None
+        client: Any = distributed.Client
+        try:
+            self._client: Any = client(address, set_as_default=False, timeout="10s")
+        except (OSError, ValueError) as error:
+            raise StudyError(
+                "scheduler",
+                f'"{address}" does not answer: {error}',
+                "start one with `dask scheduler`, and give its address, tcp://host:port",
+            ) from None
+        self._executor: Any = self._client.get_executor(pure=False)
+
+    @property
+    def slots(self) -> int:
+        """Threads of all workers; a cluster without workers still takes a task, and waits."""
+        threads: dict[str, int] = self._client.nthreads()
+        return max(1, sum(threads.values()))
+
+    def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
+        """Start a task, or queue it."""
+        future: Future[Answer] = self._executor.submit(task, *arguments)
+        return future
+
+    def recover(self) -> None:
+        """Do nothing: the scheduler recovers by itself."""
+
+    def close(self, *, now: bool) -> None:
+        """Leave the cluster running."""
+        self._client.close()
+
+
+def _usable_cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def _prepare_worker(threads: int) -> None:
+    """Share the cores among workers, leave Ctrl-C to the main process, and end with it."""
+    os.environ.setdefault("RAYON_NUM_THREADS", str(threads))
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    # A worker waits for tasks on a pipe that its siblings keep open, so it would outlive a main
+    # process that was killed.
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        with suppress(OSError):
+            parent.join()
+        os._exit(1)
