@@ -90,7 +90,8 @@ def mean_rotation(
     --------
     >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
     >>> turned = square @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
-    >>> round(np.degrees(mean_rotation(square, turned, np.arange(4, dtype=np.uint32))), 6)
+    >>> angle = mean_rotation(square, turned, np.arange(4, dtype=np.uint32))
+    >>> round(float(np.degrees(angle)), 6)
     90.0
     """
     before = rest[vertices] - rest[vertices].mean(axis=0)

@@ -72,7 +72,10 @@ impl PyProblemParts {
     }
 
     #[pyo3(signature = (vertices, axes, displacement=None, axis=[0.0, 0.0, 1.0], angle=0.0, center=[0.0; 3], history=None))]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments of one Python call")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
     fn clamp(
         &mut self,
         vertices: PyReadonlyArray1<'_, u32>,
@@ -86,12 +89,22 @@ impl PyProblemParts {
         let motion = match displacement {
             Some(displacement) => {
                 let history = self::history(history).map_err(to_python)?;
-                Some(Motion { displacement, axis, angle, center, history })
+                Some(Motion {
+                    displacement,
+                    axis,
+                    angle,
+                    center,
+                    history,
+                })
             }
             None => None,
         };
         let vertices = vertices.as_array().to_vec();
-        self.clamps.push(Clamp { vertices, axes, motion });
+        self.clamps.push(Clamp {
+            vertices,
+            axes,
+            motion,
+        });
         Ok(())
     }
 
@@ -108,7 +121,13 @@ impl PyProblemParts {
         history: HistoryArgument,
     ) -> PyResult<()> {
         let triangles = rows("triangles", &triangles)?;
-        self.load(LoadKind::Pressure { triangles, pressure }, history)
+        self.load(
+            LoadKind::Pressure {
+                triangles,
+                pressure,
+            },
+            history,
+        )
     }
 
     #[pyo3(signature = (vertices, forces, history=None))]
@@ -139,7 +158,9 @@ impl PyProblemParts {
 /// Two numbers and the density: moduli in Pa, or raw compliances where `raw`.
 type MaterialArgument = (bool, f64, f64, f64);
 
-fn material((raw, edge, volume, density): MaterialArgument) -> Result<LatticeMaterial, ProblemError> {
+fn material(
+    (raw, edge, volume, density): MaterialArgument,
+) -> Result<LatticeMaterial, ProblemError> {
     if raw {
         LatticeMaterial::from_compliances(edge, volume, density)
     } else {
@@ -183,7 +204,10 @@ impl PyProblem {
             floor: self.problem.floor(),
         };
         let problem = assemble(&self.mesh, materials, &parts).map_err(to_python)?;
-        Ok(Self { mesh: self.mesh.clone(), problem })
+        Ok(Self {
+            mesh: self.mesh.clone(),
+            problem,
+        })
     }
 
     #[getter]
@@ -201,7 +225,11 @@ impl PyProblem {
     fn edges<'py>(
         &self,
         py: Python<'py>,
-    ) -> (Bound<'py, PyArray2<u32>>, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>) {
+    ) -> (
+        Bound<'py, PyArray2<u32>>,
+        Bound<'py, PyArray1<f64>>,
+        Bound<'py, PyArray1<f64>>,
+    ) {
         let edges = self.problem.body().edges();
         let vertices: Vec<[u32; 2]> = edges.iter().map(|edge| edge.vertices).collect();
         let collect = |value: fn(&voxsoft_solid::Edge) -> f64| edges.iter().map(value).collect();
@@ -221,7 +249,10 @@ impl PyProblem {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
-        Ok((elastic::energy(self.problem.body(), &positions), from_rows(py, &forces)))
+        Ok((
+            elastic::energy(self.problem.body(), &positions),
+            from_rows(py, &forces),
+        ))
     }
 
     #[pyo3(signature = (*, tolerance, max_steps, start=None, progress=None))]
@@ -233,21 +264,29 @@ impl PyProblem {
         start: Option<PyReadonlyArray2<'_, f64>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let settings = Relaxation { tolerance, max_steps };
+        let settings = Relaxation {
+            tolerance,
+            max_steps,
+        };
         let mut state = State::at_rest(self.problem.body());
         if let Some(start) = start {
             state.positions = self.positions(&start)?;
         }
         let mut watch = Watch::new(progress, Vec::new(), false);
         let answer = gate::run(py, |cancel| {
-            relax(&self.problem, state, &settings, &mut |now| watch.see(now, cancel))
+            relax(&self.problem, state, &settings, &mut |now| {
+                watch.see(now, cancel)
+            })
         })?;
         self.report(py, answer, watch, f64::INFINITY)
     }
 
     #[pyo3(signature = (*, time_step, substeps, iterations, damping, retardation, end_time, max_time, tolerance,
         record_interval=None, sensors=vec![], frames=false, progress=None))]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments of one Python call")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
     fn simulate<'py>(
         &self,
         py: Python<'py>,
@@ -286,7 +325,9 @@ impl PyProblem {
             .collect();
         let mut watch = Watch::new(progress, sensors, frames);
         let answer = gate::run(py, |cancel| {
-            simulate(&self.problem, state, &settings, &mut |now| watch.see(now, cancel))
+            simulate(&self.problem, state, &settings, &mut |now| {
+                watch.see(now, cancel)
+            })
         })?;
         let time = answer.state.time;
         self.report(py, answer, watch, time)
@@ -343,19 +384,29 @@ impl PyProblem {
         report.set_item("steps", answer.steps)?;
         report.set_item("back_offs", answer.back_offs)?;
         report.set_item("substep", answer.substep)?;
-        report.set_item("breakdown", answer.breakdown.map(|b| (b.vertex, b.rest, b.when)))?;
+        report.set_item(
+            "breakdown",
+            answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+        )?;
         report.set_item("reactions", from_rows(py, &balance.reactions))?;
         report.set_item("reaction", balance.total_reaction())?;
         report.set_item("reaction_moment", balance.total_moment(positions))?;
         report.set_item("load", load)?;
         report.set_item("load_moment", load_moment)?;
-        report.set_item("elastic_energy", elastic::energy(self.problem.body(), positions))?;
+        report.set_item(
+            "elastic_energy",
+            elastic::energy(self.problem.body(), positions),
+        )?;
         report.set_item("record_times", PyArray1::from_vec(py, watch.times))?;
         let sensors = watch.sensors.len();
-        let records = PyArray1::from_vec(py, watch.records).reshape([watch.recorded, sensors, 3])?;
+        let records =
+            PyArray1::from_vec(py, watch.records).reshape([watch.recorded, sensors, 3])?;
         report.set_item("records", records)?;
-        let frames: Bound<'py, PyArray3<f64>> = PyArray1::from_vec(py, watch.frames)
-            .reshape([if watch.keep_frames { watch.recorded } else { 0 }, positions.len(), 3])?;
+        let frames: Bound<'py, PyArray3<f64>> = PyArray1::from_vec(py, watch.frames).reshape([
+            if watch.keep_frames { watch.recorded } else { 0 },
+            positions.len(),
+            3,
+        ])?;
         report.set_item("frames", frames)?;
         Ok(report)
     }
@@ -409,7 +460,11 @@ impl Watch {
                 return ControlFlow::Break(());
             }
         }
-        if cancel.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        if cancel.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 
     fn record(&mut self, positions: &[Vec3], time: f64) {

@@ -3,6 +3,10 @@
 use crate::vector::{Vec3, add, axpy, cross};
 use crate::{Problem, elastic};
 
+/// A strain that counts as none: ten times the rounding of a coordinate a thousand voxels away,
+/// in units of the voxel, would be 1e-12; measured strains are never better known than 1e-5.
+pub const NEGLIGIBLE_STRAIN: f64 = 1e-8;
+
 /// Forces on all vertices of a body, sorted by who carries them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Balance {
@@ -10,7 +14,8 @@ pub struct Balance {
     pub residual: f64,
     /// Norm against which the residual counts, in N: that of the external forces, or, where there
     /// are none (a motion is prescribed), that of the reactions. Reactions of a cantilever are
-    /// many times its load, so a residual small against them would still leave it unbent.
+    /// many times its load, so a residual small against them would still leave it unbent. Never
+    /// below the forces of a [`NEGLIGIBLE_STRAIN`], so that a body without any force is at rest.
     pub scale: f64,
     /// The larger of the norms of external forces and reactions in N.
     pub largest: f64,
@@ -21,22 +26,14 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// The residual without units; zero for a body without any force.
+    /// The residual without units.
     pub fn relative_residual(&self) -> f64 {
-        if self.residual == 0.0 {
-            0.0
-        } else {
-            self.residual / self.scale
-        }
+        self.residual / self.scale
     }
 
     /// The residual over the largest forces there are: beyond all bounds only in a step that blows up.
     pub fn excess(&self) -> f64 {
-        if self.residual == 0.0 {
-            0.0
-        } else {
-            self.residual / self.largest
-        }
+        self.residual / self.largest
     }
 
     /// The total reaction in N.
@@ -77,8 +74,10 @@ pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
             }
         }
     }
-    let scale = if applied > 0.0 { applied } else { supported }.sqrt();
-    let largest = f64::max(applied, supported).sqrt();
+    let negligible = NEGLIGIBLE_STRAIN * problem.body().unit_strain_force();
+    let scale = if applied > 0.0 { applied } else { supported };
+    let scale = scale.sqrt().max(negligible);
+    let largest = f64::max(applied, supported).sqrt().max(negligible);
     Balance {
         residual: residual.sqrt(),
         scale,
@@ -101,6 +100,13 @@ pub fn rests_on_floor(
         && problem
             .floor()
             .is_some_and(|floor| positions[vertex][2] <= floor.z)
+}
+
+/// Whether the kinetic energy (J) is below `tolerance` times the elastic energy at `positions`, or
+/// times that of a [`NEGLIGIBLE_STRAIN`].
+pub fn is_still(problem: &Problem, positions: &[Vec3], kinetic: f64, tolerance: f64) -> bool {
+    let negligible = NEGLIGIBLE_STRAIN.powi(2) * problem.body().unit_strain_energy();
+    kinetic <= tolerance * elastic::energy(problem.body(), positions).max(negligible)
 }
 
 /// The volume in m³ enclosed by triangles whose normals point out of the solid, into the cavity.

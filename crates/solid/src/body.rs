@@ -77,6 +77,8 @@ pub struct Body {
     chunk_edges: Vec<u32>,
     chunk_tets: Vec<u32>,
     colors: Vec<u32>,
+    unit_strain_force: f64,
+    unit_strain_energy: f64,
 }
 
 impl Body {
@@ -135,10 +137,17 @@ impl Body {
             chunk_edges.push(edge_order.len() as u32);
             chunk_tets.push(tets.len() as u32);
         }
+        let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         Ok(Self {
+            unit_strain_force: unit_strain_force(&edges, masses.len()),
+            unit_strain_energy: edges
+                .iter()
+                .map(|e| e.stiffness * e.length.powi(2))
+                .sum::<f64>()
+                / 2.0,
             rest: mesh.vertices.clone(),
             masses,
-            edges: edge_order.into_iter().map(|index| found[index]).collect(),
+            edges,
             tets,
             chunk_edges,
             chunk_tets,
@@ -181,6 +190,17 @@ impl Body {
     /// Where each colour ends in [`Body::chunks`]: chunks of one colour share no vertex.
     pub fn colors(&self) -> &[u32] {
         &self.colors
+    }
+
+    /// The norm over vertices of the edge forces at a strain of one, in N: a measure of force that
+    /// does not need a load.
+    pub fn unit_strain_force(&self) -> f64 {
+        self.unit_strain_force
+    }
+
+    /// The energy of all edges at a strain of one, in J.
+    pub fn unit_strain_energy(&self) -> f64 {
+        self.unit_strain_energy
     }
 
     /// The diagonal of the bounding box at rest in m: the size against which motion is measured.
@@ -266,6 +286,16 @@ fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial)
         volume,
         stiffness,
     }
+}
+
+fn unit_strain_force(edges: &[Edge], vertices: usize) -> f64 {
+    let mut forces = vec![0.0; vertices];
+    for edge in edges {
+        for vertex in edge.vertices {
+            forces[vertex as usize] += edge.stiffness * edge.length;
+        }
+    }
+    forces.iter().map(|force| force * force).sum::<f64>().sqrt()
 }
 
 fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {

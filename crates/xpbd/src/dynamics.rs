@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use voxsoft_solid::balance::balance;
+use voxsoft_solid::balance::{balance, is_still};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
-use voxsoft_solid::{Body, Problem, State, elastic};
+use voxsoft_solid::{Body, Problem, State};
 
 use crate::damping;
 use crate::outcome::{
@@ -251,10 +251,9 @@ impl<'a> Stepper<'a> {
     }
 
     fn at_rest(&self, residual: f64) -> bool {
-        let body = self.problem.body();
-        let kinetic = self.state.kinetic_energy(body.masses());
-        let elastic = elastic::energy(body, &self.state.positions);
-        residual <= self.settings.tolerance && kinetic <= self.settings.tolerance * elastic
+        let kinetic = self.state.kinetic_energy(self.problem.body().masses());
+        let tolerance = self.settings.tolerance;
+        residual <= tolerance && is_still(self.problem, &self.state.positions, kinetic, tolerance)
     }
 
     fn substep(&mut self, h: f64) {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use voxsoft_solid::balance::{balance, rests_on_floor};
+use voxsoft_solid::balance::{balance, is_still, rests_on_floor};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, State, elastic};
 
@@ -114,8 +114,8 @@ pub fn relax(
                 for (mass, sum) in masses.iter_mut().zip(&row_sums) {
                     *mass = mass_factor * sum;
                 }
-                let settled = state.kinetic_energy(&masses)
-                    <= settings.tolerance * elastic::energy(body, &state.positions);
+                let kinetic = state.kinetic_energy(&masses);
+                let settled = is_still(problem, &state.positions, kinetic, settings.tolerance);
                 if ramp == 1.0 && residual <= settings.tolerance && settled {
                     return finish(state, Status::AtRest, residual, taken, back_offs, None);
                 }

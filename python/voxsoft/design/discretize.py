@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from voxsoft.design.model import Design
-from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
 from voxsoft.voxels import Voxels
@@ -21,10 +20,9 @@ def voxels_of(design: Design) -> Voxels:
 
     Raises
     ------
-    DesignError
-        No cell's center lies inside any part.
     ShapeError
-        A shape is unbounded, or the grid would not fit in memory.
+        No cell's center lies inside a part, a shape has no end, or the grid would not fit in
+        memory.
 
     Examples
     --------
@@ -37,12 +35,6 @@ def voxels_of(design: Design) -> Voxels:
     for part in design.parts:
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
         grids.append(voxelize(shape, size, names=design.shapes))
-    if not any(grid.count for grid in grids):
-        raise DesignError(
-            "parts",
-            f"no voxel's center lies inside the shapes at a voxel size of {size * 1e3:g} mm",
-            "make the voxels smaller or the walls thicker",
-        )
     if len(grids) == 1:
         return grids[0]
     corners = [np.rint(np.asarray(grid.origin) / size).astype(int) for grid in grids]

@@ -41,7 +41,7 @@ class Lattice(Record):
     >>> Lattice(edge="-20 kPa", bulk="1 kPa")
     Traceback (most recent call last):
     ...
-    voxsoft.errors.MaterialError: edge: -20 kPa is not positive
+    voxsoft.errors.MaterialError: edge: "-20 kPa" is not positive. Try: give a modulus above zero
     """
 
     error_type: ClassVar[type[VoxSoftError]] = MaterialError

@@ -14,7 +14,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.setup import Setup
-from voxsoft.voxels import Cavity, Leak, Voxels
+from voxsoft.voxels import Cavity, Leak, Voxels, Wall
 
 Severity = Literal["error", "warning"]
 
@@ -137,7 +137,7 @@ def check(body: Design | Voxels) -> CheckReport:
         except VoxSoftError as error:
             findings += _errors(error)
     constraints = len(mesh.edges) + len(mesh.tets)
-    thinnest = voxels.wall_thickness.thinnest
+    thinnest = _thinnest_wall(voxels)
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
         voxels=voxels.count,
@@ -187,7 +187,7 @@ def _findings_of_voxels(voxels: Voxels) -> Iterator[Finding]:
             f"a chamber of {leak.volume * 1e6:.3g} mL is open through {cells}",
             "close the opening by a voxel, unless it is meant to be open",
         )
-    thinnest = voxels.wall_thickness.thinnest
+    thinnest = _thinnest_wall(voxels)
     if thinnest is not None and thinnest.thickness < GOOD_WALL:
         yield Finding(
             "warning",
@@ -195,6 +195,15 @@ def _findings_of_voxels(voxels: Voxels) -> Iterator[Finding]:
             f"the wall is {thinnest.thickness} voxel thick there and bends too stiffly",
             f"make the voxels smaller: {GOOD_WALL} or more across a wall",
         )
+
+
+def _thinnest_wall(voxels: Voxels) -> Wall | None:
+    """The thinnest wall of a cavity, or of the body where there is no cavity.
+
+    Rounded ends of a body have rows of one voxel that are no walls.
+    """
+    walls = sorted(voxels.cavity_walls, key=lambda wall: wall.thickness)
+    return walls[0] if walls else voxels.wall_thickness.thinnest
 
 
 def _findings_of_mesh(mesh: Mesh) -> Iterator[Finding]:

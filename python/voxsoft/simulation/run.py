@@ -76,10 +76,14 @@ def simulate(
     >>> result.status
     'ok'
     """
-    setup = design if isinstance(design, Setup) else Setup.of(design)
-    solver = _settings(setup.design.solver, settings)
+    given = design.design if isinstance(design, Setup) else design
+    solver = _settings(given.solver, settings)
     if solver.method != "xpbd":
         raise SimulationError("solver.method", f'"{solver.method}" is not there yet', 'use "xpbd"')
+    if isinstance(design, Setup):
+        setup = design
+    else:
+        setup = Setup.of(design, may_fly=solver.end_time is not None)
     started = time.perf_counter()
     if _wants_time(solver):
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)

@@ -51,8 +51,16 @@ class Setup:
     mesh: Mesh
 
     @classmethod
-    def of(cls, design: Design) -> Setup:
+    def of(cls, design: Design, *, may_fly: bool | None = None) -> Setup:
         """Voxelise and mesh a design and check that it can be loaded.
+
+        Parameters
+        ----------
+        design
+            The design.
+        may_fly
+            Whether nothing needs to hold the body; default: if the design's solver has an end
+            time, because a run over time need not come to rest.
 
         Raises
         ------
@@ -64,13 +72,15 @@ class Setup:
             A pressure is asked for and there is no such cavity.
         """
         setup = cls(design, mesh_of(design))
-        setup.check()
+        setup.check(may_fly=may_fly)
         return setup
 
-    def check(self) -> None:
+    def check(self, *, may_fly: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
         self._check_cavities()
-        self._check_support()
+        timed = self.design.solver.end_time is not None
+        if not (timed if may_fly is None else may_fly):
+            self._check_support()
         _ = self.places
 
     @cached_property
@@ -173,8 +183,8 @@ class Setup:
                 )
 
     def _check_support(self) -> None:
-        """Every piece must be held, unless it may fly (a run to an end time) or lie on a floor."""
-        if self.design.solver.end_time is not None or self.design.floor is not None:
+        """Every piece must be held, unless it may lie on a floor."""
+        if self.design.floor is not None:
             return
         if not self.design.clamps:
             raise DesignError(

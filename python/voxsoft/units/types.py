@@ -27,6 +27,9 @@ def read_from_file(info: core_schema.ValidationInfo) -> bool:
     return (info.context or {}).get("source") == "file"
 
 
+_INFINITIES: Final = ("inf", "+inf", "-inf")
+
+
 @dataclass(frozen=True, slots=True)
 class UnitOf:
     """Marks a float as a quantity of one kind; use it inside ``Annotated[float, ...]``.
@@ -71,6 +74,8 @@ class UnitOf:
     def _to_si(self, value: object, from_file: bool) -> float:
         kind = KINDS[self.kind]
         if isinstance(value, str):
+            if self.infinite and value.strip() in _INFINITIES:
+                return float(value)
             return parse(value, self.kind)
         if isinstance(value, Number):
             value = Quantity(float(value), Dimension())
