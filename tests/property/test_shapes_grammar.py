@@ -18,16 +18,26 @@ def centers(voxel_size, cells, origin):
     return (np.array(origin) + (index + 0.5) * voxel_size).reshape(-1, 3)
 
 
+def assert_becomes_voxels(seed):
+    try:
+        voxels = voxelize(random_shape(seed), 0.006)
+    except ShapeError as error:
+        assert "empty" in str(error), f"seed {seed}: {error}"  # noqa: PT017
+    else:
+        assert voxels.count > 0
+
+
 @pytest.mark.parametrize("block", range(20))
 def test_random_shapes_become_voxels(block):
     for seed in range(100 * block, 100 * block + 100):
-        shape = random_shape(seed)
-        try:
-            voxels = voxelize(shape, 0.006)
-        except ShapeError as error:
-            assert "empty" in str(error), f"seed {seed}: {error}"  # noqa: PT017
-        else:
-            assert voxels.count > 0
+        assert_becomes_voxels(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", range(20, 100))
+def test_many_more_random_shapes_become_voxels(block):
+    for seed in range(100 * block, 100 * block + 100):
+        assert_becomes_voxels(seed)
 
 
 def test_the_grammar_covers_every_kind_that_needs_no_file_or_code():

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from voxsoft.errors import ShapeError
-from voxsoft.shapes import Box, TriangleMesh, voxelize
+from voxsoft.shapes import Box, TriangleMesh, inside, voxelize
 
 SHARED = Path(os.environ.get("VOXSOFT_SHARED", Path(__file__).parents[3] / "shared"))
 FOLDER = SHARED / "data" / "shapes"
@@ -56,6 +56,20 @@ def test_a_hole_is_closed(tmp_path):
     # Without one of twelve triangles the winding number near the hole is near one half.
     holed = voxelize(saved(tmp_path, 10 * CORNERS, FACES[1:]), 0.001)
     assert 800 < holed.count <= 1000
+
+
+def test_a_broken_mesh_is_classified_cell_by_cell(tmp_path):
+    # The sign flips across the missing face, where no triangle is near to tell a block of it.
+    holed = saved(tmp_path, 10 * CORNERS, FACES[2:])
+    size, cells = 0.012 / 40, (40, 40, 40)
+    index = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), axis=-1)
+    centers = -0.001 + (index.reshape(-1, 3) + 0.5) * size
+    found = inside(holed, size, cells, (-0.001, -0.001, -0.001))
+    low, high = map(np.array, holed.bounds())
+    within = ((centers > low) & (centers < high)).all(axis=1)
+    expected = (holed.evaluate(centers) < -1e-9 * size) & within
+    assert expected.sum() > 1000
+    assert np.array_equal(found.ravel(), expected)
 
 
 def test_tets_give_their_surface(tmp_path):

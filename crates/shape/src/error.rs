@@ -84,7 +84,11 @@ pub enum SampleError {
         value: f64,
     },
     /// The function has no value somewhere.
-    #[error("the shape function is not a number (NaN) at {} of the cell centers, first at x, y, z = ({}, {}, {}) m", count, at[0], at[1], at[2])]
+    #[error(
+        "the shape function is not a number (NaN) at {count} of the cell centers, \
+         first at x, y, z = ({}, {}, {}) m",
+        at[0], at[1], at[2]
+    )]
     NotANumber {
         /// How many cells
         count: usize,

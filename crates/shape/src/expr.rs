@@ -162,7 +162,8 @@ impl Expr {
 
     /// Every distinct node, children before parents.
     ///
-    /// The walk keeps its own stack: a long sum is a deep expression, and threads have short stacks.
+    /// The walk keeps its own stack: a long sum is a deep expression, and threads have short
+    /// stacks.
     pub(crate) fn postorder(&self) -> Vec<Self> {
         let mut order = Vec::new();
         let mut seen = std::collections::HashSet::new();
@@ -254,8 +255,8 @@ unary_methods! {
 impl Expr {
     /// Square root, NaN below zero.
     ///
-    /// The root of a sum of squares becomes [`Binary::Hypot`], whose rounding error stays small at zero,
-    /// where that of a root does not.
+    /// The root of a sum of squares becomes [`Binary::Hypot`], whose rounding error stays small at
+    /// zero, where that of a root does not.
     pub fn sqrt(&self) -> Self {
         self.length_of_squares()
             .unwrap_or_else(|| Self::unary(Unary::Sqrt, self.clone()))
@@ -295,8 +296,8 @@ impl Expr {
 
     /// The power `self ^ exponent`.
     ///
-    /// Whole exponents up to 64 multiply, so that negative bases work and results stay exact; 1/2 is a
-    /// square root; anything else is exp(exponent · log self), NaN for a negative base.
+    /// Whole exponents up to 64 multiply, so that negative bases work and results stay exact; 1/2
+    /// is a square root; anything else is exp(exponent · log self), NaN for a negative base.
     pub fn pow(&self, exponent: &Self) -> Self {
         match exponent.as_constant() {
             Some(0.5) => self.sqrt(),

@@ -14,8 +14,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// A frame whose w axis points along `axis`. For the coordinate axes u and v are coordinate axes too
-    /// (z gives x, y; x gives y, z; y gives z, x), so that nothing is rounded.
+    /// A frame whose w axis points along `axis`. For the coordinate axes u and v are coordinate
+    /// axes too (z gives x, y; x gives y, z; y gives z, x), so that nothing is rounded.
     pub fn along(origin: [f64; 3], axis: [f64; 3]) -> Result<Self, BuildError> {
         let w = check::direction("axis", axis)?;
         // The coordinate axis least parallel to w comes after the most parallel one in cyclic order

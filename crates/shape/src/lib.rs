@@ -1,8 +1,9 @@
 //! Implicit shapes: a solid is a function s(x, y, z), negative inside.
 //!
 //! # Conventions
-//! Lengths are in m, angles in rad, space is right-handed with z up. A cell belongs to a shape when s < 0 at
-//! its center. Where a primitive says "true distance", s is the signed distance to the surface in m.
+//! Lengths are in m, angles in rad, space is right-handed with z up. A cell belongs to a shape when
+//! s < 0 at its center. Where a primitive says "true distance", s is the signed distance to the
+//! surface in m.
 //!
 //! # A tour
 //! ```
@@ -23,10 +24,10 @@
 //! ```
 //!
 //! # How it works
-//! [`Expr`] holds the function with float64 constants. [`sample`] compiles it with fidget, decides whole blocks
-//! by interval arithmetic, and evaluates the rest in f32; [`range`] bounds the f32 error, and cells
-//! within it are evaluated again in float64. Functions that are no expression (triangle meshes, polygons, Python
-//! functions) enter as a [`Field`].
+//! [`Expr`] holds the function with float64 constants. [`sample`] compiles it with fidget, decides
+//! whole blocks by interval arithmetic, and evaluates the rest in f32; [`range`] bounds the f32
+//! error, and cells within it are evaluated again in float64. Functions that are no expression
+//! (triangle meshes, polygons, Python functions) enter as a [`Field`].
 mod block;
 mod bounds;
 mod check;

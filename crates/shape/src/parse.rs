@@ -13,9 +13,9 @@ const FUNCTIONS: &str =
 
 /// Reads an expression.
 ///
-/// Names are x, y, z (m) and pi; operators + − * / % (as in Python) and ^ or ** (powers, right to left,
-/// stronger than a sign); functions sqrt abs exp log sin cos tan asin acos atan floor ceil of one argument, atan2 hypot
-/// of two, min max of two or more. Angles are in rad.
+/// Names are x, y, z (m) and pi; operators + − * / % (as in Python) and ^ or ** (powers, right to
+/// left, stronger than a sign); functions sqrt abs exp log sin cos tan asin acos atan floor ceil of
+/// one argument, atan2 hypot of two, min max of two or more. Angles are in rad.
 ///
 /// # Errors
 /// [`ParseError`] with the position of what cannot be read.

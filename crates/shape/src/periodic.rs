@@ -1,10 +1,11 @@
 //! Triply periodic surfaces and strut lattices.
 //!
-//! A surface g = 0 is turned into a distance. All functions here solve ∇²g = −(κk)²g, or are sums of two that do;
-//! on a normal at the distance d that reads g'' = −(κk)²g − 2Hg', with the mean curvature H. Without the last term g runs as
-//! a sine, and the distance is s = asin(q)/(κk) with q = κg/√(|∇g|²/k² + κ²g²) and k = 2π/period. The last term
-//! shifts both faces of a wall the same way by Hd², so a wall's thickness is right up to a relative error of second order
-//! in thickness/period. The inverse sine is cut after its fifth power, which keeps its slope finite.
+//! A surface g = 0 is turned into a distance. All functions here solve ∇²g = −(κk)²g, or are sums
+//! of two that do; on a normal at the distance d that reads g'' = −(κk)²g − 2Hg', with the mean
+//! curvature H. Without the last term g runs as a sine, and the distance is s = asin(q)/(κk) with q
+//! = κg/√(|∇g|²/k² + κ²g²) and k = 2π/period. The last term shifts both faces of a wall the same
+//! way by Hd², so a wall's thickness is right up to a relative error of second order in
+//! thickness/period. The inverse sine is cut after its fifth power, which keeps its slope finite.
 use std::f64::consts::TAU;
 
 use crate::bounds::Bounds;
@@ -157,8 +158,9 @@ impl Struts {
     pub fn lattice(self, period: &Expr, thickness: &Expr) -> Result<Shape, BuildError> {
         check_positive("period", period)?;
         check_positive("thickness", thickness)?;
-        // Mirror symmetry about every cell face and middle plane folds space into an eighth of a cell:
-        // each coordinate becomes its distance to the nearest cell corner plane, in [0, 1/2] periods.
+        // Mirror symmetry about every cell face and middle plane folds space into an eighth of a
+        // cell: each coordinate becomes its distance to the nearest cell corner plane, in [0, 1/2]
+        // periods.
         let folded = Expr::axes().map(|axis| (axis / period.clone()).triangle());
         let bars: Vec<Expr> = match self {
             Self::Cubic => (0..3)

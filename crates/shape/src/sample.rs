@@ -1,12 +1,13 @@
 //! Classification of the cells of a lattice: which centers lie inside a shape.
 //!
-//! A cell is inside when s < −10⁻⁹ voxel sizes at its center, in float64: values closer to zero count as
-//! on the surface, hence outside, so that rounding cannot flip a cell whose center lies exactly there.
+//! A cell is inside when s < −10⁻⁹ voxel sizes at its center, in float64: values closer to zero
+//! count as on the surface, hence outside, so that rounding cannot flip a cell whose center lies
+//! exactly there.
 //!
 //! Blocks of cells are decided together where interval arithmetic proves one sign; the others are
 //! split, each with the part of the function that matters there, and the smallest are evaluated by
-//! compiled f32 code. A cell whose f32 value lies within the error bound of [`crate::range`] is evaluated
-//! again in float64, so the answer is that of a float64 evaluation of every cell.
+//! compiled f32 code. A cell whose f32 value lies within the error bound of [`crate::range`] is
+//! evaluated again in float64, so the answer is that of a float64 evaluation of every cell.
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::block::Block;
@@ -42,7 +43,8 @@ impl Lattice {
         self.origin[axis] + (index as f64 + 0.5) * self.voxel_size
     }
 
-    /// Estimate of the memory of [`sample`] in bytes: the cells, and the tiles before they are put together.
+    /// Estimate of the memory of [`sample`] in bytes: the cells, and the tiles before they are put
+    /// together.
     pub fn memory(&self) -> u128 {
         2 * self.cells()
     }
@@ -77,7 +79,8 @@ impl Lattice {
 /// The result does not depend on the number of threads. `cancel` stops the work early.
 ///
 /// # Errors
-/// [`SampleError`]: a lattice that is unusable or needs more than `memory_limit` bytes, a function without a value.
+/// [`SampleError`]: a lattice that is unusable or needs more than `memory_limit` bytes, a function
+/// without a value.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;

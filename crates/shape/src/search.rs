@@ -15,8 +15,8 @@ const MOST_ROUNDS: usize = 20;
 const PROGRESS: f64 = 0.98;
 
 impl Shape {
-    /// Bounds with as few infinite sides as can be proved: the known ones, or else those of the region
-    /// within [`HORIZON`] that interval arithmetic cannot prove empty.
+    /// Bounds with as few infinite sides as can be proved: the known ones, or else those of the
+    /// region within [`HORIZON`] that interval arithmetic cannot prove empty.
     pub fn find_bounds(&self) -> Result<Bounds, FieldError> {
         if self.bounds.is_finite() || self.bounds.is_empty() {
             return Ok(self.bounds);

@@ -20,7 +20,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// A shape whose function is a true distance outside, or never above it by more than the bounds say.
+    /// A shape whose function is a true distance outside, or never above it by more than the bounds
+    /// say.
     pub fn distance(expr: Expr, bounds: Bounds) -> Self {
         Self {
             expr,

@@ -1,7 +1,8 @@
 """Triply periodic surfaces and strut lattices; endless, so intersect them with a body.
 
-A wall's thickness is metric up to a relative error of second order in thickness/period: for a gyroid
-0.7 % at a twentieth of the period and 3 % at a tenth (derivation in the Rust module ``periodic``).
+A wall's thickness is metric up to a relative error of second order in thickness/period: for a
+gyroid 0.7 % at a twentieth of the period and 3 % at a tenth (derivation in the Rust module
+``periodic``).
 """
 
 from __future__ import annotations

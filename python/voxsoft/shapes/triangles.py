@@ -61,7 +61,7 @@ class TriangleMesh(Shape):
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
         solid = _solid(path, changed, parse(f"1 {self.unit}", "length"))
-        return _core.Shape.sampled(solid.distances, solid.low, solid.high, True)
+        return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
 
 @lru_cache(maxsize=8)
@@ -94,6 +94,7 @@ class _Solid:
         import igl
 
         _refuse_soup(triangles, name)
+        self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
         self.low: Triple = tuple(used.min(axis=0).tolist())
         self.high: Triple = tuple(used.max(axis=0).tolist())
@@ -110,6 +111,20 @@ class _Solid:
         distance: NDArray[np.float64] = np.sqrt(np.atleast_1d(squared))
         distance[np.atleast_1d(is_inside)] *= -1
         return distance
+
+
+def _is_closed(triangles: NDArray[np.int64]) -> bool:
+    """Tell whether each edge is run through as often in one direction as in the other.
+
+    Then the winding number is whole and jumps at triangles only, so the signed distance changes by
+    no more than the distance moved, and whole blocks can be decided from their middle. In a broken
+    mesh the sign also flips across holes, far from any triangle: every cell must be asked.
+    """
+    edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    forward = edges[:, 0] < edges[:, 1]
+    _, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    balance = np.bincount(index.reshape(-1), weights=np.where(forward, 1, -1))
+    return not balance.any()
 
 
 def _refuse_soup(triangles: NDArray[np.int64], name: str) -> None:

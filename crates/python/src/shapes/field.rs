@@ -45,7 +45,8 @@ impl PythonField {
 
 impl Field for PythonField {
     fn sample(&self, points: &[[f64; 3]], values: &mut [f64]) -> Result<(), FieldError> {
-        // Python cannot be called while the interpreter shuts down; `attach` waits for the GIL otherwise.
+        // Python cannot be called while the interpreter shuts down; `attach` waits for the GIL
+        // otherwise.
         Python::attach(|py| {
             self.call(py, points, values)
                 .map_err(|error| FieldError(error.to_string()))

@@ -24,8 +24,9 @@ pub fn intersection(shapes: &[Shape]) -> Result<Shape, BuildError> {
     let bounds = shapes
         .iter()
         .fold(Bounds::ALL, |all, shape| all.intersection(&shape.bounds));
-    // The distance to the common box is at most √n times the largest distance to one of n boxes, and
-    // at most √3 of them (one per axis) count. A shape without known growth gives no bound outside.
+    // The distance to the common box is at most √n times the largest distance to one of n boxes,
+    // and at most √3 of them (one per axis) count. A shape without known growth gives no bound
+    // outside.
     let share = (shapes.len().min(3) as f64).sqrt();
     Ok(Shape {
         expr,
@@ -49,8 +50,9 @@ pub fn difference(shapes: &[Shape]) -> Result<Shape, BuildError> {
 
 /// Union with the edges between shapes filled over a length `radius` (m).
 ///
-/// The quadratic blend min(a, b) − h²·radius/4 with h = max(0, 1 − |a − b|/radius) leaves the function
-/// unchanged where the two differ by more than `radius`, and lowers it by at most radius/4.
+/// The quadratic blend min(a, b) − h²·radius/4 with h = max(0, 1 − |a − b|/radius) leaves the
+/// function unchanged where the two differ by more than `radius`, and lowers it by at most
+/// radius/4.
 pub fn smooth_union(shapes: &[Shape], radius: f64) -> Result<Shape, BuildError> {
     check::positive("smooth", radius)?;
     let expr = balanced(shapes, &|a, b| smooth_minimum(a, b, radius))?;

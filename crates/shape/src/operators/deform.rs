@@ -9,7 +9,8 @@ use crate::expr::Expr;
 use crate::frame::Frame;
 use crate::shape::Shape;
 
-/// Turns each section across `axis` through `center` by `rate` (rad/m) times its height above `center`.
+/// Turns each section across `axis` through `center` by `rate` (rad/m) times its height above
+/// `center`.
 pub fn twist(
     shape: &Shape,
     rate: f64,
@@ -29,8 +30,9 @@ pub fn twist(
     Ok(asked_at(shape, &frame, back))
 }
 
-/// Bends the shape around an arc: straight lines along `axis` become circles of `curvature` (1/m) in the
-/// plane of `axis` and `toward`, with their centers on the side of `toward`. Nothing moves at `center`.
+/// Bends the shape around an arc: straight lines along `axis` become circles of `curvature` (1/m)
+/// in the plane of `axis` and `toward`, with their centers on the side of `toward`. Nothing moves
+/// at `center`.
 ///
 /// # Errors
 /// `toward` must not be parallel to `axis`; the curvature must be finite and not zero.
@@ -53,8 +55,8 @@ pub fn bend(
     let frame = bending_frame(axis, toward, center)?;
     let [u, v, w] = frame.coordinates();
     let radius = 1.0 / curvature;
-    // The arc of a line at distance u from the neutral line has radius R − u about the point (R, 0) of the
-    // (u, w) plane; its length on the neutral line is R times the angle.
+    // The arc of a line at distance u from the neutral line has radius R − u about the point (R, 0)
+    // of the (u, w) plane; its length on the neutral line is R times the angle.
     let side = radius.signum();
     let (from_center, along) = ((radius - u) * side, w * side);
     let arc = along.atan2(from_center.clone()) * radius;

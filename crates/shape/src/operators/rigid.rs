@@ -50,8 +50,8 @@ pub fn mirror(shape: &Shape, point: [f64; 3], normal: [f64; 3]) -> Result<Shape,
 
 /// The shape enlarged by `factors` along x, y, z, away from `center`.
 ///
-/// With one factor for all axes distances stay true; with different ones the function is multiplied by
-/// the smallest, which keeps it a lower bound of the distance.
+/// With one factor for all axes distances stay true; with different ones the function is multiplied
+/// by the smallest, which keeps it a lower bound of the distance.
 pub fn scale(shape: &Shape, factors: [f64; 3], center: [f64; 3]) -> Result<Shape, BuildError> {
     check::point("center", center)?;
     for factor in factors {
@@ -98,8 +98,8 @@ pub fn array(shape: &Shape, count: [usize; 3], spacing: [f64; 3]) -> Result<Shap
     union(&copies)
 }
 
-/// `count` copies around `axis` through `center`, spread over `angle` (rad). A full turn spaces them evenly;
-/// a part of a turn puts copies at both of its ends.
+/// `count` copies around `axis` through `center`, spread over `angle` (rad). A full turn spaces
+/// them evenly; a part of a turn puts copies at both of its ends.
 pub fn polar_array(
     shape: &Shape,
     count: usize,
@@ -135,8 +135,8 @@ fn matrix(entry: impl Fn(usize, usize) -> f64) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j)))
 }
 
-/// Rodrigues' formula. Sines and cosines of quarter turns are made exact, so that a turned box keeps its
-/// faces on the lattice.
+/// Rodrigues' formula. Sines and cosines of quarter turns are made exact, so that a turned box
+/// keeps its faces on the lattice.
 fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     let exact = |v: f64| {
         if (v - v.round()).abs() < 1e-15 {
@@ -156,7 +156,8 @@ fn rotation(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     matrix(|i, j| columns[j][i])
 }
 
-/// Moves the shape by an orthogonal matrix about `center`; the function is asked at the point moved back.
+/// Moves the shape by an orthogonal matrix about `center`; the function is asked at the point moved
+/// back.
 fn apply_rotation(shape: &Shape, forward: [[f64; 3]; 3], center: [f64; 3]) -> Shape {
     let local = shifted_axes(center);
     let back = [0, 1, 2].map(|i| {
@@ -174,15 +175,16 @@ fn apply_rotation(shape: &Shape, forward: [[f64; 3]; 3], center: [f64; 3]) -> Sh
     }
 }
 
-/// The box around a turned box; a side is infinite only where an infinite side of the old box leads.
+/// The box around a turned box; a side is infinite only where an infinite side of the old box
+/// leads.
 fn turned_bounds(bounds: &Bounds, forward: [[f64; 3]; 3], center: [f64; 3]) -> Bounds {
     if bounds.is_empty() {
         return Bounds::EMPTY;
     }
     let mut turned = Bounds::new(center, center);
-    for i in 0..3 {
-        for j in (0..3).filter(|&j| forward[i][j] != 0.0) {
-            let ends = [bounds.low[j], bounds.high[j]].map(|v| forward[i][j] * (v - center[j]));
+    for (i, row) in forward.iter().enumerate() {
+        for (j, &factor) in row.iter().enumerate().filter(|(_, factor)| **factor != 0.0) {
+            let ends = [bounds.low[j], bounds.high[j]].map(|v| factor * (v - center[j]));
             turned.low[i] += ends[0].min(ends[1]);
             turned.high[i] += ends[0].max(ends[1]);
         }

@@ -13,9 +13,10 @@ use crate::shape::Shape;
 
 /// A closed polygon in a plane; its field is the signed distance (the third coordinate is ignored).
 ///
-/// Inside is decided by the crossing number, so either orientation works, and a polygon that crosses
-/// itself is inside where a ray leaves through an odd number of edges. An expression of n edges would cost n
-/// inverse tangents per cell; this field costs n multiplications and keeps the distance exact.
+/// Inside is decided by the crossing number, so either orientation works, and a polygon that
+/// crosses itself is inside where a ray leaves through an odd number of edges. An expression of n
+/// edges would cost n inverse tangents per cell; this field costs n multiplications and keeps the
+/// distance exact.
 #[derive(Clone, Debug)]
 pub struct Polygon {
     points: Vec<[f64; 2]>,
@@ -100,8 +101,8 @@ impl Field for Polygon {
     }
 }
 
-/// A polygon in the plane across `axis`, drawn from `base` over `height`. For the axis z the polygon's
-/// coordinates are x, y.
+/// A polygon in the plane across `axis`, drawn from `base` over `height`. For the axis z the
+/// polygon's coordinates are x, y.
 pub fn prism(
     base: [f64; 3],
     axis: [f64; 3],
@@ -135,7 +136,8 @@ pub fn revolve(base: [f64; 3], axis: [f64; 3], profile: &[[f64; 2]]) -> Result<S
             allowed,
         });
     }
-    // An edge on the axis closes the profile but lies inside the solid: no distance is measured to it.
+    // An edge on the axis closes the profile but lies inside the solid: no distance is measured to
+    // it.
     polygon.is_wall = edges(profile)
         .map(|(a, b)| a[0] > 0.0 || b[0] > 0.0)
         .collect();
@@ -151,8 +153,8 @@ pub fn revolve(base: [f64; 3], axis: [f64; 3], profile: &[[f64; 2]]) -> Result<S
 
 /// A polygon at radius ≥ 0 whose mirror image closes it across the axis.
 ///
-/// On the axis itself the crossing number is undecided (the edge there is the ray's end), so the radius
-/// is moved off it by a part of the profile's width that no float64 distance notices.
+/// On the axis itself the crossing number is undecided (the edge there is the ray's end), so the
+/// radius is moved off it by a part of the profile's width that no float64 distance notices.
 #[derive(Debug)]
 struct MirroredPolygon(Polygon);
 

@@ -21,8 +21,8 @@ pub fn sphere(center: [f64; 3], radius: f64) -> Result<Shape, BuildError> {
 
 /// An ellipsoid with half axes `radii` along x, y, z.
 ///
-/// s = (k − 1)·k/|∇(k²)/2| with k = √Σ(xᵢ/rᵢ)²: the distance to first order near the surface. The ratio is
-/// kept finite at the center, where it would be 0/0, by a term of relative size 10⁻⁶.
+/// s = (k − 1)·k/|∇(k²)/2| with k = √Σ(xᵢ/rᵢ)²: the distance to first order near the surface. The
+/// ratio is kept finite at the center, where it would be 0/0, by a term of relative size 10⁻⁶.
 pub fn ellipsoid(center: [f64; 3], radii: [f64; 3]) -> Result<Shape, BuildError> {
     check::point("center", center)?;
     for radius in radii {
@@ -115,7 +115,8 @@ pub fn capsule(start: [f64; 3], end: [f64; 3], radius: f64) -> Result<Shape, Bui
     Ok(Shape::distance(length(&offsets) - radius, bounds))
 }
 
-/// A ring around `axis` through `center`: a tube of radius `minor` whose middle line has radius `major`.
+/// A ring around `axis` through `center`: a tube of radius `minor` whose middle line has radius
+/// `major`.
 pub fn torus(
     center: [f64; 3],
     axis: [f64; 3],
