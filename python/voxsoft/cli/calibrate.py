@@ -46,6 +46,7 @@ def calibrate(
     from voxsoft import files
     from voxsoft.calibration import Experiment, Measurement
     from voxsoft.calibration import calibrate as fit
+    from voxsoft.files.calibrations import write_calibration
 
     with errors_in_words(json=json):
         loaded = files.load_with(design, sets or [])
@@ -62,7 +63,7 @@ def calibrate(
                 progress=lambda event: bar.advance_to(event.evaluations, _note(event)),
             )
         folder = out or Path("runs") / f"{loaded.name}-calibration"
-        files.write_calibration(answer, folder, name or data[0].stem)
+        write_calibration(answer, folder, name or data[0].stem)
         if json:
             print_json(answer.summary() | {"folder": str(folder)})
         else:
@@ -77,7 +78,7 @@ def _note(event: CalibrationEvent) -> str:
 def _show(answer: Calibration) -> None:
     say(f"mean error {answer.mean_error * 1e3:.2f} mm, largest {answer.max_error * 1e3:.2f} mm")
     rows = [
-        [name, f"{value / 1e3:.3f} kPa", answer.identifiable[name].sentence]
-        for name, value in answer.parameters.items()
+        [profile.name, f"{profile.best / 1e3:.3f} kPa", profile.sentence]
+        for profile in answer.profiles
     ]
     show_table("Parameters", ["name", "value", "identifiable"], rows)

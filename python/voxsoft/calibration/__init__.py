@@ -1,0 +1,38 @@
+r"""Calibration: from measurements of a real body to the moduli of its material.
+
+Examples
+--------
+>>> from voxsoft.design import families
+>>> table = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75"
+>>> experiment = Experiment(families.beam(), read_measurement(table))
+>>> found = calibrate(experiment, parameters={"edge": ("5 kPa", "80 kPa")}, generations=3)
+>>> found.identifiable
+{'edge': True}
+"""
+
+from voxsoft.calibration.experiment import Experiment
+from voxsoft.calibration.identifiability import Profile
+from voxsoft.calibration.line import LineName
+from voxsoft.calibration.measurement import Measurement
+from voxsoft.calibration.misfit import Comparison
+from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
+from voxsoft.calibration.run import CalibrationEvent, ProgressCallback, calibrate
+from voxsoft.calibration.space import DEFAULT_BOUNDS
+from voxsoft.calibration.table import read_measurement
+
+__all__ = [
+    "DEFAULT_BOUNDS",
+    "Calibration",
+    "CalibrationEvent",
+    "Comparison",
+    "Experiment",
+    "Fit",
+    "Generation",
+    "LineName",
+    "Measurement",
+    "Profile",
+    "ProgressCallback",
+    "Stage",
+    "calibrate",
+    "read_measurement",
+]

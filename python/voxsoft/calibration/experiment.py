@@ -1,0 +1,252 @@
+"""An experiment: a design and what was measured on the real thing."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import metrics
+from voxsoft.calibration.line import LineName, StationLine
+from voxsoft.calibration.measurement import Measurement
+from voxsoft.design import Design, Gravity, Probe
+from voxsoft.errors import MeasurementError
+from voxsoft.materials import Material
+from voxsoft.records import closest
+from voxsoft.simulation import Place, Setup
+from voxsoft.simulation.places import place_of, voxel_size
+from voxsoft.units import format_quantity
+
+# Real bodies neither stretch nor travel farther than this many of their own lengths at rest.
+_FARTHEST = 2.0
+# A body whose farthest station is nearer than this share of its free length was not measured
+# along the body, or in other units.
+_NEAREST = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Experiment:
+    """A design together with a measurement of the body it describes.
+
+    Parameters
+    ----------
+    design
+        The body as it was clamped and loaded in the laboratory. All its parts are of one
+        material, the one to be calibrated; the constants it has now do not matter.
+    measurement
+        Where its stations were seen.
+    line
+        The line of the body on which arc positions lie: ``lower-edge`` (default, as on the
+        paper's photographs), ``centerline`` or ``upper-edge``, at the middle of the width. Stations
+        that name a probe do not use it.
+
+    Raises
+    ------
+    MeasurementError
+        A station that the design does not have, or numbers that do not fit its size.
+    DesignError
+        A design that cannot be simulated, or of several materials.
+
+    Notes
+    -----
+    The clamp face is where the clamped vertices end towards the free part of the body; arcs and
+    positions are counted from there, along and relative to the chosen line.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> tip = Measurement(quantities=["x", "dz"], values=[[0.046, -0.08]], arcs=[0.09])
+    >>> Experiment(families.beam(), tip).points.round(4).tolist()
+    [[0.1, 0.005, 0.0]]
+    """
+
+    design: Design
+    measurement: Measurement
+    line: LineName = "lower-edge"
+
+    def __post_init__(self) -> None:
+        _ = self.material, self.places
+        self._check_size()
+
+    @property
+    def name(self) -> str:
+        """What the measurement is called."""
+        return self.measurement.name
+
+    @cached_property
+    def setup(self) -> Setup:
+        """The design made ready for the solver."""
+        return Setup.of(self.design)
+
+    @cached_property
+    def material(self) -> Material:
+        """The material all parts are of."""
+        first, *others = (self.design.material_of(part) for part in self.design.parts)
+        if any(other != first for other in others):
+            raise MeasurementError(
+                "parts",
+                "are of several materials; a calibration fits one",
+                "calibrate each material on a coupon of its own",
+            )
+        return first
+
+    @cached_property
+    def voxel_size(self) -> float:
+        """In m."""
+        return voxel_size(self.setup.mesh)
+
+    @cached_property
+    def station_line(self) -> StationLine:
+        """The line that arcs and positions are counted along."""
+        clamped = np.concatenate([np.zeros(0, np.uint32), *self.setup.clamped])
+        return StationLine.along(
+            self.setup.mesh.vertices,
+            clamped,
+            line=self.line,
+            gravity=self.gravity,
+            voxel_size=self.voxel_size,
+        )
+
+    @cached_property
+    def gravity(self) -> tuple[float, float, float]:
+        """Direction of gravity; zero without it."""
+        loads = (load for load in self.design.loads if isinstance(load, Gravity))
+        load = next(loads, None)
+        return load.direction if load else (0.0, 0.0, 0.0)
+
+    @cached_property
+    def places(self) -> tuple[Place, ...]:
+        """What each station averages over."""
+        if self.measurement.probes is not None:
+            return tuple(self._probe(name) for name in self.measurement.probes)
+        assert self.measurement.arcs is not None  # a measurement has one or the other
+        self._check_arcs(self.measurement.arcs)
+        mesh, shapes = self.setup.mesh, self.design.shapes
+        points = self.station_line.points(self.measurement.arcs)
+        return tuple(
+            place_of(Probe(point=tuple(point)), mesh, shapes, f"station {name}")
+            for point, name in zip(points, self.measurement.station_names, strict=True)
+        )
+
+    @cached_property
+    def points(self) -> NDArray[np.float64]:
+        """The stations on the undeformed body, (n, 3), m."""
+        rest = self.setup.mesh.vertices
+        return np.array([place.weights @ rest[place.vertices] for place in self.places])
+
+    @cached_property
+    def offsets(self) -> NDArray[np.float64]:
+        """What the undeformed body has for each measured number, (n, q), m.
+
+        The position relative to the clamp face, and zero for displacements.
+        """
+        measurement = self.measurement
+        if not measurement.are_positions.any():
+            return np.zeros_like(measurement.values)
+        relative = self.points - self.station_line.foot
+        undeformed: NDArray[np.float64] = np.where(
+            measurement.are_positions, relative[:, measurement.axes], 0.0
+        )
+        return undeformed
+
+    @cached_property
+    def sag(self) -> float:
+        """How far the body was seen to sag, in m: the largest measured displacement.
+
+        Along gravity if that was measured, else in all measured axes together.
+        """
+        moved = self.measurement.values - self.offsets
+        down = np.flatnonzero(
+            self.measurement.axes == int(np.argmax(np.abs([*self.gravity[:2], self.gravity[2]])))
+        )
+        seen = moved[:, down] if any(self.gravity) and down.size else moved
+        return float(np.linalg.norm(seen, axis=1).max())
+
+    def seen_at(self, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return what would be measured on a simulated body.
+
+        Parameters
+        ----------
+        positions
+            Its vertices at rest under load, (v, 3), m.
+
+        Returns
+        -------
+        ndarray of shape (n, q)
+            In m, in the order of the measurement.
+        """
+        rest = self.setup.mesh.vertices
+        moved = np.array(
+            [
+                metrics.mean_displacement(rest, positions, place.vertices, place.weights)
+                for place in self.places
+            ]
+        )
+        seen: NDArray[np.float64] = self.offsets + moved[:, self.measurement.axes]
+        return seen
+
+    def _probe(self, name: str) -> Place:
+        if name not in self.setup.places:
+            hint = closest(name, self.setup.places) or "add it to the probes of the design"
+            raise MeasurementError(f"probe {name}", "is not a probe of the design", hint)
+        return self.setup.places[name]
+
+    def _check_arcs(self, arcs: NDArray[np.float64]) -> None:
+        line, last = self.station_line, float(arcs.max())
+        free = format_quantity(float(f"{line.length:.6g}"), "length")
+        came = format_quantity(float(f"{last:.6g}"), "length")
+        if last > line.length + 0.5 * self.voxel_size:
+            raise MeasurementError(
+                f"station arc {came}",
+                f"lies beyond the body, which is free for {free} from its clamp",
+                _unit_hint(last, line.length),
+            )
+        if last < _NEAREST * line.length:
+            raise MeasurementError(
+                f"station arc {came}",
+                f"is the farthest, on a body that is free for {free}",
+                _unit_hint(last, line.length),
+            )
+
+    def _check_size(self) -> None:
+        extent = self.setup.mesh.vertices.max(axis=0) - self.setup.mesh.vertices.min(axis=0)
+        size = float(np.linalg.norm(extent))
+        values = np.abs(self.measurement.values)
+        station, quantity = np.unravel_index(int(values.argmax()), values.shape)
+        largest = float(values[station, quantity])
+        where = (
+            f"{self.measurement.station_names[station]}, {self.measurement.quantities[quantity]}"
+        )
+        came = format_quantity(float(f"{largest:.6g}"), "length")
+        body = format_quantity(float(f"{size:.4g}"), "length")
+        if largest > _FARTHEST * size:
+            raise MeasurementError(
+                where, f"{came} is too far for a body of {body}", _unit_hint(largest, size)
+            )
+        if self.measurement.are_positions.any() and self.measurement.arcs is not None:
+            reach = float(np.abs(self.measurement.values).max())
+            if reach < _NEAREST * float(self.measurement.arcs.max()):
+                raise MeasurementError(
+                    where,
+                    f"{came} is the farthest position, at arcs up to "
+                    f"{format_quantity(float(self.measurement.arcs.max()), 'length')}",
+                    _unit_hint(reach, float(self.measurement.arcs.max())),
+                )
+
+
+def _unit_hint(came: float, due: float) -> str:
+    """Suggest the unit that would make `came` about as large as `due`."""
+    ratio = came / due
+    for factor, hint in (
+        (1e3, "are the numbers in mm? then name the column _mm"),
+        (1e2, "are the numbers in cm? then name the column _cm"),
+        (1e1, "are the numbers in mm under _cm? check the unit of the column"),
+        (1e-1, "are the numbers in cm under _mm? check the unit of the column"),
+        (1e-2, "are the numbers in m under _cm? check the unit of the column"),
+        (1e-3, "are the numbers in m under _mm? check the unit of the column"),
+    ):
+        if factor / 3 < ratio < factor * 3:
+            return hint
+    return "check the unit of the column, and the size of the design"

@@ -1,0 +1,214 @@
+"""Whether the data could tell a parameter at all: its profile and its likelihood interval."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.calibration.misfit import Evaluation, Misfit
+from voxsoft.calibration.refinement import minimized
+from voxsoft.units import format_quantity
+
+#: Largest ratio of the ends of an interval for its parameter to count as identifiable.
+WIDEST: Final = 3.0
+
+# 95 % quantile of the chi-square distribution with one degree of freedom.
+_THRESHOLD: Final = 3.841458820694124
+
+# First step away from the optimum in natural logarithms; each further one is twice as long.
+_FIRST_STEP: Final = 0.05
+# The end of an interval is found to this part of the threshold, and in so many cuts.
+_END_FOUND: Final = 0.02
+_MOST_CUTS: Final = 5
+# The inner minimum: first step and size of the last simplex, in natural logarithms. The error is
+# flat there, so that half a percent off changes it by parts in 10⁵.
+_INNER_STEP: Final = 0.1
+_INNER_FOUND: Final = 5e-3
+
+
+@dataclass(frozen=True)
+class Profile:
+    r"""What the data say about one parameter.
+
+    The error is minimised over everything else, scales included, for values of this parameter
+    away from its best. With an error vector of :math:`d` numbers at each of :math:`n` stations
+    and the probability density of an error falling as :math:`b^{-d} e^{-|r|/b}`, the likelihood
+    that belongs to a sum of lengths, the noise :math:`b` estimated from the residuals
+    themselves, and :math:`J` the mean length, twice the logarithm of the likelihood ratio is
+
+    .. math:: \Lambda = 2 n d \ln(J / J_{min}),
+
+    and the 95 % interval is where :math:`\Lambda \le 3.84` (Wilks 1938,
+    doi:10.1214/aoms/1177732360; Raue et al. 2009, doi:10.1093/bioinformatics/btp358).
+
+    Attributes
+    ----------
+    name, best
+        The parameter and its best value, SI.
+    low, high
+        Ends of the 95 % interval, SI; None where the interval reaches the end of the search range.
+    values, errors
+        The profile: values in SI, rising, and the smallest mean error at each in m, (k,).
+    identifiable
+        Whether the interval ends on both sides within the range, and its ends are less than a
+        factor of 3 apart.
+
+    Notes
+    -----
+    Residuals of a model that does not fit are no independent noise: neighbouring stations err
+    alike, so that true intervals are wider. The converse is safe: what is not identifiable here
+    is not identifiable.
+    """
+
+    name: str
+    best: float
+    low: float | None
+    high: float | None
+    values: NDArray[np.float64]
+    errors: NDArray[np.float64]
+
+    @property
+    def identifiable(self) -> bool:
+        """Whether the data tell this parameter."""
+        return self.low is not None and self.high is not None and self.high < WIDEST * self.low
+
+    @property
+    def sentence(self) -> str:
+        """What the data say, in words."""
+        low, high = (None if end is None else _shown(end) for end in (self.low, self.high))
+        if low and high:
+            within = f"between {low} and {high} (95 %)"
+            return within if self.identifiable else f"{within}: too wide to count as identified"
+        if high:
+            return f"only bounded from above, by {high} (95 %)"
+        if low:
+            return f"only bounded from below, by {low} (95 %)"
+        return "not identifiable: the data fit as well anywhere in the range"
+
+
+def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
+    """Profile every parameter of a calibration.
+
+    Parameters
+    ----------
+    misfit
+        The function that was minimised.
+    best
+        Its minimum.
+    """
+    sides = [(index, side) for index in range(len(misfit.space)) for side in (-1, 1)]
+    walked = misfit.side_by_side(lambda way: _Walk(misfit, best, *way).run(), sides)
+    return tuple(
+        _joined(misfit, best, index, walked[2 * index], walked[2 * index + 1])
+        for index in range(len(misfit.space))
+    )
+
+
+@dataclass(frozen=True)
+class _Point:
+    log: float
+    genes: NDArray[np.float64]
+    error: float
+
+
+@dataclass(frozen=True)
+class _Walked:
+    points: list[_Point]
+    end: float | None
+
+
+class _Walk:
+    """From the optimum along one parameter, one way, to the end of its interval."""
+
+    def __init__(self, misfit: Misfit, best: Evaluation, index: int, side: int) -> None:
+        self.misfit, self.best, self.index, self.side = misfit, best, index, side
+        self.spans = misfit.space.spans()
+
+    def run(self) -> _Walked:
+        genes = np.array(self.best.genes)
+        start = _Point(float(genes[self.index] * self.spans[self.index]), genes, self.best.error)
+        points = [start]
+        for log in self._steps(start.log):
+            points.append(self._at(log, points[-1].genes))
+            if self._excess(points[-1]) > 0:
+                end = self._cut(points[-2], points[-1], points)
+                return _Walked(points, end)
+        return _Walked(points, None)
+
+    def _steps(self, log: float) -> Iterator[float]:
+        bound = 0.0 if self.side < 0 else float(self.spans[self.index])
+        step = _FIRST_STEP
+        while log != bound:
+            log += self.side * step
+            step *= 2
+            # A last step shorter than the first is left out.
+            if self.side * (bound - log) < _FIRST_STEP:
+                log = bound
+            yield log
+
+    def _cut(self, inside: _Point, outside: _Point, points: list[_Point]) -> float:
+        """Find where the statistic crosses its threshold.
+
+        Its root is nearly linear in the parameter, so that a cut by proportion lands close.
+        """
+        for _ in range(_MOST_CUTS):
+            a, b = (np.sqrt(max(self._statistic(p), 0.0)) for p in (inside, outside))
+            share = float(np.clip((np.sqrt(_THRESHOLD) - a) / (b - a), 0.1, 0.9))
+            middle = self._at(inside.log + share * (outside.log - inside.log), inside.genes)
+            points.append(middle)
+            if abs(self._excess(middle)) < _END_FOUND * _THRESHOLD:
+                break
+            inside, outside = (inside, middle) if self._excess(middle) > 0 else (middle, outside)
+        return middle.log
+
+    def _at(self, log: float, nearby: NDArray[np.float64]) -> _Point:
+        """Minimise over all other parameters with this one held."""
+        held = float(np.clip(log / self.spans[self.index], 0.0, 1.0))
+        others = np.delete(np.arange(len(self.spans)), self.index)
+
+        def genes_with(free: NDArray[np.float64]) -> NDArray[np.float64]:
+            genes = np.full(len(self.spans), held)
+            genes[others] = free
+            return genes
+
+        found = nearby[others]
+        if others.size:
+            found = minimized(
+                lambda free: self.misfit.at(genes_with(free)).error,
+                nearby[others],
+                self.spans[others],
+                first_step=_INNER_STEP,
+                converged=_INNER_FOUND,
+            )
+        genes = genes_with(found)
+        return _Point(log, genes, self.misfit.at(genes).error)
+
+    def _statistic(self, point: _Point) -> float:
+        # A fit without residuals leaves no noise to estimate: 1 nm stands for it.
+        floor = max(self.best.error, 1e-9)
+        error = min(max(point.error, floor), 1e3)
+        return float(2.0 * self.misfit.numbers * np.log(error / floor))
+
+    def _excess(self, point: _Point) -> float:
+        return self._statistic(point) - _THRESHOLD
+
+
+def _joined(misfit: Misfit, best: Evaluation, index: int, down: _Walked, up: _Walked) -> Profile:
+    low = misfit.space.low[index]
+    points = sorted([*down.points, *up.points[1:]], key=lambda point: point.log)
+    return Profile(
+        name=misfit.space.names[index],
+        best=float(misfit.space.values(best.genes)[index]),
+        low=None if down.end is None else float(low * np.exp(down.end)),
+        high=None if up.end is None else float(low * np.exp(up.end)),
+        values=np.array([low * np.exp(point.log) for point in points]),
+        errors=np.array([point.error for point in points]),
+    )
+
+
+def _shown(modulus: float) -> str:
+    return format_quantity(float(f"{modulus:.3g}"), "modulus")

@@ -1,0 +1,227 @@
+"""How far a simulated body is from the measured one, and the fitness made of it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import minimize_scalar
+
+from voxsoft.calibration.experiment import Experiment
+from voxsoft.calibration.space import Space
+from voxsoft.simulation import Status, relax
+
+T = TypeVar("T")
+U = TypeVar("U")
+
+#: k of the paper's fitness, for errors in m.
+FITNESS_FACTOR: Final = -10.0
+
+#: Relative residual at which a candidate counts as at rest.
+TOLERANCE: Final = 1e-6
+_MAX_STEPS: Final = 200_000
+
+# Photographs are scaled wrong by some percent; a factor beyond these is another mistake.
+_SCALES: Final = (0.5, 2.0)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A simulated body beside the measured one.
+
+    Attributes
+    ----------
+    simulated, measured
+        What is and what would be measured, (n, q), m; `simulated` is scaled already.
+    scale
+        The factor on the simulated shape; 1 unless it was freed.
+    """
+
+    simulated: NDArray[np.float64]
+    measured: NDArray[np.float64]
+    scale: float
+
+    @property
+    def errors(self) -> NDArray[np.float64]:
+        """Length of the error vector at each station, (n,), m."""
+        lengths: NDArray[np.float64] = np.linalg.norm(self.simulated - self.measured, axis=1)
+        return lengths
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """One candidate and what it was worth.
+
+    Attributes
+    ----------
+    genes
+        Where it lies in the space, each from 0 to 1.
+    status
+        How its simulations ended; the first that is not ``ok`` counts.
+    error
+        Mean over the experiments of the mean error, m; infinite if a simulation failed.
+    fitness
+        ``exp(S)``, zero if a simulation failed.
+    scales
+        The factor on the simulated shape in each experiment.
+    """
+
+    genes: tuple[float, ...]
+    status: Status
+    error: float
+    fitness: float
+    scales: tuple[float, ...]
+
+
+def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) -> float:
+    """Factor ``s`` that minimises the sum over stations of ``|s simulated - measured|``.
+
+    The sum is convex in ``s``, so that a search along one line finds it.
+
+    Parameters
+    ----------
+    simulated, measured
+        Numbers at the stations, (n, q), m.
+
+    Examples
+    --------
+    >>> shape = np.array([[0.01, -0.002], [0.02, -0.01], [0.03, -0.02]])
+    >>> round(best_scale(shape, 1.1 * shape), 9)
+    1.1
+    """
+
+    def total(scale: float) -> float:
+        return float(np.linalg.norm(scale * simulated - measured, axis=1).sum())
+
+    found = minimize_scalar(total, bounds=_SCALES, method="bounded", options={"xatol": 1e-10})
+    return float(found.x)
+
+
+class Misfit:
+    r"""The function that a calibration minimises, with a memory of what it has seen.
+
+    Parameters
+    ----------
+    experiments
+        What is compared; each has the same weight.
+    space
+        Ranges of the constants.
+    free_scale
+        Whether each experiment has a factor of its own on the simulated shape.
+    workers
+        Simulations at a time; the answers do not depend on it.
+    tolerance
+        Relative residual at which a body counts as at rest.
+
+    Notes
+    -----
+    With :math:`r` the error vector of a station, the paper's fitness is :math:`e^S` with
+    :math:`S = k \sum |r|` over the stations and :math:`k = -10` per metre. For several
+    experiments :math:`S = k \bar n \, \overline{|r|}`, where the mean error of each
+    experiment has the same weight and :math:`\bar n` is the mean number of stations; for one
+    experiment the two are the same.
+    """
+
+    def __init__(
+        self,
+        experiments: Sequence[Experiment],
+        space: Space,
+        *,
+        free_scale: bool = False,
+        workers: int = 1,
+        tolerance: float = TOLERANCE,
+    ) -> None:
+        self.experiments = tuple(experiments)
+        self.space = space
+        self.free_scale = free_scale
+        self.workers = workers
+        self.tolerance = tolerance
+        self._seen: dict[tuple[float, ...], Evaluation] = {}
+        self._lock = threading.Lock()
+        self._pool: ThreadPoolExecutor | None = None
+
+    @property
+    def evaluations(self) -> int:
+        """Candidates that were simulated; equal genes count once."""
+        return len(self._seen)
+
+    @property
+    def numbers(self) -> int:
+        """Measured numbers in all experiments together."""
+        return sum(experiment.measurement.values.size for experiment in self.experiments)
+
+    @contextmanager
+    def pool(self) -> Iterator[None]:
+        """Hold `workers` threads open; solvers free the interpreter lock while they work."""
+        with ThreadPoolExecutor(self.workers, "calibrate") as self._pool:
+            try:
+                yield
+            except BaseException:
+                self._pool.shutdown(cancel_futures=True)
+                raise
+            finally:
+                self._pool = None
+
+    def many(self, genes: NDArray[np.float64]) -> list[Evaluation]:
+        """Evaluate candidates side by side, (m, n) → m evaluations in the same order."""
+        self.side_by_side(self.at, list(dict.fromkeys(map(_key, genes))))
+        return [self.at(row) for row in genes]
+
+    def side_by_side(self, task: Callable[[T], U], inputs: Sequence[T]) -> list[U]:
+        """Run a task for each input on the open threads; results in the order of the inputs."""
+        if self._pool is None:
+            return [task(each) for each in inputs]
+        return list(self._pool.map(task, inputs))
+
+    def at(self, genes: ArrayLike) -> Evaluation:
+        """Evaluate one candidate, (n,)."""
+        key = _key(genes)
+        with self._lock:
+            known = self._seen.get(key)
+        if known is None:
+            known = self._evaluate(key)
+            with self._lock:
+                self._seen[key] = known
+        return known
+
+    def compare(self, genes: ArrayLike) -> list[Comparison] | Status:
+        """Simulate every experiment and lay it beside what was measured.
+
+        Returns the status of the first simulation that failed, if one did.
+        """
+        material = self.space.material_at(genes)
+        found = []
+        for experiment in self.experiments:
+            setup = experiment.setup
+            problem = setup.problem_with([material] * len(experiment.design.parts))
+            result = relax(setup, problem, self.tolerance, _MAX_STEPS)
+            if result.status != "ok":
+                return result.status
+            simulated = experiment.seen_at(result.positions)
+            measured = experiment.measurement.values
+            scale = best_scale(simulated, measured) if self.free_scale else 1.0
+            found.append(Comparison(scale * simulated, measured, scale))
+        return found
+
+    def fitness(self, error: float) -> float:
+        """Fitness of a mean error in m."""
+        stations = sum(len(experiment.measurement) for experiment in self.experiments)
+        return float(np.exp(FITNESS_FACTOR * error * stations / len(self.experiments)))
+
+    def _evaluate(self, genes: tuple[float, ...]) -> Evaluation:
+        compared = self.compare(genes)
+        if isinstance(compared, str):
+            return Evaluation(genes, compared, np.inf, 0.0, (1.0,) * len(self.experiments))
+        error = float(np.mean([comparison.errors.mean() for comparison in compared]))
+        scales = tuple(comparison.scale for comparison in compared)
+        return Evaluation(genes, "ok", error, self.fitness(error), scales)
+
+
+def _key(genes: ArrayLike) -> tuple[float, ...]:
+    return tuple(float(gene) for gene in np.atleast_1d(np.asarray(genes, dtype=np.float64)))

@@ -1,0 +1,315 @@
+"""The answer of a calibration: moduli, errors, history, and what the data could tell."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.calibration.experiment import Experiment
+from voxsoft.calibration.identifiability import Profile
+from voxsoft.calibration.misfit import Comparison
+from voxsoft.materials import Card, Lattice
+from voxsoft.units import format_quantity
+
+
+@dataclass(frozen=True)
+class Generation:
+    """One generation of a search (the paper's Fig. 3).
+
+    Attributes
+    ----------
+    best_fitness, mean_fitness
+        Of this generation; a candidate that failed counts as zero.
+    best_error
+        Smallest mean error of this generation, m; infinite if all failed.
+    parameters
+        Of its best candidate, SI.
+    """
+
+    best_fitness: float
+    mean_fitness: float
+    best_error: float
+    parameters: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A candidate at the end of a stage: of the search, or of the refinement after it.
+
+    Attributes
+    ----------
+    parameters
+        Constants by name, SI.
+    error
+        Mean error in m.
+    fitness
+        The paper's fitness.
+    evaluations
+        Candidates simulated so far.
+    """
+
+    parameters: Mapping[str, float]
+    error: float
+    fitness: float
+    evaluations: int
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How one experiment fits (the paper's Fig. 4).
+
+    Attributes
+    ----------
+    experiment
+        The experiment.
+    comparison
+        Simulated and measured numbers at its stations, and the scale.
+    """
+
+    experiment: Experiment
+    comparison: Comparison
+
+    @property
+    def errors(self) -> NDArray[np.float64]:
+        """Length of the error vector at each station, (n,), m."""
+        return self.comparison.errors
+
+    @property
+    def percent(self) -> NDArray[np.float64]:
+        """The same in percent of the measured tip sag, (n,).
+
+        The largest of them is the figure that the paper prints for each beam.
+        """
+        share: NDArray[np.float64] = 100.0 * self.errors / self.experiment.sag
+        return share
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data in SI units."""
+        measurement, comparison = self.experiment.measurement, self.comparison
+        return {
+            "name": self.experiment.name,
+            "source": measurement.source,
+            "line": self.experiment.line,
+            "stations": list(measurement.station_names),
+            "quantities": list(measurement.quantities),
+            "measured": comparison.measured.tolist(),
+            "simulated": comparison.simulated.tolist(),
+            "errors": self.errors.tolist(),
+            "percent": self.percent.tolist(),
+            "sag": self.experiment.sag,
+            "scale": comparison.scale,
+            "mean_error": float(self.errors.mean()),
+            "max_error": float(self.errors.max()),
+            "mean_percent": float(self.percent.mean()),
+            "max_percent": float(self.percent.max()),
+        }
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A material fitted to experiments.
+
+    Attributes
+    ----------
+    material
+        The lattice that fits best.
+    parameters
+        The moduli that were searched, Pa.
+    bounds
+        Their ranges, Pa.
+    fits
+        Each experiment with its simulated shape.
+    fitness
+        ``exp(-10 Σ|r|)`` with error vectors in m, summed over the stations: a mean error of
+        5.7 mm at nine stations is 0.60.
+    search
+        What the method found, before refinement.
+    history
+        The generations of the search.
+    profiles
+        What the data say about each parameter; empty if not asked for.
+    evaluations
+        Candidates simulated in search, refinement and profiles.
+    free_scale
+        Whether each experiment had a factor of its own on the simulated shape.
+    method, seed, settings
+        How it was found.
+    """
+
+    material: Lattice
+    parameters: Mapping[str, float]
+    bounds: Mapping[str, tuple[float, float]]
+    fits: tuple[Fit, ...]
+    fitness: float
+    search: Stage
+    history: tuple[Generation, ...] = field(repr=False)
+    profiles: tuple[Profile, ...] = field(repr=False)
+    evaluations: int
+    free_scale: bool
+    method: str
+    seed: int
+    settings: Mapping[str, Any]
+
+    @property
+    def mean_error(self) -> float:
+        """Mean length of the error vectors in m: over stations, then over experiments."""
+        return float(np.mean([fit.errors.mean() for fit in self.fits]))
+
+    @property
+    def max_error(self) -> float:
+        """Largest error vector in m."""
+        return float(max(fit.errors.max() for fit in self.fits))
+
+    @property
+    def scale(self) -> float | list[float]:
+        """Factor on the simulated shape; a list for several experiments with a free scale."""
+        scales = [fit.comparison.scale for fit in self.fits]
+        return scales if len(set(scales)) > 1 else scales[0]
+
+    @property
+    def identifiable(self) -> dict[str, bool]:
+        """Whether the data tell each parameter."""
+        return {profile.name: profile.identifiable for profile in self.profiles}
+
+    @property
+    def young(self) -> float:
+        """Young's modulus of a large block of the material, Pa."""
+        return self.material.young()
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio of a large block of the material."""
+        return self.material.poisson()
+
+    def summary(self) -> dict[str, Any]:
+        """Everything a record needs, as plain data in SI units (the ``--json`` of ``calibrate``).
+
+        Errors are lengths of vectors in m. Percent are of the measured tip sag.
+        """
+        return {
+            "parameters": dict(self.parameters),
+            "mean_error": self.mean_error,
+            "max_error": self.max_error,
+            "max_percent": max(float(fit.percent.max()) for fit in self.fits),
+            "fitness": self.fitness,
+            "evaluations": self.evaluations,
+            "identifiable": self.identifiable,
+            "scale": self.scale,
+            "free_scale": self.free_scale,
+            "intervals": {profile.name: _interval(profile) for profile in self.profiles},
+            "young": self.young,
+            "poisson": self.poisson,
+            "density": self.material.density,
+            "bounds": {name: list(bounds) for name, bounds in self.bounds.items()},
+            "search": {
+                "parameters": dict(self.search.parameters),
+                "mean_error": self.search.error,
+                "fitness": self.search.fitness,
+                "evaluations": self.search.evaluations,
+            },
+            "experiments": [fit.summary() for fit in self.fits],
+            "history": [
+                {
+                    "best_fitness": generation.best_fitness,
+                    "mean_fitness": generation.mean_fitness,
+                    "best_error": _finite(generation.best_error),
+                    "parameters": dict(generation.parameters),
+                }
+                for generation in self.history
+            ],
+            "method": self.method,
+            "seed": self.seed,
+            "settings": dict(self.settings),
+            "version": _core.__version__,
+        }
+
+    def card(self, name: str, *, title: str = "", source: str = "", caution: str = "") -> Card:
+        """Make a material card of the result.
+
+        Parameters
+        ----------
+        name
+            What designs call the material.
+        title
+            What people call it; default: the name of the first experiment.
+        source
+            Where the data come from; default: what the measurements say.
+        caution
+            What the numbers are not good for, added to what the calibration found itself.
+
+        Returns
+        -------
+        Card
+            With moduli rounded to 4 digits, and a record of the calibration.
+        """
+        sources = dict.fromkeys(fit.experiment.measurement.source for fit in self.fits)
+        return Card(
+            name=name,
+            title=title or self.fits[0].experiment.name,
+            material=Lattice(
+                edge=float(f"{self.material.edge:.4g}"),
+                bulk=float(f"{self.material.bulk:.4g}"),
+                density=self.material.density,
+            ),
+            source=source or " ".join(filter(None, sources)),
+            caution=" ".join(filter(None, [caution, *self._cautions()])),
+            calibration=self._record(),
+        )
+
+    def _cautions(self) -> Sequence[str]:
+        return [
+            f"{profile.name} is not identified by the data: {profile.sentence}."
+            for profile in self.profiles
+            if not profile.identifiable
+        ]
+
+    def _record(self) -> dict[str, Any]:
+        sizes = dict.fromkeys(fit.experiment.voxel_size for fit in self.fits)
+        record: dict[str, Any] = {
+            "data": [fit.experiment.name for fit in self.fits],
+            "stations": sum(len(fit.experiment.measurement) for fit in self.fits),
+            "line": [fit.experiment.line for fit in self.fits],
+            "voxel_size": [_text(size, "length", 6) for size in sizes],
+            "scale": [float(f"{fit.comparison.scale:.5g}") for fit in self.fits],
+            "free_scale": self.free_scale,
+            "mean_error": _text(self.mean_error, "length", 4),
+            "max_error": _text(self.max_error, "length", 4),
+            "max_percent_of_sag": [float(f"{fit.percent.max():.4g}") for fit in self.fits],
+            "fitness": float(f"{self.fitness:.5g}"),
+            "young": _text(self.young, "modulus", 4),
+            "poisson": float(f"{self.poisson:.4g}"),
+            "method": self.method,
+            "seed": self.seed,
+            "evaluations": self.evaluations,
+            "version": _core.__version__,
+        }
+        record |= {f"{key}": value for key, value in self.settings.items()}
+        record |= {f"{name}_range": _range(bounds) for name, bounds in self.bounds.items()}
+        record |= {f"{profile.name}_interval": profile.sentence for profile in self.profiles}
+        return record
+
+
+def _interval(profile: Profile) -> dict[str, Any]:
+    return {
+        "low": profile.low,
+        "high": profile.high,
+        "sentence": profile.sentence,
+        "profile": {"values": profile.values.tolist(), "errors": profile.errors.tolist()},
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _text(value: float, kind: str, digits: int) -> str:
+    return format_quantity(float(f"{value:.{digits}g}"), kind)
+
+
+def _range(bounds: tuple[float, float]) -> list[str]:
+    return [format_quantity(bound, "modulus") for bound in bounds]

@@ -1,0 +1,121 @@
+"""The space of a calibration: a range with units for each modulus, searched on a log scale."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voxsoft.errors import MaterialError
+from voxsoft.materials import Lattice, Material
+from voxsoft.records import closest
+from voxsoft.units import UnitOf, format_quantity
+
+Bounds = tuple[float | str, float | str]
+
+#: Default ranges of the lattice material.
+#:
+#: Silicones and gels for soft robots have Young's moduli of some 5 kPa to 2 MPa, and the edge
+#: modulus is 0.39 to 0.48 of that. A lattice needs no bulk stiffness to be stable, and at 2 kPa it
+#: adds less than a tenth to the stiffness of the softest of them; from about a hundred edge moduli
+#: on it is as good as incompressible and only locks harder.
+DEFAULT_BOUNDS: Final[Mapping[str, Bounds]] = {
+    "edge": ("1 kPa", "1 MPa"),
+    "bulk": ("2 kPa", "1 MPa"),
+}
+
+_MODULUS: Final = UnitOf("modulus", positive=True)
+
+
+@dataclass(frozen=True)
+class Space:
+    """Ranges of the constants that are searched; the others stay as the design has them.
+
+    Genes run from 0 to 1 and are uniform in the logarithm of the constant.
+
+    Attributes
+    ----------
+    names
+        Constants of the material model.
+    low, high
+        Their ranges in SI units, (n,).
+    base
+        The material that the other constants come from.
+
+    Examples
+    --------
+    >>> space = Space.of({"edge": ("1 kPa", "100 kPa")}, Lattice(edge="5 kPa", bulk="7 kPa"))
+    >>> space.material_at([0.5]).edge, space.material_at([0.5]).bulk
+    (10000.0, 7000.0)
+    """
+
+    names: tuple[str, ...]
+    low: tuple[float, ...]
+    high: tuple[float, ...]
+    base: Material
+
+    @classmethod
+    def of(cls, parameters: Mapping[str, Bounds] | None, material: Material) -> Space:
+        """Read the ranges that a calibration was asked for.
+
+        Raises
+        ------
+        MaterialError
+            A constant that the material does not have, or a range that is empty.
+        """
+        if not isinstance(material, Lattice):
+            raise MaterialError(
+                "material",
+                f'is "{material.model}"; a calibration fits the moduli of a lattice',
+                'give the parts { model = "lattice", edge = "20 kPa", bulk = "20 kPa" }',
+            )
+        asked = DEFAULT_BOUNDS if parameters is None else parameters
+        if not asked:
+            raise MaterialError("parameters", "none is named", "name edge, bulk or both")
+        ranges = [_range(name, bounds) for name, bounds in asked.items()]
+        return cls(
+            tuple(asked),
+            tuple(low for low, _ in ranges),
+            tuple(high for _, high in ranges),
+            material,
+        )
+
+    def __len__(self) -> int:
+        """Count the constants that are searched."""
+        return len(self.names)
+
+    def values(self, genes: ArrayLike) -> NDArray[np.float64]:
+        """Constants in SI units at these genes, (n,) → (n,)."""
+        share = np.asarray(genes, dtype=np.float64)
+        low, high = np.log(self.low), np.log(self.high)
+        found: NDArray[np.float64] = np.exp(low + share * (high - low))
+        # exp(log(x)) may miss x by one bit, and a bound must not be missed.
+        return np.clip(found, self.low, self.high)
+
+    def spans(self) -> NDArray[np.float64]:
+        """Length of each range in the natural logarithm, (n,)."""
+        lengths: NDArray[np.float64] = np.log(self.high) - np.log(self.low)
+        return lengths
+
+    def parameters(self, genes: ArrayLike) -> dict[str, float]:
+        """Constants in SI units by name."""
+        return dict(zip(self.names, (float(v) for v in self.values(genes)), strict=True))
+
+    def material_at(self, genes: ArrayLike) -> Lattice:
+        """Return the material with these constants."""
+        return Lattice(**{**self.base.model_dump(), **self.parameters(genes)})
+
+
+def _range(name: str, bounds: Bounds) -> tuple[float, float]:
+    if name not in DEFAULT_BOUNDS:
+        raise MaterialError(
+            f"parameters.{name}", "is not a modulus of the lattice", closest(name, DEFAULT_BOUNDS)
+        )
+    low, high = (_MODULUS.read(bound) for bound in bounds)
+    if not low < high:
+        first, last = (format_quantity(bound, "modulus") for bound in (low, high))
+        raise MaterialError(f"parameters.{name}", f"the range {first} to {last} is empty")
+    return low, high

@@ -1,0 +1,44 @@
+"""Measurement files: tables of what was seen on a real body."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from voxsoft.calibration import Measurement, read_measurement
+from voxsoft.errors import FileError, MeasurementError
+from voxsoft.files.designs import FilePath, read_text
+
+
+def load_measurement(path: FilePath, *, select: str | None = None) -> Measurement:
+    r"""Read a measurement from a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file; :func:`voxsoft.calibration.read_measurement` says what it may hold.
+    select
+        The material to take from a table of several.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable or too large file.
+    MeasurementError
+        Text that is not UTF-8, or a table that cannot be used, with the line.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "tip.csv"
+    >>> _ = file.write_text("probe,dz_mm\ntip,-12.5\n")
+    >>> load_measurement(file).values.tolist()
+    [[-0.0125]]
+    """
+    name = Path(path).name
+    try:
+        text = read_text(path)
+    except FileError as error:
+        if "UTF-8" in error.what:
+            raise MeasurementError(error.where, error.what, "save the table as CSV") from None
+        raise
+    return read_measurement(text, name=name, select=select)
