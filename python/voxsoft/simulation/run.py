@@ -167,7 +167,7 @@ def _dynamics(
 
 
 def _damping_rate(solver: Solver) -> float | None:
-    """The rate in 1/s; None for critical, which a run to rest wants and a run over time does not."""
+    """The rate in 1/s; None for critical: right on the way to rest, wrong over time."""
     if isinstance(solver.damping, float):
         return solver.damping
     if solver.damping == "critical" or solver.end_time is None:
