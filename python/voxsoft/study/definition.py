@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import inspect
 import json
@@ -81,6 +82,8 @@ def _without_own_targets(document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _function(function: Callable[..., object]) -> dict[str, Any]:
+    if isinstance(function, functools.partial):
+        return {**_function(function.func), "arguments": repr((function.args, function.keywords))}
     module = getattr(function, "__module__", "")
     name = getattr(function, "__qualname__", type(function).__qualname__)
     try:

@@ -16,7 +16,7 @@ from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from voxsoft.search.genetic_sampler import GeneticSampler
 from voxsoft.search.samplers import grid_values, sampler_named
-from voxsoft.study.trial import OUTCOME_KEY
+from voxsoft.study.trial import OUTCOME_KEY, rounded
 
 #: Trials a sampler suggests before it sees their outcomes, unless the user says otherwise.
 DEFAULT_BATCH = 8
@@ -123,7 +123,7 @@ def unfinished(study: optuna.Study, space: Distributions) -> list[Proposal]:
 def _completed(study: optuna.Study, space: Distributions, trial: FrozenTrial) -> Proposal:
     """Give a trial the parameters it lacks, if the earlier run stopped while it was set up."""
     if set(trial.params) >= set(space):
-        return Proposal(trial.number, dict(trial.params))
+        return Proposal(trial.number, rounded(trial.params))
     return _proposal(optuna.Trial(study, trial._trial_id), space)
 
 
@@ -143,8 +143,8 @@ def _proposal(trial: optuna.Trial, space: Distributions) -> Proposal:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
         parameters = {name: trial._suggest(name, domain) for name, domain in space.items()}
-    return Proposal(trial.number, parameters)
+    return Proposal(trial.number, rounded(parameters))
 
 
 def _key(parameters: Mapping[str, Any]) -> frozenset[tuple[str, Any]]:
-    return frozenset(parameters.items())
+    return frozenset(rounded(parameters).items())

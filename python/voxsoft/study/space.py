@@ -177,7 +177,9 @@ def _read(given: object, parameter: Parameter | None) -> Domain:
     if isinstance(given, Range | Choices):
         return given
     if isinstance(given, list):
-        return Choices(values=tuple(_number(value, parameter) for value in given))
+        # Without a parameter a text may be anything, "00-50" a material: it stays as it is.
+        values = given if parameter is None else [_number(value, parameter) for value in given]
+        return Choices(values=tuple(values))
     if not isinstance(given, tuple) or len(given) not in (2, 3):
         raise StudyError(
             "",
@@ -190,10 +192,10 @@ def _read(given: object, parameter: Parameter | None) -> Domain:
 
 
 def _number(value: Any, parameter: Parameter | None) -> Any:  # noqa: ANN401 - the models check it
-    """Bring a text with a unit to SI; leave everything else, material names too."""
-    if not isinstance(value, str) or not value[:1].strip("+-.").isdigit():
+    """Bring a text with a unit to SI; leave everything else."""
+    if not isinstance(value, str):
         return value
-    quantity = parse_any(value)
+    quantity = parse_any(value, where="")
     if parameter is not None and quantity.dimension != parameter.dimension:
         raise StudyError("", f'"{value}" has another unit than the parameter, a {parameter.kind}')
     return quantity.value

@@ -193,6 +193,8 @@ class Study:
             :meth:`grid` and ends with it.
         budget
             Number of trials in the end, whatever their status, those of earlier runs included.
+            A study that was stopped suggests what it would have suggested; one whose budget is
+            raised later sees the outcomes of its last, cut batch earlier.
         batch
             Trials that are suggested before their outcomes are seen. Suggestions depend on it,
             and not on the number of workers. Default: a generation for ``"genetic"``, else 8;

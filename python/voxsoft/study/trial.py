@@ -11,6 +11,7 @@ from optuna.trial import FrozenTrial
 from voxsoft.design import Constraint
 from voxsoft.simulation import Status
 from voxsoft.study.outcome import Outcome
+from voxsoft.units import round_significant
 
 #: Where the outcome of a trial is kept among the attributes of Optuna's trial.
 OUTCOME_KEY = "outcome"
@@ -55,6 +56,22 @@ class Trial:
     seconds: float
 
 
+def rounded(parameters: Mapping[str, Any]) -> dict[str, Any]:
+    """Round numbers to the 12 digits that identify a design.
+
+    Optuna adds up the steps of a range, which leaves 0.034999999999999996 for 35 mm.
+
+    Examples
+    --------
+    >>> rounded({"height": 0.005 + 3 * 0.01, "count": 3})
+    {'height': 0.035, 'count': 3}
+    """
+    return {
+        name: round_significant(value) if isinstance(value, float) else value
+        for name, value in parameters.items()
+    }
+
+
 def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[str, Any]:
     """Write an outcome as plain data, as :func:`read_trial` reads it."""
     return {
@@ -88,7 +105,7 @@ def read_trial(
     metrics, ok = record["metrics"], record["status"] == "ok"
     return Trial(
         number=stored.number,
-        parameters=dict(stored.params),
+        parameters=rounded(stored.params),
         status=record["status"],
         message=record["message"],
         objectives={name: metrics[name] for name in objectives} if ok else {},

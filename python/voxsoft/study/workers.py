@@ -9,9 +9,12 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import suppress
-from typing import Any, Protocol, TypeVar
+from typing import Any, Final, Protocol, TypeVar
 
 from voxsoft.errors import MissingPackageError, StudyError
+
+#: Seconds to wait for a Dask scheduler.
+DASK_TIMEOUT: Final = 10.0
 
 Answer = TypeVar("Answer")
 
@@ -154,7 +157,7 @@ class DaskCluster:
             ) from None
         client: Any = distributed.Client
         try:
-            self._client: Any = client(address, set_as_default=False, timeout="10s")
+            self._client: Any = client(address, set_as_default=False, timeout=DASK_TIMEOUT)
         except (OSError, ValueError) as error:
             raise StudyError(
                 "scheduler",
