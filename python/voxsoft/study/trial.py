@@ -127,8 +127,8 @@ def violations(
     Examples
     --------
     >>> light = Constraint(metric="mass", max="30 g")
-    >>> violations({"light": 0.05}, {"light": light})
-    (0.02,)
+    >>> violations({"light": 0.0625}, {"light": light})
+    (0.0325,)
     """
     found = []
     for name, constraint in constraints.items():
