@@ -1,6 +1,8 @@
 """The pipeline from a shape to a study: voxels, mesh, steps, trials.
 
 ``python benchmarks/pipeline.py [--json]``. Each figure counts only after its answer was checked.
+Steps are measured in processor time, the rest by the wall clock; a ratio is that to a plain native
+loop of the original program (14 ns a constraint, 4 s for the 105 designs).
 """
 
 from __future__ import annotations
@@ -27,10 +29,10 @@ def gyroid(report: Report, cells: int = 256) -> None:
     size = 64 * MM
     shape = vs.Box(size=(size, size, size)) & vs.Gyroid(period=16 * MM, form="solid")
     voxel = size / cells
-    voxels = shape.voxelize(voxel)
+    voxels = vs.voxelize(shape, voxel)
     if abs(voxels.count / cells**3 - 0.5) > 0.01:
         raise SystemExit(f"wrong answer: {voxels.count / cells**3:.3f} of the cube, 0.5 is due")
-    seconds = median_seconds(lambda: shape.voxelize(voxel), 3)
+    seconds = median_seconds(lambda: vs.voxelize(shape, voxel), 3)
     report.add(f"gyroid {cells}^3: shape to voxels", seconds, "s")
     report.add(f"gyroid {cells}^3: cells sampled", cells**3 / seconds, "1/s")
     start = time.perf_counter()
@@ -50,14 +52,14 @@ def steps(report: Report, name: str, design: vs.Design) -> None:
     if rest.status != "ok":
         raise SystemExit(f"wrong answer: {name} is {rest.status}")
     constraints = len(setup.mesh.edges) + len(setup.mesh.tets)
-    seconds = median_seconds(lambda: vs.simulate(setup))
+    seconds = median_seconds(lambda: vs.simulate(setup), clock=time.process_time)
     report.add(f"{name}: to rest", seconds * 1e3, "ms")
     each = seconds / rest.steps / constraints
     report.add(
         f"{name}: relaxation, a constraint and step", each * 1e9, "ns", each / ORIGINAL_CONSTRAINT
     )
     run = vs.simulate(setup, end_time=0.1)
-    seconds = median_seconds(lambda: vs.simulate(setup, end_time=0.1))
+    seconds = median_seconds(lambda: vs.simulate(setup, end_time=0.1), clock=time.process_time)
     each = seconds / run.steps / constraints
     report.add(f"{name}: dynamics, substeps", run.steps / seconds, "1/s")
     report.add(
@@ -73,8 +75,8 @@ def study(report: Report) -> None:
         seconds = time.perf_counter() - start
     if len(result.trials) != 105 or result.counts.get("ok", 0) < 30:
         raise SystemExit(f"wrong answer: {result.counts}")
-    solving = sum(trial.seconds for trial in result.trials)
     report.add("study of 105 designs: wall clock", seconds, "s")
+    solving = sum(trial.seconds for trial in result.trials)
     report.add("study of 105 designs: time in trials", solving, "s", solving / ORIGINAL_STUDY)
 
 
