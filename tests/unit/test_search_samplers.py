@@ -73,6 +73,18 @@ def test_constraints_keep_the_search_out_of_what_they_forbid(name):
     assert allowed[1] > allowed[0] + 15
 
 
+@pytest.mark.parametrize(
+    ("space", "message"),
+    [
+        ({"x": SPACE["x"]}, "at least two parameters"),
+        ({**SPACE, "m": CategoricalDistribution(["a", "b"])}, "m is a list of choices"),
+    ],
+)
+def test_cma_es_refuses_spaces_in_which_it_would_draw_at_random(space, message):
+    with pytest.raises(StudyError, match=message):
+        sampler_named("cma-es", space)
+
+
 def test_an_unknown_sampler_gets_a_suggestion():
     with pytest.raises(StudyError, match='did you mean "genetic"'):
         sampler_named("genetc", SPACE)

@@ -1,6 +1,8 @@
 """Studies on families that cost nothing: what is asked, stored, shared, ranked and refused."""
 
 import signal
+import subprocess
+import sys
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 
@@ -266,6 +268,28 @@ def test_an_optuna_storage_takes_the_place_of_the_folder(make, threads, tmp_path
         make({"y": (1, 6)}, storage=url)
 
 
+def test_a_storage_that_cannot_be_reached_is_named(make, tmp_path):
+    with pytest.raises(StudyError, match=r"the storage failed: .*unable to open database"):
+        make(storage=f"sqlite:///{tmp_path / 'missing' / 'studies.db'}")
+
+
+def test_names_that_are_taken_get_their_role_in_the_table(tmp_path, threads):
+    def family(number):
+        return block(y=number)
+
+    study = Study(family, {"number": (4, 6)}, FALL, folder=tmp_path / "s", evaluate=bowl)
+    table = study.grid(executor=threads).table()
+    assert table["number"].tolist() == [0, 1, 2]
+    assert table["number (parameter)"].tolist() == [4, 5, 6]
+
+
+@pytest.mark.parametrize("sampler", ["cma-es", "genetic"])
+def test_samplers_for_one_objective_refuse_two(make, sampler):
+    two = {**FALL, "light": {"minimize": "mass"}}
+    with pytest.raises(StudyError, match=f'"{sampler}" takes one objective, and there are 2'):
+        make(objectives=two).optimize(sampler, 5)
+
+
 def test_trials_of_others_are_not_touched(make):
     storage = optuna.storages.InMemoryStorage()
     foreign = optuna.create_study(storage=storage, study_name="block")
@@ -389,3 +413,10 @@ def test_a_missing_metric_fails_the_trial(make, threads):
 
     result = make({"y": [5]}, evaluate=empty).grid(executor=threads)
     assert result.trials[0].message == 'the objective "fall" is missing'
+
+
+def test_a_worker_process_imports_neither_optuna_nor_pandas():
+    heavy = "{'optuna', 'pandas', 'sqlalchemy'} & set(sys.modules)"
+    code = f"import sys, voxsoft.study.outcome; print(sorted({heavy}))"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "[]"

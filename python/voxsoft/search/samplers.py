@@ -32,6 +32,10 @@ SAMPLERS: Final[Mapping[str, str]] = {
 }
 
 
+#: Samplers that take one objective only.
+SINGLE_OBJECTIVE: Final = frozenset({"cma-es", "genetic"})
+
+
 def sampler_named(
     name: str,
     space: Mapping[str, BaseDistribution],
@@ -56,7 +60,8 @@ def sampler_named(
     Raises
     ------
     StudyError
-        An unknown name, or a grid over a range without a step.
+        An unknown name, a grid over a range without a step, or ``cma-es`` in a space that it
+        cannot search.
     MissingPackageError
         ``gp`` without PyTorch; the message holds the pip command.
 
@@ -92,6 +97,7 @@ def _make(
                 seed=seed, multivariate=True, constant_liar=True, constraints_func=constraints
             )
         case "cma-es":
+            _require_numbers(space)
             # The margin keeps the search from freezing on stepped ranges (Hamano et al. 2022,
             # doi:10.1145/3512290.3528827).
             return optuna.samplers.CmaEsSampler(
@@ -105,6 +111,17 @@ def _make(
             return optuna.samplers.NSGAIIISampler(seed=seed, constraints_func=constraints)
         case _:
             return GeneticSampler(space, seed=seed, constraints_func=constraints)
+
+
+def _require_numbers(space: Mapping[str, BaseDistribution]) -> None:
+    """Refuse a space in which Optuna would quietly draw at random instead."""
+    choices = [name for name, d in space.items() if isinstance(d, CategoricalDistribution)]
+    if choices:
+        what = f'"cma-es" searches numbers, and {", ".join(choices)} is a list of choices'
+        raise StudyError("sampler", what, 'use "tpe" or "genetic"')
+    if len(space) < 2:
+        what = '"cma-es" needs at least two parameters, and there is one'
+        raise StudyError("sampler", what, 'use "tpe"')
 
 
 def _gaussian_process(seed: int | None, constraints: Constraints | None) -> BaseSampler:

@@ -155,30 +155,38 @@ class StudyResult:
         pandas.DataFrame
             Columns: ``number``, ``status``, the parameters, the objectives, other metrics,
             ``feasible``, ``same_as`` (the trial that solved the same design), ``seconds``,
-            ``hash``, ``message``. SI units; missing numbers are NaN, never 0.
+            ``hash``, ``message``. SI units; missing numbers are NaN, never 0. A name that is
+            taken gets its role in brackets, ``number (parameter)``.
         """
         import pandas as pd
 
         measured = dict.fromkeys(
             name for trial in self.trials for name in trial.metrics if name not in self.objectives
         )
-        columns: dict[str, Any] = {
+        before: dict[str, Any] = {
             "number": [trial.number for trial in self.trials],
             "status": [trial.status for trial in self.trials],
         }
+        after: dict[str, Any] = {
+            "feasible": [trial.feasible for trial in self.trials],
+            "same_as": pd.array([trial.same_as for trial in self.trials], dtype="Int64"),
+            "seconds": [trial.seconds for trial in self.trials],
+            "hash": [trial.hash for trial in self.trials],
+            "message": [trial.message for trial in self.trials],
+        }
+        columns: dict[str, Any] = {}
+
+        def add(name: str, what: str, values: list[Any]) -> None:
+            taken = name in before or name in columns or name in after
+            columns[f"{name} ({what})" if taken else name] = values
+
         for name in self.parameters:
-            columns[name] = [trial.parameters.get(name) for trial in self.trials]
+            add(name, "parameter", [trial.parameters.get(name) for trial in self.trials])
         for name in self.objectives:
-            columns[name] = [trial.objectives.get(name, np.nan) for trial in self.trials]
+            add(name, "objective", [trial.objectives.get(name, np.nan) for trial in self.trials])
         for name in measured:
-            key = name if name not in columns else f"{name} (metric)"
-            columns[key] = [trial.metrics.get(name, np.nan) for trial in self.trials]
-        columns["feasible"] = [trial.feasible for trial in self.trials]
-        columns["same_as"] = pd.array([trial.same_as for trial in self.trials], dtype="Int64")
-        columns["seconds"] = [trial.seconds for trial in self.trials]
-        columns["hash"] = [trial.hash for trial in self.trials]
-        columns["message"] = [trial.message for trial in self.trials]
-        return pd.DataFrame(columns)
+            add(name, "metric", [trial.metrics.get(name, np.nan) for trial in self.trials])
+        return pd.DataFrame(before | columns | after)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write :meth:`table` as comma-separated text.

@@ -64,12 +64,12 @@ class TrialStorage:
 
         A study in a database is not locked: let one process at a time run it.
         """
-        with _errors_named(self.where):
-            if not isinstance(self._place, Path):
-                yield self._study(self._place)
-                return
+        if isinstance(self._place, Path):
             with StudyJournal(self._place / JOURNAL_NAME, write=write) as journal:
                 yield self._study(JournalStorage(journal))
+        else:
+            with _database_errors(self.where):
+                yield self._study(self._place)
 
     def _study(self, storage: str | BaseStorage) -> optuna.Study:
         with _quiet():
@@ -85,22 +85,23 @@ class TrialStorage:
         if stored is not None:
             require_same(stored, definition, self.where)
             return
-        with _errors_named(self.where), contextlib.ExitStack() as stack:
-            storage: str | BaseStorage
-            if isinstance(self._place, Path):
-                self._write_definition(self._place, definition)
-                path = self._place / JOURNAL_NAME
-                storage = JournalStorage(stack.enter_context(StudyJournal(path, write=True)))
-            else:
-                storage = self._place
-            with _quiet():
-                study = optuna.create_study(
-                    study_name=self._name,
-                    storage=storage,
-                    directions=self._directions,
-                    load_if_exists=True,
-                )
-            study.set_user_attr(_DEFINITION_KEY, dict(definition))
+        if isinstance(self._place, Path):
+            self._write_definition(self._place, definition)
+            with StudyJournal(self._place / JOURNAL_NAME, write=True) as journal:
+                self._create(JournalStorage(journal), definition)
+        else:
+            with _database_errors(self.where):
+                self._create(self._place, definition)
+
+    def _create(self, storage: str | BaseStorage, definition: Mapping[str, Any]) -> None:
+        with _quiet():
+            study = optuna.create_study(
+                study_name=self._name,
+                storage=storage,
+                directions=self._directions,
+                load_if_exists=True,
+            )
+        study.set_user_attr(_DEFINITION_KEY, dict(definition))
 
     def _stored_definition(self) -> dict[str, Any] | None:
         if isinstance(self._place, Path) and not (self._place / JOURNAL_NAME).exists():
@@ -131,13 +132,20 @@ class TrialStorage:
 
 
 @contextlib.contextmanager
-def _errors_named(where: str) -> Iterator[None]:
+def _database_errors(where: str) -> Iterator[None]:
     """Turn the errors of a database into ours."""
+    # Optuna brings SQLAlchemy along; it is slow to import and studies in a folder do without.
+    from sqlalchemy.exc import SQLAlchemyError
+
     try:
         yield
-    except optuna.exceptions.StorageInternalError as error:
-        cause = error.__cause__ or error
-        raise StudyError(where, f"the storage failed: {cause}") from error
+    except (optuna.exceptions.StorageInternalError, SQLAlchemyError) as error:
+        cause = str(error.__cause__ or error).splitlines()[0]
+        hint = "check the address of the storage; finished trials are kept"
+        raise StudyError(where, f"the storage failed: {cause}", hint) from error
+    except ImportError as error:
+        hint = "install the driver of that database with pip"
+        raise StudyError(where, f"the storage needs a package: {error}", hint) from error
 
 
 @contextlib.contextmanager

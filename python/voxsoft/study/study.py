@@ -16,7 +16,7 @@ from optuna.trial import FrozenTrial
 
 from voxsoft.design import Constraint, Design, Objective, families
 from voxsoft.errors import StudyError
-from voxsoft.search.samplers import grid_values
+from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.study.definition import definition
 from voxsoft.study.event import ProgressCallback
 from voxsoft.study.outcome import Evaluate, evaluate_design
@@ -222,10 +222,14 @@ class Study:
             return self.grid(
                 executor=executor, scheduler=scheduler, workers=workers, progress=progress
             )
+        if sampler in SINGLE_OBJECTIVE and len(self.objectives) > 1:
+            what = f'"{sampler}" takes one objective, and there are {len(self.objectives)}'
+            raise StudyError("sampler", what, 'use "tpe", "nsga-ii" or "nsga-iii"')
         space = self._distributions
         if isinstance(sampler, str):
             constraints = self._violations if self.constraints else None
             samplers = seeded_samplers(sampler, space, self.seed, constraints)
+            samplers(0)  # says what is wrong with it before any worker starts
         else:
             own: BaseSampler = sampler
             samplers = lambda number: own  # noqa: E731
