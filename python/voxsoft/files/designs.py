@@ -135,8 +135,10 @@ def read_document(text: str, name: str) -> Document:
         raise FileError(name, f"holds a value that cannot be read: {error}") from None
 
 
-def write_whole(path: FilePath, text: str) -> None:
+def write_whole(path: FilePath, content: str | bytes) -> None:
     """Write a file beside its final place and move it there, so that no reader sees half of it.
+
+    Text is written as UTF-8.
 
     Raises
     ------
@@ -149,8 +151,8 @@ def write_whole(path: FilePath, text: str) -> None:
     except (OSError, ValueError) as error:
         raise _cannot_write(path, error) from None
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content.encode() if isinstance(content, str) else content)
         Path(beside).replace(file)
     except OSError as error:
         Path(beside).unlink(missing_ok=True)

@@ -1,0 +1,156 @@
+"""The doctor, for designs and meshes in files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from voxsoft.errors import UnitError, VoxSoftError
+from voxsoft.files.designs import FilePath, load
+from voxsoft.shapes import TriangleMesh, voxelize
+from voxsoft.shapes.surface_files import Surface, read_surface
+from voxsoft.simulation import CheckReport, Finding, check
+from voxsoft.units import format_quantity, parse
+
+#: Voxels along the longest side of a mesh whose voxel size is not given.
+DEFAULT_VOXELS: Final = 50
+
+_UNITS: Final = ("mm", "cm", "inch", "m")
+
+
+def check_design(path: FilePath, assignments: Iterable[str] = ()) -> CheckReport:
+    """Examine a design file; what is wrong with it is in the findings.
+
+    Parameters
+    ----------
+    path
+        The file.
+    assignments
+        Changes ``key=value`` as the command line takes them.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = Path(folder, "a.toml")
+    ...     _ = file.write_text('name = "a"')
+    ...     report = check_design(file)
+    >>> [finding.what for finding in report.findings]
+    ['is missing', 'is missing']
+    """
+    try:
+        design = load(path, assignments=assignments)
+    except VoxSoftError as error:
+        return _report_of(error)
+    return check(design)
+
+
+def check_mesh(
+    path: FilePath, *, unit: str | None = None, voxel_size: str | float | None = None
+) -> CheckReport:
+    """Examine a triangle or tetrahedral mesh as a body of voxels.
+
+    Parameters
+    ----------
+    path
+        ``.stl``, ``.obj``, ``.ply``, ``.vtk`` or ``.vtu``.
+    unit
+        What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``.
+    voxel_size
+        Text with a unit, or a number in m; default: a 50th of the longest side.
+
+    Returns
+    -------
+    CheckReport
+        A file that holds no body is a finding.
+
+    Raises
+    ------
+    UnitError
+        No unit: the message tells how large the body would be in each. Or a voxel size that is
+        no positive length.
+    ShapeError
+        The file cannot be read.
+    """
+    file = Path(path)
+    surface = read_surface(file)
+    if unit is None:
+        raise UnitError(file.name, *_sizes(surface))
+    metre = parse(f"1 {unit}", "length", where="--unit")
+    size, chosen = _voxel_size(voxel_size, _extents(surface) * metre)
+    try:
+        report = check(voxelize(TriangleMesh(path=str(file), unit=unit), size))
+    except VoxSoftError as error:
+        return _report_of(error)
+    # Warnings follow what the voxels show; an empty grid is an error of its own.
+    findings = [*report.findings, *_findings_of(surface, file.name), *chosen]
+    return replace(report, findings=tuple(findings))
+
+
+def _report_of(error: VoxSoftError) -> CheckReport:
+    return CheckReport(
+        tuple(
+            Finding("error", problem.where, problem.what, problem.hint)
+            for problem in error.problems
+        )
+    )
+
+
+def _extents(surface: Surface) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    used = surface.points[np.unique(surface.triangles)]
+    extents: np.ndarray[tuple[int], np.dtype[np.float64]] = np.ptp(used, axis=0)
+    return extents
+
+
+def _sizes(surface: Surface) -> tuple[str, str]:
+    """What and hint of the error about a missing unit."""
+    extents = _extents(surface)
+    shown = " × ".join(f"{extent:.4g}" for extent in extents)
+    sizes = ", ".join(f"{unit}: {_longest(extents, unit)} long" for unit in _UNITS)
+    return (
+        f"a mesh file does not say its unit; its numbers span {shown}",
+        f"give --unit, one of {', '.join(_UNITS)}; the body would be, in {sizes}",
+    )
+
+
+def _longest(extents: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> str:
+    longest = float(extents.max()) * parse(f"1 {unit}", "length")
+    return format_quantity(float(f"{longest:.3g}"), "length")
+
+
+def _voxel_size(
+    given: str | float | None, extents: np.ndarray[tuple[int], np.dtype[np.float64]]
+) -> tuple[float, list[Finding]]:
+    """The voxel size in m, and a warning where nobody chose it."""
+    if isinstance(given, str):
+        given = parse(given, "length", where="--voxel-size")
+    if given is not None:
+        if not (math.isfinite(given) and given > 0):
+            raise UnitError("--voxel-size", f"{given:g} m is no size", 'write "2 mm"')
+        return given, []
+    size = float(f"{extents.max() / DEFAULT_VOXELS:.2g}")
+    if size == 0:
+        raise UnitError("--voxel-size", "cannot be chosen for a body without size", 'write "2 mm"')
+    what = f"{format_quantity(size, 'length')} was chosen, about {DEFAULT_VOXELS} along the body"
+    return size, [Finding("warning", "voxel size", what, "give --voxel-size")]
+
+
+def _findings_of(surface: Surface, name: str) -> list[Finding]:
+    edges = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, uses = np.unique(edges, axis=0, return_counts=True)
+    open_edges = int(np.count_nonzero(uses == 1))
+    if open_edges == 0:
+        return []
+    return [
+        Finding(
+            "warning",
+            name,
+            f"the surface has holes: {open_edges:,} of {len(uses):,} edges belong to one triangle",
+            "look at the voxels; the inside was guessed by winding numbers",
+        )
+    ]

@@ -1,0 +1,61 @@
+"""Study folders: table, summary and figures beside the stored trials."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from importlib.util import find_spec
+from pathlib import Path
+
+from voxsoft.files.designs import write_whole
+from voxsoft.files.figures import save_figure
+from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.plot import plot_history, plot_pareto, plot_scatter
+from voxsoft.study import StudyResult
+
+
+def write_study(
+    result: StudyResult,
+    folder: str | os.PathLike[str],
+    *,
+    kinds: Mapping[str, str] | None = None,
+) -> list[Path]:
+    """Write what a study found: ``table.csv``, ``summary.json`` and figures.
+
+    Parameters
+    ----------
+    result
+        What the study found so far.
+    folder
+        Where; made if it does not exist, files in it are replaced.
+    kinds
+        Kind of quantity of each parameter by name, for the axes of the figures.
+
+    Returns
+    -------
+    list of Path
+        The files that were written: the table (also as ``table.parquet`` where pyarrow is
+        installed), the summary, ``scatter.png`` and ``history.png``, and ``pareto.png`` for
+        two or more objectives. Figures need at least one finished trial.
+
+    Raises
+    ------
+    FileError
+        The folder cannot be written.
+    """
+    folder = make_folder(folder)
+    table = folder / "table.csv"
+    write_whole(table, result.table().to_csv(index=False))
+    written = [table]
+    if find_spec("pyarrow") is not None:
+        result.to_parquet(folder / "table.parquet")
+        written.append(folder / "table.parquet")
+    summary = folder / "summary.json"
+    write_json(summary, result.summary() | {"name": result.name, **provenance()})
+    written.append(summary)
+    if result.trials:
+        written.append(save_figure(plot_scatter(result, kinds=kinds), folder / "scatter.png"))
+        written.append(save_figure(plot_history(result), folder / "history.png"))
+    if result.ranking and len(result.objectives) > 1:
+        written.append(save_figure(plot_pareto(result), folder / "pareto.png"))
+    return written

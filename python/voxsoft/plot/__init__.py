@@ -1,0 +1,25 @@
+"""Pictures: bodies, studies and calibrations as matplotlib figures.
+
+Every function returns a :class:`matplotlib.figure.Figure` and needs no display; save it with
+``figure.savefig("name.png")``. Axes carry units, color maps are perceptually uniform, and colors
+stay apart for color-blind readers.
+
+Examples
+--------
+>>> import voxsoft as vs
+>>> from voxsoft.design import families
+>>> from voxsoft.plot import plot_body
+>>> figure = plot_body(vs.simulate(families.beam()))
+>>> [axes.get_label() for axes in figure.axes]
+['body', 'colorbar']
+"""
+
+from voxsoft.plot.body import plot_body
+from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
+
+__all__ = [
+    "plot_body",
+    "plot_history",
+    "plot_pareto",
+    "plot_scatter",
+]

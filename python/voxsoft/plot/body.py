@@ -1,0 +1,285 @@
+"""Pictures of bodies: their surface, shaded, with a field in color."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from voxsoft.errors import MeshError
+from voxsoft.mesh import Mesh
+from voxsoft.plot import shading
+from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
+from voxsoft.plot.camera import Camera
+from voxsoft.plot.quantities import Scale, scale_for
+from voxsoft.plot.raster import Raster, rasterize
+from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
+from voxsoft.records import closest
+from voxsoft.simulation import Result
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+
+Floats = NDArray[np.float64]
+
+#: Pixels of the longer side of the picture; it is computed twice as fine and averaged.
+PIXELS = 900
+_FINER = 2
+# Edges of triangles are drawn where they are at least this many pixels long.
+_SHORTEST_LINE = 7.0
+_PLAIN_COLOR = "#9fb8c8"
+# The darkest shade of an undeformed body.
+_PALEST = 0.68
+
+
+def plot_body(
+    body: Result | Mesh,
+    field: str | ArrayLike | None = None,
+    *,
+    label: str = "",
+    section: Axis | tuple[Axis, float] | None = None,
+    view: tuple[float, float] = (-60.0, 25.0),
+    ghost: bool = True,
+    lines: bool | None = None,
+    title: str | None = None,
+) -> Figure:
+    """Draw a body: shaded, deformed as it is, with a scale bar.
+
+    Parameters
+    ----------
+    body
+        A result, which is drawn deformed, or a mesh.
+    field
+        What the color says: ``"displacement"`` (its magnitude; the default for a result),
+        ``"part"``, ``"plain"`` (the default for a mesh), or one number for each vertex, (n,).
+    label
+        What the color bar says of such numbers.
+    section
+        Cut away the half that is nearer to the reader: the axis across the cut, alone for a cut
+        through the middle, or with its position in m. Voxels stay whole. Walls of cavities are
+        drawn in colors of their own.
+    view
+        Azimuth and elevation of the eye in degrees.
+    ghost
+        Whether to show the undeformed body behind a deformed one.
+    lines
+        Whether to draw the edges of triangles; default: where they are long enough to be seen.
+    title
+        Default: the name of the design.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A surface of 100,000 triangles takes a few seconds.
+
+    Raises
+    ------
+    MeshError
+        An unknown field, a number of values that is not that of the vertices, or a section that
+        leaves nothing.
+
+    Examples
+    --------
+    >>> from voxsoft.voxels import Voxels
+    >>> mesh = Voxels.from_array([[[1, 1], [0, 1]]], voxel_size=0.005).mesh()
+    >>> figure = plot_body(mesh, mesh.vertices[:, 2] * 1e3, label="height (mm)")
+    >>> figure.axes[1].get_ylabel()
+    'height (mm)'
+    """
+    mesh = body.mesh if isinstance(body, Result) else body
+    positions = body.positions if isinstance(body, Result) else mesh.vertices
+    has_ghost = ghost and isinstance(body, Result) and section is None
+    shown = [positions, mesh.vertices] if has_ghost else [positions]
+    camera = Camera.around(np.concatenate(shown), view, PIXELS * _FINER)
+    surface = boundary_of(mesh, _kept(mesh, section, camera))
+    colors = _colors(body, mesh, surface, field, label)
+    seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
+    picture = _paint(seen, positions, surface, colors, camera, lines)
+    if has_ghost:
+        picture = _with_ghost(picture, seen, mesh, surface, camera)
+    name = body.design.name if isinstance(body, Result) else ""
+    return _figure(picture, camera, colors, name if title is None else title)
+
+
+@dataclass(frozen=True)
+class _Colors:
+    """The color of each corner of each triangle as a number, or of each triangle as it is."""
+
+    flat: Floats  # (t, 3) red, green, blue
+    values: Floats | None = None  # (t, 3) at the corners
+    norm: Normalize | None = None
+    label: str = ""
+    colored: NDArray[np.bool_] | None = None  # (t,) where the values count
+
+
+def _kept(
+    mesh: Mesh, section: Axis | tuple[Axis, float] | None, camera: Camera
+) -> NDArray[np.bool_]:
+    if section is None:
+        return np.ones(len(mesh.tets), dtype=bool)
+    if isinstance(section, tuple):
+        axis, position = section
+    else:
+        axis = section
+        along = mesh.vertices[:, "xyz".index(axis)]
+        position = 0.5 * float(along.min() + along.max())
+    side = -1 if camera.toward["xyz".index(axis)] > 0 else 1
+    kept = beyond(mesh, axis, position, side)
+    if not kept.any():
+        raise MeshError(
+            "section", f"at {axis} = {position * 1e3:g} mm leaves nothing of the body", "move it"
+        )
+    return kept
+
+
+def _colors(
+    body: Result | Mesh, mesh: Mesh, surface: Boundary, field: str | ArrayLike | None, label: str
+) -> _Colors:
+    from matplotlib.colors import Normalize, to_rgb
+
+    if field is None:
+        field = "displacement" if isinstance(body, Result) else "plain"
+    flat = np.tile(to_rgb(_PLAIN_COLOR), (len(surface.triangles), 1))
+    lined = surface.cavity >= 0
+    if isinstance(field, str) and field == "part":
+        palette = np.array([to_rgb(color) for color in (_PLAIN_COLOR, *SERIES[1:])])
+        return _Colors(palette[(surface.part - 1) % len(palette)])
+    walls = np.array([to_rgb(color) for color in SERIES[1:]])
+    flat[lined] = walls[surface.cavity[lined] % len(walls)]
+    if isinstance(field, str) and field == "plain":
+        return _Colors(flat)
+    values, label = _values(body, mesh, field, label)
+    of_corners = values[surface.triangles]
+    finite = np.isfinite(values)
+    norm = Normalize(float(values[finite].min()), float(values[finite].max()))
+    # With a field on the outside, cavity walls keep their own color, by which they are known.
+    return _Colors(flat, of_corners, norm, label, ~lined)
+
+
+def _values(
+    body: Result | Mesh, mesh: Mesh, field: str | ArrayLike, label: str
+) -> tuple[Floats, str]:
+    if isinstance(field, str):
+        if field != "displacement" or not isinstance(body, Result):
+            known = ["part", "plain", *(["displacement"] if isinstance(body, Result) else [])]
+            raise MeshError("field", f'"{field}" is not known', closest(field, known))
+        size = np.linalg.norm(body.displacements, axis=1)
+        scale = scale_for(size, "length")
+        return size * scale.factor, scale.label("displacement")
+    values = np.asarray(field, dtype=np.float64)
+    if values.shape != (len(mesh.vertices),):
+        raise MeshError(
+            "field",
+            f"has shape {values.shape}; a number for each of {len(mesh.vertices)} vertices is due",
+        )
+    if not np.isfinite(values).any():
+        raise MeshError("field", "holds no finite number")
+    return values, label
+
+
+def _paint(
+    seen: Raster,
+    positions: Floats,
+    surface: Boundary,
+    colors: _Colors,
+    camera: Camera,
+    lines: bool | None,
+) -> Floats:
+    """Color and light for every pixel, (h, w, 3), white where there is no body."""
+    shown = colors.flat[seen.triangle]
+    if colors.values is not None and colors.norm is not None and colors.colored is not None:
+        from matplotlib import colormaps
+
+        mapped = colormaps[COLOR_MAP](colors.norm(seen.interpolate(colors.values)))[:, :3]
+        shown = np.where(colors.colored[seen.triangle][:, None], mapped, shown)
+    normals = shading.normals_of(positions[surface.triangles])
+    brightness = shading.lit(normals, camera)[seen.triangle]
+    brightness *= shading.depth_contrast(seen) * shading.outlines(seen)
+    flat = camera.project(positions)[:, :2][surface.triangles]
+    if lines if lines is not None else _long_enough(flat):
+        brightness *= shading.mesh_lines(seen, flat)
+    return seen.spread(shown * brightness[:, None], 1.0)
+
+
+def _long_enough(flat: Floats) -> bool:
+    sides = np.linalg.norm(np.diff(flat, axis=1), axis=2)
+    return bool(np.median(sides) > _SHORTEST_LINE * _FINER)
+
+
+def _with_ghost(
+    picture: Floats, seen: Raster, mesh: Mesh, surface: Boundary, camera: Camera
+) -> Floats:
+    """Draw the undeformed body pale behind the deformed one."""
+    before = rasterize(
+        camera.project(mesh.vertices), surface.triangles, camera.width, camera.height
+    )
+    normals = shading.normals_of(mesh.vertices[surface.triangles])
+    light = shading.lit(normals, camera)[before.triangle] * shading.outlines(before)
+    pale = before.spread(_PALEST + (1.0 - _PALEST) * light, 1.0)
+    return np.where(seen.covered[..., None], picture, pale[..., None])
+
+
+def _figure(picture: Floats, camera: Camera, colors: _Colors, title: str) -> Figure:
+    height, width = picture.shape[0] // _FINER, picture.shape[1] // _FINER
+    cropped = picture[: height * _FINER, : width * _FINER]
+    averaged = cropped.reshape(height, _FINER, width, _FINER, 3).mean(axis=(1, 3))
+    bar = 1.1 if colors.norm is not None else 0.0
+    figure = empty_figure(max(width / 150, 3.0) + bar, max(height / 150, 1.6) + 0.9)
+    axes = figure.add_subplot(label="body")
+    axes.imshow(np.clip(averaged, 0.0, 1.0), interpolation="antialiased")
+    axes.set_axis_off()
+    if title:
+        axes.set_title(title, fontsize=11, loc="left")
+    if colors.norm is not None:
+        _color_bar(figure, axes, colors)
+    _scale_bar(axes, camera, width, height)
+    _directions(axes, camera, width, height)
+    return figure
+
+
+def _color_bar(figure: Figure, axes: Axes, colors: _Colors) -> None:
+    from matplotlib.cm import ScalarMappable
+
+    mappable = ScalarMappable(norm=colors.norm, cmap=COLOR_MAP)
+    bar: Any = figure.colorbar(mappable, ax=axes, shrink=0.75, aspect=24, pad=0.03)
+    bar.set_label(colors.label, fontsize=10)
+    bar.outline.set_visible(False)
+    bar.ax.set_label("colorbar")
+
+
+def _scale_bar(axes: Axes, camera: Camera, width: int, height: int) -> None:
+    """Draw a bar of 1, 2 or 5 times a power of ten, about a fifth of the picture long."""
+    metre = 1.0 / (camera.pixel * _FINER)
+    aim = 0.2 * width / metre
+    power = 10.0 ** np.floor(np.log10(aim))
+    length = power * max(step for step in (1, 2, 5) if step * power <= aim * (1 + 1e-9))
+    scale: Scale = scale_for(length, "length")
+    y = height + 0.05 * height + 14
+    axes.plot([0, length * metre], [y, y], color="black", linewidth=2, clip_on=False)
+    text = f"{round(length * scale.factor, 6):g} {scale.unit}"
+    axes.text(length * metre / 2, y + 8, text, ha="center", va="top", fontsize=9)
+    axes.set_xlim(0, width)
+    axes.set_ylim(y + 34, 0)
+
+
+def _directions(axes: Axes, camera: Camera, width: int, height: int) -> None:
+    """Draw the axes of space as they are seen, in the corner across from the scale bar."""
+    size = 34.0
+    center = np.array([width - 1.4 * size, height + 0.05 * height + 6])
+    for name, across, along in zip("xyz", camera.right, camera.up, strict=True):
+        tip = center + size * np.array([across, -along])
+        arrow = {
+            "arrowstyle": "-|>",
+            "color": "black",
+            "linewidth": 1.0,
+            "shrinkA": 0,
+            "shrinkB": 0,
+        }
+        axes.annotate("", tuple(tip), tuple(center), arrowprops=arrow, annotation_clip=False)
+        if np.hypot(across, along) > 0.15:
+            beside = center + 1.28 * size * np.array([across, -along])
+            axes.text(beside[0], beside[1], name, ha="center", va="center", fontsize=9)

@@ -1,0 +1,56 @@
+"""What all figures share: colors, type sizes, an empty figure that needs no display."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+# Okabe and Ito's palette, https://jfly.uni-koeln.de/color/: eight colors that readers with any
+# of the common kinds of color blindness tell apart.
+BLACK: Final = "#000000"
+ORANGE: Final = "#e69f00"
+SKY: Final = "#56b4e9"
+GREEN: Final = "#009e73"
+BLUE: Final = "#0072b2"
+RED: Final = "#d55e00"
+PINK: Final = "#cc79a7"
+
+#: Colors of series in order.
+SERIES: Final = (BLUE, RED, GREEN, PINK, ORANGE, SKY)
+
+GRAY: Final = "#7f7f7f"
+PALE: Final = "#d9d9d9"
+
+#: Perceptually uniform, and readable in gray and by color-blind readers.
+COLOR_MAP: Final = "viridis"
+
+_DOTS_PER_INCH: Final = 150
+_FONT_SIZE: Final = 10.0
+
+
+def empty_figure(width: float, height: float) -> Figure:
+    """Make a figure of so many inches that belongs to no window and to no list of figures."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(width, height), dpi=_DOTS_PER_INCH, layout="constrained")
+
+
+def plain_axes(axes: Axes, *, x: str, y: str, title: str = "") -> None:
+    """Give axes their labels, a light grid behind the data, and no box."""
+    axes.set_xlabel(x, fontsize=_FONT_SIZE)
+    axes.set_ylabel(y, fontsize=_FONT_SIZE)
+    if title:
+        axes.set_title(title, fontsize=_FONT_SIZE + 1, loc="left")
+    axes.grid(True, color=PALE, linewidth=0.6)
+    axes.set_axisbelow(True)
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def plain_legend(axes: Axes, **options: Any) -> None:  # noqa: ANN401 - options of matplotlib
+    """Add a legend without a box, if there is more than one thing to tell apart."""
+    handles, _ = axes.get_legend_handles_labels()
+    if len(handles) > 1:
+        axes.legend(frameon=False, fontsize=_FONT_SIZE - 1, **options)
