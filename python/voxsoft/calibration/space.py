@@ -92,8 +92,8 @@ class Space:
         share = np.asarray(genes, dtype=np.float64)
         low, high = np.log(self.low), np.log(self.high)
         found: NDArray[np.float64] = np.exp(low + share * (high - low))
-        # exp(log(x)) may miss x by one bit, and a bound must not be missed.
-        return np.clip(found, self.low, self.high)
+        # exp(log(x)) may miss x by a bit, and a bound must not be missed.
+        return np.where(share <= 0.0, self.low, np.where(share >= 1.0, self.high, found))
 
     def spans(self) -> NDArray[np.float64]:
         """Length of each range in the natural logarithm, (n,)."""
