@@ -48,7 +48,8 @@ class Space:
     Examples
     --------
     >>> space = Space.of({"edge": ("1 kPa", "100 kPa")}, Lattice(edge="5 kPa", bulk="7 kPa"))
-    >>> space.material_at([0.5]).edge, space.material_at([0.5]).bulk
+    >>> middle = space.material_at([0.5])
+    >>> round(middle.edge, 6), middle.bulk
     (10000.0, 7000.0)
     """
 
