@@ -1,7 +1,7 @@
 """Make the figures of docs/paper.md, and with ``--cylinders`` its table of cylinders.
 
-``python examples/paper_figures.py [--cylinders]`` writes to docs/images; a calibration and a study are
-run for it, which takes a minute or two.
+``python examples/paper_figures.py [--cylinders]`` writes to docs/images; a calibration and a study
+are run for it, which takes a minute or two.
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from __future__ import annotations
 import sys
 import tempfile
 from pathlib import Path
+
+from matplotlib.figure import Figure
 
 import voxsoft as vs
 from voxsoft.design import families
@@ -25,7 +27,7 @@ IMAGES = ROOT / "docs" / "images"
 DATA = ROOT / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv"
 
 
-def save(figure, name: str) -> None:
+def save(figure: Figure, name: str) -> None:
     """Save one figure for the documentation."""
     IMAGES.mkdir(parents=True, exist_ok=True)
     figure.savefig(IMAGES / f"{name}.png", dpi=110)
@@ -60,7 +62,7 @@ def study() -> None:
 
 
 def cylinders() -> None:
-    """Rise of the cap's center for three walls and voxel sizes; E = 61 kPa, Poisson's ratio 0.42."""
+    """Rise of the cap's center for three walls and voxel sizes."""
     material = vs.Lattice(edge=25.1 * kPa, bulk=100 * kPa)
     print(f"E = {material.young() / 1e3:.1f} kPa, nu = {material.poisson():.2f}")
     for wall in (5, 10, 15):

@@ -11,7 +11,6 @@ from voxsoft.design import (
     Clamp,
     Constraint,
     Design,
-    Floor,
     Force,
     Gravity,
     History,
@@ -264,7 +263,6 @@ def test_every_load_reads_text_and_floats():
     assert Traction(region=region, value=1e3).value == 1e3
     assert Force(region=region, value=["1 N", 0, "-2 mN"]).value == (1.0, 0.0, -0.002)
     assert Pressure(value="-1 kPa", cavity=0).cavity == 0
-    assert Floor().stiffness is None
     with pytest.raises(DesignError, match="no direction"):
         Gravity(direction=(0, 0, 0))
 

@@ -11,7 +11,7 @@ from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
 from voxsoft.design.region import Region
 from voxsoft.records import Record
-from voxsoft.units import Acceleration, Length, UnitOf, Vector
+from voxsoft.units import Acceleration, Length, Vector
 
 Forces = tuple[units.Force, units.Force, units.Force]
 Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
@@ -144,8 +144,6 @@ class Floor(Record):
     ----------
     z
         Its height; default 0.
-    stiffness
-        Contact stiffness per vertex in N/m; default: rigid.
 
     Examples
     --------
@@ -154,4 +152,3 @@ class Floor(Record):
     """
 
     z: Length = 0.0
-    stiffness: Annotated[float, UnitOf("stiffness", positive=True)] | None = None
