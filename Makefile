@@ -37,7 +37,7 @@ $(STAMP): $(VENV)/bin/python pyproject.toml Cargo.toml Cargo.lock $(RUST_SOURCES
 	@touch $@
 
 demo: install
-	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo --resume
+	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo
 
 test: install test-rust test-python
 

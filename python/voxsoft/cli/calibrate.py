@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from voxsoft.calibration import Calibration, CalibrationEvent
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Seed, Sets, Workers
-from voxsoft.cli.output import print_json, say, show_table
-from voxsoft.cli.progress import ProgressBar
+from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+
+if TYPE_CHECKING:
+    from voxsoft.calibration import Calibration, CalibrationEvent
 
 
 def calibrate(
@@ -35,7 +37,9 @@ def calibrate(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-calibration.")
     ] = None,
-    name: Annotated[str | None, typer.Option("--name", help="Name of the material card.")] = None,
+    name: Annotated[
+        str | None, typer.Option("--name", help="Name of the material card; default: the data's.")
+    ] = None,
     generations: Annotated[int, typer.Option("--generations", min=1)] = 50,
     population: Annotated[int, typer.Option("--population", min=4)] = 30,
     workers: Workers = None,
@@ -46,12 +50,12 @@ def calibrate(
     from voxsoft import files
     from voxsoft.calibration import Experiment, Measurement
     from voxsoft.calibration import calibrate as fit
-    from voxsoft.files.calibrations import write_calibration
+    from voxsoft.cli.progress import ProgressBar
 
     with errors_in_words(json=json):
-        loaded = files.load_with(design, sets or [])
+        loaded = files.load(design, assignments=sets or [])
         experiments = [Experiment(loaded, Measurement.read(path, select=material)) for path in data]
-        with ProgressBar("evaluations", generations * population) as bar:
+        with ProgressBar("generations", generations) as bar:
             answer = fit(
                 experiments,
                 method=method,
@@ -60,25 +64,35 @@ def calibrate(
                 population=population,
                 workers=workers,
                 seed=seed,
-                progress=lambda event: bar.advance_to(event.evaluations, _note(event)),
+                progress=lambda event: bar.advance_to(*_standing(event, generations)),
             )
         folder = out or Path("runs") / f"{loaded.name}-calibration"
-        write_calibration(answer, folder, name or data[0].stem)
+        written = files.write_calibration(answer, folder, name or _card_name(material, data[0]))
         if json:
             print_json(answer.summary() | {"folder": str(folder)})
         else:
             _show(answer)
-            say(f"wrote {folder}")
+            say(f"wrote {plain(str(folder))}: {', '.join(file.name for file in written)}")
 
 
-def _note(event: CalibrationEvent) -> str:
-    return f"mean error {event.mean_error * 1e3:.2f} mm"
+def _card_name(material: str | None, data: Path) -> str:
+    """A name that a design can write: lower case, letters, digits and hyphens."""
+    return re.sub(r"[^a-z0-9]+", "-", (material or data.stem).lower()).strip("-") or "material"
+
+
+def _standing(event: CalibrationEvent, generations: int) -> tuple[int, str]:
+    done = event.done if event.stage == "search" else generations
+    return done, f"{event.stage}, mean error {quantity(event.mean_error, 'length')}"
 
 
 def _show(answer: Calibration) -> None:
-    say(f"mean error {answer.mean_error * 1e3:.2f} mm, largest {answer.max_error * 1e3:.2f} mm")
+    mean, largest = (quantity(error, "length") for error in (answer.mean_error, answer.max_error))
+    say(f"mean error {mean}, largest {largest}, fitness {answer.fitness:.4f}")
+    if answer.free_scale:
+        say(f"scale of the simulated shape: {answer.scale}")
+    sentences = {profile.name: profile.sentence for profile in answer.profiles}
     rows = [
-        [profile.name, f"{profile.best / 1e3:.3f} kPa", profile.sentence]
-        for profile in answer.profiles
+        [name, quantity(value, "modulus"), sentences.get(name, "not asked")]
+        for name, value in answer.parameters.items()
     ]
-    show_table("Parameters", ["name", "value", "identifiable"], rows)
+    show_table("Parameters", ["name", "value", "what the data say"], rows)

@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from voxsoft.cli.exits import INVALID, errors_in_words
+from voxsoft.cli.exits import INVALID, USAGE, errors_in_words
 from voxsoft.cli.options import Json, Sets
-from voxsoft.cli.output import print_json, say
-from voxsoft.simulation import CheckReport
+from voxsoft.cli.output import plain, print_json, quantity, say
+
+if TYPE_CHECKING:
+    from voxsoft.simulation import CheckReport
 
 
 def check(
     source: Annotated[
         Path,
-        typer.Argument(help="A design file, or a triangle or tetrahedral mesh.", exists=True),
+        typer.Argument(
+            help="A design file, or a mesh: .stl .obj .ply .vtk .vtu.", exists=True, dir_okay=False
+        ),
     ],
     sets: Sets = None,
     unit: Annotated[
@@ -30,8 +34,15 @@ def check(
     """Look for what would go wrong: units, pieces, hinges, cavities, leaks, walls, mass, cost."""
     from voxsoft import files
 
+    is_design = source.suffix.lower() == ".toml"
+    if is_design and (unit or voxel_size):
+        say("--unit and --voxel-size are for mesh files; for a design, use --set voxel_size='2 mm'")
+        raise typer.Exit(USAGE)
+    if not is_design and sets:
+        say("--set is for designs; a mesh file has --unit and --voxel-size")
+        raise typer.Exit(USAGE)
     with errors_in_words(json=json, invalid={"valid": False}):
-        if source.suffix.lower() == ".toml":
+        if is_design:
             report = files.check_design(source, sets or [])
         else:
             report = files.check_mesh(source, unit=unit, voxel_size=voxel_size)
@@ -46,15 +57,23 @@ def check(
 def _show(report: CheckReport) -> None:
     for finding in report.findings:
         color = "red" if finding.severity == "error" else "yellow"
-        where, text = (part.replace("[", r"\[") for part in (finding.where, finding.what))
-        say(f"[{color}]{finding.severity}[/{color}] {where}: {text}. Try: {finding.hint}")
+        where = f" {plain(finding.where)}:" if finding.where else ""
+        hint = f" Try: {plain(finding.hint)}" if finding.hint else ""
+        say(f"[{color}]{finding.severity}[/{color}]{where} {plain(finding.what)}.{hint}")
+    if report.voxels:
+        _show_body(report)
+    say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")
+
+
+def _show_body(report: CheckReport) -> None:
     say(
         f"{report.voxels:,} voxels, {report.vertices:,} vertices, {report.tets:,} tetrahedra, "
-        f"mass {report.mass * 1e3:.4g} g"
+        f"mass {quantity(report.mass, 'mass')}"
     )
     for index, cavity in enumerate(report.cavities):
-        say(f"cavity {index}: {cavity.volume * 1e6:.4g} mL, {cavity.area * 1e6:.4g} mm²")
+        volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")
+        say(f"cavity {index}: {volume}, walls of {area}")
     if report.thinnest_wall:
-        say(f"thinnest wall: {report.thinnest_wall} voxels")
+        plural = "s" if report.thinnest_wall > 1 else ""
+        say(f"thinnest wall: {report.thinnest_wall} voxel{plural}")
     say(f"one run to rest: about {report.seconds:.2g} s and {report.memory / 1e6:.3g} MB")
-    say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")

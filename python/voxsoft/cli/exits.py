@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +10,7 @@ from typing import Any, Final
 
 import typer
 
-from voxsoft.cli.output import print_json, say
+from voxsoft.cli.output import plain, print_json, say
 from voxsoft.errors import MissingPackageError, StudyError, VoxSoftError
 
 OK: Final = 0
@@ -33,7 +34,7 @@ def problems_of(error: VoxSoftError) -> list[dict[str, str]]:
 
 
 @contextmanager
-def errors_in_words(*, json: bool, invalid: dict[str, Any] | None = None) -> Iterator[None]:
+def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None) -> Iterator[None]:
     """Turn an error into a message on standard error, an object on standard output, and a code.
 
     Parameters
@@ -46,19 +47,14 @@ def errors_in_words(*, json: bool, invalid: dict[str, Any] | None = None) -> Ite
     try:
         yield
     except VoxSoftError as error:
-        say(f"[red]error:[/red] {_plain(str(error))}")
+        say(f"[red]error:[/red] {plain(str(error))}")
         if json:
             print_json({"status": "failed", **(invalid or {}), "problems": problems_of(error)})
         raise typer.Exit(exit_code(error)) from None
-    except KeyboardInterrupt:
-        say("stopped; what was finished is kept")
+    except KeyboardInterrupt as interrupt:
+        say(plain(str(interrupt)) or "stopped; files that were written before are kept")
         raise typer.Exit(INTERRUPTED) from None
     except BrokenPipeError:
-        # The reader of a pipe went away (`| head`): nothing is left to say.
-        sys.stderr.close()
+        # The reader of a pipe went away (`| head`). Python would complain once more at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise typer.Exit(OK) from None
-
-
-def _plain(text: str) -> str:
-    """Keep rich from reading brackets such as ``parts[0]`` as markup."""
-    return text.replace("[", r"\[")

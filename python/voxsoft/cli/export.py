@@ -9,7 +9,7 @@ import typer
 
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import Sets
-from voxsoft.cli.output import say
+from voxsoft.cli.output import plain, say
 
 
 def export(
@@ -23,10 +23,13 @@ def export(
     deformed: Annotated[
         bool, typer.Option("--deformed", help="The shape under load (run folders only).")
     ] = False,
+    unit: Annotated[
+        str, typer.Option("--unit", help="Unit of the numbers in .stl and .obj files.")
+    ] = "m",
 ) -> None:
     """Write a design or a result as a mesh, surface, voxel array, resolved design or table."""
     from voxsoft import files
 
-    with errors_in_words(json=False):
-        files.export(source, target, sets or [], deformed=deformed)
-    say(f"wrote {target}")
+    with errors_in_words():
+        files.export(source, target, sets or [], deformed=deformed, unit=unit)
+    say(f"wrote {plain(str(target))}")

@@ -8,29 +8,36 @@ from typing import Annotated
 import typer
 
 from voxsoft.cli.exits import USAGE, errors_in_words
-from voxsoft.cli.output import say
+from voxsoft.cli.output import plain, say
 
 
 def new(
     name: Annotated[str, typer.Argument(help="Name of the design; NAME.toml is written.")],
     template: Annotated[
-        str, typer.Option("--template", "-t", help="Which ready design to start from.")
+        str,
+        typer.Option(
+            "--template", "-t", help="Start from: beam, cylinder, finger, pneunet or sphere."
+        ),
     ] = "cylinder",
     folder: Annotated[Path, typer.Option("--folder", help="Where to write it.")] = Path(),
     force: Annotated[bool, typer.Option("--force", help="Replace a file that exists.")] = False,
 ) -> None:
-    """Write a design file to start from: beam, cylinder, sphere, pneunet or gyroid-finger."""
+    """Write a commented design file to start from."""
+    from voxsoft import files
     from voxsoft.design import families
 
-    ready = families.FAMILIES
-    if template not in ready:
-        raise typer.BadParameter(f"{template!r} is not one of {', '.join(ready)}", param_hint="-t")
+    if template not in families.FAMILIES:
+        known = ", ".join(families.FAMILIES)
+        raise typer.BadParameter(f"{template!r} is not one of {known}", param_hint="--template")
     path = folder / f"{name}.toml"
+    if path.name != f"{name}.toml":
+        raise typer.BadParameter("holds a folder; name that with --folder", param_hint="NAME")
     if path.exists() and not force:
-        say(f"{path} exists; add --force to replace it")
+        say(f"{plain(str(path))} exists; add --force to replace it")
         raise typer.Exit(USAGE)
-    with errors_in_words(json=False):
-        folder.mkdir(parents=True, exist_ok=True)
-        design = ready[template]()
-        type(design).from_document({**design.document, "name": name}).save(path)
-    say(f"wrote {path}; next: [bold]voxsoft check {path}[/bold], [bold]voxsoft run {path}[/bold]")
+    with errors_in_words():
+        files.write_family(template, path, name=name)
+    shown = plain(str(path))
+    say(
+        f"wrote {shown}; next: [bold]voxsoft check {shown}[/bold], [bold]voxsoft run {shown}[/bold]"
+    )

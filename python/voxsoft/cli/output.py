@@ -6,38 +6,69 @@ import json
 import math
 import sys
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-from rich.table import Table
+if TYPE_CHECKING:
+    from rich.console import Console
 
-_people = Console(stderr=True, highlight=False)
+
+@cache
+def console() -> Console:
+    """The console for people, for tables and progress bars."""
+    from rich.console import Console
+
+    return Console(stderr=True, highlight=False)
 
 
 def say(message: str) -> None:
-    """Write a line for people (rich markup is understood)."""
-    _people.print(message, soft_wrap=True)
+    """Write a line for people (rich markup is understood; see :func:`plain`)."""
+    console().print(message, soft_wrap=True)
 
 
-def console() -> Console:
-    """The console for people, for tables and progress bars."""
-    return _people
+def plain(text: str) -> str:
+    r"""Keep rich from reading brackets such as ``parts[0]`` as markup.
+
+    Examples
+    --------
+    >>> plain("[red]")
+    '\\[red]'
+    """
+    from rich.markup import escape
+
+    return escape(text)
 
 
 def print_json(value: Mapping[str, Any]) -> None:
     """Write one object to standard output; numbers that are not finite become null."""
-    json.dump(_finite(value), sys.stdout, indent=2, ensure_ascii=False)
+    json.dump(_finite(value), sys.stdout, indent=2, ensure_ascii=True)
     sys.stdout.write("\n")
+    sys.stdout.flush()
 
 
 def show_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Write a table for people: the first column left, the others right."""
-    table = Table(title=title, title_justify="left", title_style="bold")
+    from rich.table import Table
+
+    table = Table(title=plain(title), title_justify="left", title_style="bold")
     for index, column in enumerate(columns):
-        table.add_column(column, justify="left" if index == 0 else "right")
+        table.add_column(plain(column), justify="left" if index == 0 else "right")
     for row in rows:
-        table.add_row(*row)
-    _people.print(table)
+        table.add_row(*map(plain, row))
+    console().print(table)
+
+
+def quantity(value: float, kind: str) -> str:
+    """Write an SI number with a unit that suits its size, to four digits.
+
+    Examples
+    --------
+    >>> quantity(0.0123456, "length")
+    '12.35 mm'
+    """
+    from voxsoft.units import format_quantity
+
+    return format_quantity(float(f"{value:.4g}"), kind)
 
 
 def _finite(value: object) -> object:

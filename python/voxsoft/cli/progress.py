@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from types import TracebackType
-from typing import Self
+from typing import Final, Self
 
 from rich.progress import (
     BarColumn,
@@ -15,10 +15,10 @@ from rich.progress import (
     TimeRemainingColumn,
 )
 
-from voxsoft.cli.output import console, say
+from voxsoft.cli.output import console, plain, say
 
 #: Seconds between two plain lines where there is no terminal.
-PLAIN_PERIOD = 5.0
+PLAIN_PERIOD: Final = 5.0
 
 
 class ProgressBar:
@@ -40,6 +40,7 @@ class ProgressBar:
 
     def __init__(self, title: str, total: int) -> None:
         self._title, self._total, self._done = title, total, 0
+        self._first: int | None = None
         self._started = self._spoken = time.monotonic()
         self._bar = Progress(
             TextColumn("{task.description}"),
@@ -67,20 +68,22 @@ class ProgressBar:
     ) -> None:
         if self._fancy:
             self._bar.stop()
-        elif self._done:
-            self._speak("")
 
     def advance_to(self, done: int, note: str = "") -> None:
         """Show that `done` steps are done, with a short note such as the best value so far."""
+        if self._first is None:
+            # Steps that an earlier run did must not count for the speed of this one.
+            self._first = done - 1
+            self._bar.reset(self._task, completed=self._first, note="")
         self._done = done
         if self._fancy:
-            self._bar.update(self._task, completed=done, note=note)
+            self._bar.update(self._task, completed=done, note=plain(note))
         elif time.monotonic() - self._spoken > PLAIN_PERIOD:
             self._speak(note)
 
     def _speak(self, note: str) -> None:
         self._spoken = time.monotonic()
         elapsed = self._spoken - self._started
-        left = elapsed / max(self._done, 1) * (self._total - self._done)
-        tail = f", {note}" if note else ""
+        left = elapsed / max(self._done - (self._first or 0), 1) * (self._total - self._done)
+        tail = f", {plain(note)}" if note else ""
         say(f"{self._title}: {self._done}/{self._total}, {elapsed:.0f} s, {left:.0f} s left{tail}")

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from voxsoft.cli.exits import NOT_AT_REST, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
-from voxsoft.cli.output import print_json, say, show_table
-from voxsoft.simulation import Result
+from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+
+if TYPE_CHECKING:
+    from voxsoft.cli.progress import ProgressBar
+    from voxsoft.simulation import Result
 
 
 def run(
@@ -21,6 +26,9 @@ def run(
         typer.Option("--out", "-o", help="Run folder; default: runs/NAME-HASH."),
     ] = None,
     solver: Annotated[str | None, typer.Option("--solver", help="xpbd (default).")] = None,
+    figure: Annotated[
+        bool, typer.Option("--figure", help="Also draw the deformed body, as body.png.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Simulate a design and write a run folder.
@@ -28,14 +36,22 @@ def run(
     The folder holds design.toml (resolved), summary.json and result.vtu.
     """
     from voxsoft import files
+    from voxsoft.cli.progress import ProgressBar
     from voxsoft.simulation import simulate
 
     with errors_in_words(json=json):
-        loaded = files.load_with(design, sets or [])
-        changes = {} if solver is None else {"method": solver}
-        result = simulate(loaded, **changes)
+        loaded = files.load(design, assignments=sets or [])
+        changes: dict[str, Any] = {} if solver is None else {"method": solver}
+        with ProgressBar("percent", 100) as bar:
+            tell = _percent(bar, loaded.solver.end_time)
+            result = simulate(loaded, progress=tell, **changes)
         folder = out or Path("runs") / f"{loaded.name}-{loaded.hash[:8]}"
         files.write_run(result, folder)
+        if figure:
+            from voxsoft.files.figures import save_figure
+            from voxsoft.plot import plot_body
+
+            save_figure(plot_body(result), folder / "body.png")
         if json:
             print_json(result.summary() | {"folder": str(folder)})
         else:
@@ -44,15 +60,44 @@ def run(
         raise typer.Exit(NOT_AT_REST)
 
 
+def _percent(bar: ProgressBar, end_time: float | None) -> Callable[[int, float, float], None]:
+    """Progress in percent: of the end time, or of the digits that the residual must still lose."""
+    first: list[float] = []
+
+    def tell(steps: int, time: float, residual: float) -> None:
+        if not first and 0 < residual < math.inf:
+            first.append(residual)
+        if end_time:
+            share = time / end_time
+        else:
+            # A residual falls by about the same factor in the same time.
+            from voxsoft.simulation.run import DEFAULT_TOLERANCE
+
+            digits = math.log(max(first[0] / DEFAULT_TOLERANCE, 2.0)) if first else 1.0
+            share = math.log(first[0] / residual) / digits if first and residual > 0 else 0.0
+        bar.advance_to(round(100 * min(max(share, 0.0), 1.0)), f"residual {residual:.1e}")
+
+    return tell
+
+
 def _show(result: Result, folder: Path) -> None:
+    from voxsoft.metrics import METRICS
+
     color = "green" if result.status == "ok" else "red"
-    say(f"[{color}]{result.status}[/{color}]: {result.message}")
+    say(f"[{color}]{result.status}[/{color}]: {plain(result.message)}")
     if result.probes:
         rows = (
-            [name, *(f"{component * 1e3:.3f}" for component in moved)]
+            [name, *(f"{round(component * 1e3, 3) + 0.0:.3f}" for component in moved)]
             for name, moved in result.probes.items()
         )
         show_table("Displacement of probes (mm)", ["probe", "x", "y", "z"], rows)
-    for name in (*result.design.objectives, *result.design.constraints):
-        say(f"{name} = {result.metrics[name]:.6g} (SI)")
-    say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s; wrote {folder}")
+    for index, (now, cavity) in enumerate(
+        zip(result.cavity_volumes, result.mesh.cavities, strict=True)
+    ):
+        before = quantity(float(cavity.volume), "volume")
+        say(f"cavity {index}: {before} grew to {quantity(now, 'volume')}")
+    design = result.design
+    for name, target in (*design.objectives.items(), *design.constraints.items()):
+        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[target.metric])}")
+    say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s")
+    say(f"wrote {plain(str(folder))}")

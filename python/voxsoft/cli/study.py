@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Seed, Sets, Workers
-from voxsoft.cli.output import print_json, say, show_table
-from voxsoft.cli.progress import ProgressBar
-from voxsoft.design import Design
-from voxsoft.study import Study, StudyResult, TrialEvent
-from voxsoft.units import format_quantity
+from voxsoft.cli.output import plain, print_json, quantity, say, show_table
+
+if TYPE_CHECKING:
+    from voxsoft.design import Design
+    from voxsoft.study import Study, StudyResult, TrialEvent
+
+    Evaluate = Callable[[Study, Callable[[TrialEvent], None]], StudyResult]
+
+#: How many of the best designs are listed.
+LISTED = 10
 
 Scheduler = Annotated[
     str | None,
@@ -25,7 +30,7 @@ Storage = Annotated[
     typer.Option("--storage", metavar="URL", help="An Optuna storage instead of a file."),
 ]
 Out = Annotated[
-    Path | None, typer.Option("--out", "-o", help="Study folder; default: runs/NAME-sweep.")
+    Path | None, typer.Option("--out", "-o", help="Study folder; default: runs/NAME-VERB.")
 ]
 
 
@@ -48,7 +53,9 @@ def sweep(
         out,
         "sweep",
         json=json,
-        make=lambda study, tell: study.grid(workers=workers, scheduler=scheduler, progress=tell),
+        evaluate=lambda study, tell: study.grid(
+            workers=workers, scheduler=scheduler, progress=tell
+        ),
         total=lambda study: study.grid_size,
         storage=storage,
         seed=0,
@@ -72,17 +79,20 @@ def optimize(
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
-    """Search the parameters' ranges for the best objectives of a design."""
+    """Search the parameters' ranges for the best objectives of a design.
+
+    A search that was stopped goes on where it was, and one with a larger budget goes further.
+    """
     _study(
         design,
         sets or [],
         out,
         "optimize",
         json=json,
-        make=lambda study, tell: study.optimize(
+        evaluate=lambda study, tell: study.optimize(
             sampler, budget, workers=workers, scheduler=scheduler, progress=tell
         ),
-        total=lambda study: budget,
+        total=lambda study: study.grid_size if sampler == "grid" else budget,
         storage=storage,
         seed=seed,
     )
@@ -95,47 +105,85 @@ def _study(
     verb: str,
     *,
     json: bool,
-    make: Callable[[Study, Callable[[TrialEvent], None]], StudyResult],
+    evaluate: Evaluate,
     total: Callable[[Study], int],
     storage: str | None,
     seed: int,
 ) -> None:
     from voxsoft import files
+    from voxsoft.cli.progress import ProgressBar
+    from voxsoft.simulation import check_targets
+    from voxsoft.study import Study
 
     with errors_in_words(json=json):
-        design = files.load_with(path, sets)
+        design = files.load(path, assignments=sets)
+        # A target that cannot be measured would fail every trial.
+        check_targets(design)
         folder = out or Path("runs") / f"{design.name}-{verb}"
         study = Study(design, folder=folder, storage=storage, seed=seed)
+        new: list[TrialEvent] = []
         with ProgressBar("designs", total(study)) as bar:
-            result = make(study, lambda event: bar.advance_to(event.done, _note(event)))
-        figures = files.write_study(result, folder)
+
+            def tell(event: TrialEvent) -> None:
+                new.append(event)
+                bar.advance_to(event.done, _note(design, event))
+
+            result = evaluate(study, tell)
+        earlier = len(result.trials) - len(new)
+        if earlier:
+            say(f"{earlier} designs were solved before and not again; {len(new)} are new")
+        kinds = {name: parameter.kind for name, parameter in design.parameters.items()}
+        written = files.write_study(result, folder, kinds=kinds)
         if json:
             print_json(result.summary() | {"folder": str(folder)})
         else:
             _show(design, result)
-            say(f"wrote {', '.join(str(figure) for figure in figures)}")
+            names = ", ".join(file.name for file in written)
+            say(f"wrote {plain(str(folder))}: {names}")
 
 
-def _note(event: TrialEvent) -> str:
-    return "" if event.best is None else f"best {event.best:.4g}"
+def _note(design: Design, event: TrialEvent) -> str:
+    if event.best is None:
+        return ""
+    first = next(iter(design.objectives))
+    return f"best {first} {_objective(design, first, event.best)}"
 
 
 def _show(design: Design, result: StudyResult) -> None:
-    counts = ", ".join(f"{count} {status}" for status, count in result.counts.items())
+    from voxsoft.metrics import METRICS
+
+    reasons = {trial.status: trial.message for trial in reversed(result.trials)}
+    found = {status: count for status, count in result.counts.items() if count}
+    counts = ", ".join(f"{count} {status}" for status, count in found.items())
     say(f"[bold]{len(result.trials)} designs[/bold]: {counts}")
-    names = list(design.parameters)
-    objectives = list(design.objectives)
-    rows = [
-        [
-            str(rank),
-            *(
-                format_quantity(trial.parameters[n], design.parameters[n].kind)
-                for n in names
-                if n in trial.parameters
-            ),
-            *(f"{trial.objectives[o] * 1e3:.4g}" for o in objectives),
-        ]
-        for rank, trial in enumerate(result.ranking[:10], start=1)
-    ]
-    shown = [n for n in names if result.ranking and n in result.ranking[0].parameters]
-    show_table("The best designs", ["rank", *shown, *(f"{o} (1e-3 SI)" for o in objectives)], rows)
+    for status in found:
+        if status != "ok":
+            say(f"[yellow]{status}[/yellow], for instance: {plain(reasons[status])}")
+    if not result.ranking:
+        say("[red]no design is at rest within the constraints[/red]")
+        return
+    best = result.ranking[:LISTED]
+    columns = [("rank", [str(rank) for rank in range(1, len(best) + 1)])]
+    for name in result.parameters:
+        values = [trial.parameters[name] for trial in best]
+        columns.append(_column(name, values, design.parameters[name].kind))
+    for name, objective in design.objectives.items():
+        values = [trial.objectives[name] for trial in best]
+        columns.append(_column(name, values, METRICS[objective.metric]))
+    first, objective = next(iter(design.objectives.items()))
+    title = f"The best designs (to {objective.direction} {first})"
+    show_table(title, [head for head, _ in columns], zip(*(cells for _, cells in columns), strict=True))
+
+
+def _column(name: str, values: list[float], kind: str) -> tuple[str, list[str]]:
+    """The head of a column with its unit, and its cells."""
+    from voxsoft.plot.quantities import scale_for
+
+    scale = scale_for(values, kind)
+    return scale.label(name), [f"{value * scale.factor:.4g}" for value in values]
+
+
+def _objective(design: Design, name: str, value: float) -> str:
+    from voxsoft.metrics import METRICS
+
+    return quantity(value, METRICS[design.objectives[name].metric])

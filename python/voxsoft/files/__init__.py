@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.designs import load, save
     from voxsoft.files.export import export
+    from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.run_folder import write_run
     from voxsoft.files.study_folder import write_study
@@ -20,6 +21,7 @@ __all__ = [
     "load",
     "read_mesh",
     "save",
+    "write_family",
     "write_mesh",
     "write_run",
     "write_study",
@@ -33,6 +35,7 @@ _HOMES: Final = {
     "load": "designs",
     "read_mesh": "meshes",
     "save": "designs",
+    "write_family": "family_file",
     "write_mesh": "meshes",
     "write_run": "run_folder",
     "write_study": "study_folder",

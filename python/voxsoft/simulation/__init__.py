@@ -5,6 +5,7 @@ from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions, pieces
+from voxsoft.simulation.targets import check_targets
 
 __all__ = [
     "CheckReport",
@@ -16,6 +17,7 @@ __all__ = [
     "Setup",
     "Status",
     "check",
+    "check_targets",
     "named_regions",
     "pieces",
     "relax",

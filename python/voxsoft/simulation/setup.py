@@ -27,6 +27,7 @@ from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.places import Place, place_of, vertices_in
+from voxsoft.simulation.targets import check_targets
 
 Triangles = NDArray[np.int32]
 
@@ -77,6 +78,7 @@ class Setup:
 
     def check(self, *, may_fly: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
+        check_targets(self.design)
         self._check_cavities()
         timed = self.design.solver.end_time is not None
         if not (timed if may_fly is None else may_fly):

@@ -1,0 +1,81 @@
+"""Whether what a design asks for can be measured at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from voxsoft.design import Constraint, Design, Objective
+from voxsoft.errors import DesignError, Problem
+from voxsoft.metrics import AXIS_METRICS, METRICS, PROBE_METRICS
+from voxsoft.records import closest
+from voxsoft.units import KINDS, describe_dimension
+
+
+def check_targets(design: Design) -> None:
+    """Check that every objective and constraint names a metric, in its unit, and a place for it.
+
+    Parameters
+    ----------
+    design
+        The design.
+
+    Raises
+    ------
+    DesignError
+        An unknown metric, a probe that is missing, an axis for a number without direction, or a
+        bound in a unit of another kind.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> check_targets(families.cylinder().with_values("objectives.rise.maximize=displacment"))
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: objectives.rise.maximize: "displacment" is not a metric. Try: \
+did you mean "displacement"?
+    """
+    problems = [
+        *_problems_of_objectives(design),
+        *_problems_of_constraints(design),
+    ]
+    if problems:
+        raise DesignError.listing(problems)
+
+
+def _problems_of_objectives(design: Design) -> Iterator[Problem]:
+    for name, objective in design.objectives.items():
+        where = f"objectives.{name}"
+        yield from _problems(objective, where, objective.direction, design)
+
+
+def _problems_of_constraints(design: Design) -> Iterator[Problem]:
+    for name, constraint in design.constraints.items():
+        where = f"constraints.{name}"
+        yield from _problems(constraint, where, "metric", design)
+        due = KINDS[METRICS.get(constraint.metric, constraint.kind)].dimension
+        came = KINDS[constraint.kind].dimension
+        if came != due and any((constraint.min, constraint.max)):
+            yield Problem(
+                where,
+                f"the bounds are {describe_dimension(came)}; {constraint.metric} is "
+                f"{describe_dimension(due)}",
+                f"write bounds such as {KINDS[METRICS[constraint.metric]].example}",
+            )
+
+
+def _problems(
+    target: Objective | Constraint, where: str, key: str, design: Design
+) -> Iterator[Problem]:
+    metric = target.metric
+    if metric not in METRICS:
+        yield Problem(f"{where}.{key}", f'"{metric}" is not a metric', closest(metric, METRICS))
+        return
+    probes = design.probes
+    if target.probe is not None and target.probe not in probes:
+        hint = closest(target.probe, probes)
+        yield Problem(f"{where}.probe", f'"{target.probe}" is not a probe', hint)
+    if metric in PROBE_METRICS and target.probe is None and len(probes) != 1:
+        known = f"one of {', '.join(probes)}" if probes else "a probe, under [probes]"
+        yield Problem(f"{where}.probe", f"is missing: where is {metric} measured?", f"name {known}")
+    if target.axis is not None and metric not in AXIS_METRICS:
+        yield Problem(f"{where}.axis", f"{metric} has no direction", "leave the axis out")
