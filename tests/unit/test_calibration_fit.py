@@ -202,7 +202,7 @@ def test_percent_is_of_the_measured_sag(bent):
 
 def test_a_folder_holds_card_record_and_tables(bent, tmp_path):
     found = calibrate(bent, generations=2, population=5, refine=False, identify=False)
-    path = write_calibration(found, tmp_path / "run", "my-silicone")
+    path, *_ = write_calibration(found, tmp_path / "run", "my-silicone")
     card = load_card_file(path)
     assert card.name == "my-silicone"
     assert card.material.edge == pytest.approx(found.parameters["edge"], rel=1e-3)

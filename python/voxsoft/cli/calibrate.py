@@ -89,7 +89,8 @@ def _show(answer: Calibration) -> None:
     mean, largest = (quantity(error, "length") for error in (answer.mean_error, answer.max_error))
     say(f"mean error {mean}, largest {largest}, fitness {answer.fitness:.4f}")
     if answer.free_scale:
-        say(f"scale of the simulated shape: {answer.scale}")
+        scales = answer.scale if isinstance(answer.scale, list) else [answer.scale]
+        say(f"scale of the simulated shape: {', '.join(f'{scale:.4f}' for scale in scales)}")
     sentences = {profile.name: profile.sentence for profile in answer.profiles}
     rows = [
         [name, quantity(value, "modulus"), sentences.get(name, "not asked")]

@@ -97,7 +97,9 @@ def _show(result: Result, folder: Path) -> None:
         before = quantity(float(cavity.volume), "volume")
         say(f"cavity {index}: {before} grew to {quantity(now, 'volume')}")
     design = result.design
-    for name, target in (*design.objectives.items(), *design.constraints.items()):
-        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[target.metric])}")
+    metrics = {name: objective.metric for name, objective in design.objectives.items()}
+    metrics |= {name: constraint.metric for name, constraint in design.constraints.items()}
+    for name, metric in metrics.items():
+        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric])}")
     say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s")
     say(f"wrote {plain(str(folder))}")

@@ -132,8 +132,7 @@ def _study(
         earlier = len(result.trials) - len(new)
         if earlier:
             say(f"{earlier} designs were solved before and not again; {len(new)} are new")
-        kinds = {name: parameter.kind for name, parameter in design.parameters.items()}
-        written = files.write_study(result, folder, kinds=kinds)
+        written = files.write_study(result, folder)
         if json:
             print_json(result.summary() | {"folder": str(folder)})
         else:
@@ -172,7 +171,9 @@ def _show(design: Design, result: StudyResult) -> None:
         columns.append(_column(name, values, METRICS[objective.metric]))
     first, objective = next(iter(design.objectives.items()))
     title = f"The best designs (to {objective.direction} {first})"
-    show_table(title, [head for head, _ in columns], zip(*(cells for _, cells in columns), strict=True))
+    show_table(
+        title, [head for head, _ in columns], zip(*(cells for _, cells in columns), strict=True)
+    )
 
 
 def _column(name: str, values: list[float], kind: str) -> tuple[str, list[str]]:

@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    from voxsoft.files.calibrations import write_calibration
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.designs import load, save
     from voxsoft.files.export import export
@@ -21,6 +22,7 @@ __all__ = [
     "load",
     "read_mesh",
     "save",
+    "write_calibration",
     "write_family",
     "write_mesh",
     "write_run",
@@ -35,6 +37,7 @@ _HOMES: Final = {
     "load": "designs",
     "read_mesh": "meshes",
     "save": "designs",
+    "write_calibration": "calibrations",
     "write_family": "family_file",
     "write_mesh": "meshes",
     "write_run": "run_folder",

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import csv
 import io
-import json
-import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from voxsoft.calibration import Calibration
-from voxsoft.errors import FileError
 from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath, write_whole
+from voxsoft.files.figures import save_figure
+from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.plot import plot_fitness, plot_profiles, plot_shape
 
 
-def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> Path:
+def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> list[Path]:
     """Write a calibration to a folder, which is made if it is not there.
 
     The folder then holds ``NAME.toml``, the material card; ``summary.json``, everything;
-    ``history.csv``, fitness and moduli for each generation (the paper's Fig. 3); and
-    ``shapes.csv``, measured and simulated numbers at each station (Fig. 4).
+    ``history.csv``, fitness and moduli for each generation, with ``fitness.png`` (the paper's
+    Fig. 3); ``shapes.csv``, measured and simulated numbers at each station, with ``shape.png``
+    (Fig. 4); and ``profile.png``, what the data say about each modulus.
 
     Parameters
     ----------
@@ -33,25 +34,28 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
 
     Returns
     -------
-    pathlib.Path
-        The card.
+    list of pathlib.Path
+        What was written, the card first.
 
     Raises
     ------
     FileError
         The folder or a file in it cannot be written.
     """
-    place = Path(folder)
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(os.fspath(folder), f"cannot be made: {error.strerror}") from None
-    card = place / f"{name}.toml"
+    place = make_folder(folder)
+    card, summary = place / f"{name}.toml", place / "summary.json"
     save_card(calibration.card(name), card)
-    write_whole(place / "summary.json", json.dumps(calibration.summary(), indent=1) + "\n")
-    write_whole(place / "history.csv", _history(calibration))
-    write_whole(place / "shapes.csv", _shapes(calibration))
-    return card
+    write_json(summary, calibration.summary() | provenance())
+    written = [card, summary]
+    tables = {"history.csv": _history(calibration), "shapes.csv": _shapes(calibration)}
+    for file, text in tables.items():
+        write_whole(place / file, text)
+        written.append(place / file)
+    written.append(save_figure(plot_fitness(calibration), place / "fitness.png"))
+    written.append(save_figure(plot_shape(calibration), place / "shape.png"))
+    if calibration.profiles:
+        written.append(save_figure(plot_profiles(calibration), place / "profile.png"))
+    return written
 
 
 def _history(calibration: Calibration) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -14,12 +13,7 @@ from voxsoft.plot import plot_history, plot_pareto, plot_scatter
 from voxsoft.study import StudyResult
 
 
-def write_study(
-    result: StudyResult,
-    folder: str | os.PathLike[str],
-    *,
-    kinds: Mapping[str, str] | None = None,
-) -> list[Path]:
+def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Path]:
     """Write what a study found: ``table.csv``, ``summary.json`` and figures.
 
     Parameters
@@ -28,8 +22,6 @@ def write_study(
         What the study found so far.
     folder
         Where; made if it does not exist, files in it are replaced.
-    kinds
-        Kind of quantity of each parameter by name, for the axes of the figures.
 
     Returns
     -------
@@ -54,7 +46,7 @@ def write_study(
     write_json(summary, result.summary() | {"name": result.name, **provenance()})
     written.append(summary)
     if result.trials:
-        written.append(save_figure(plot_scatter(result, kinds=kinds), folder / "scatter.png"))
+        written.append(save_figure(plot_scatter(result), folder / "scatter.png"))
         written.append(save_figure(plot_history(result), folder / "history.png"))
     if result.ranking and len(result.objectives) > 1:
         written.append(save_figure(plot_pareto(result), folder / "pareto.png"))

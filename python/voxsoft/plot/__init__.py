@@ -15,11 +15,15 @@ Examples
 """
 
 from voxsoft.plot.body import plot_body
+from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
 from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
     "plot_body",
+    "plot_fitness",
     "plot_history",
     "plot_pareto",
+    "plot_profiles",
     "plot_scatter",
+    "plot_shape",
 ]

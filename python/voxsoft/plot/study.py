@@ -27,8 +27,6 @@ from voxsoft.study import StudyResult, Trial
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Kinds = Mapping[str, str]
-
 #: From trials to their coordinates on the axes, one array for each axis.
 Places = Callable[[Sequence[Trial]], list[NDArray[np.float64]]]
 
@@ -45,9 +43,7 @@ _MARKERS: dict[str, str] = {
 }
 
 
-def plot_scatter(
-    result: StudyResult, objective: str | None = None, *, kinds: Kinds | None = None
-) -> Figure:
+def plot_scatter(result: StudyResult, objective: str | None = None) -> Figure:
     """Draw every trial in the space of its parameters, the objective in color (paper, Fig. 6).
 
     Parameters
@@ -56,9 +52,6 @@ def plot_scatter(
         A finished study of one, two or three parameters; of more, the first three are axes.
     objective
         Default: the first.
-    kinds
-        Kind of quantity of each parameter by name (a key of :data:`voxsoft.units.KINDS`), which
-        gives its axis a unit.
 
     Returns
     -------
@@ -78,7 +71,7 @@ def plot_scatter(
     in_space = len(names) == 3
     figure = empty_figure(7.2, 5.4) if in_space else empty_figure(6.4, 4.4)
     axes: Any = figure.add_subplot(projection="3d" if in_space else None)
-    places = _places_on(axes, result, names, kinds or {})
+    places = _places_on(axes, result, names)
     scored = [trial for trial in result.trials if trial.objectives]
     scale = scale_for([trial.objectives[name] for trial in scored], _kind(result, name))
     if len(names) < 3:
@@ -230,13 +223,14 @@ def _places_on(
     axes: Any,  # noqa: ANN401 - axes of two or three dimensions
     result: StudyResult,
     names: tuple[str, ...],
-    kinds: Kinds,
 ) -> Places:
     """Label an axis for each parameter; return what places trials on them."""
     columns: dict[int, list[float]] = {trial.number: [] for trial in result.trials}
     for name, direction in zip(names, "xyz", strict=False):
         values = [trial.parameters[name] for trial in result.trials]
-        scale = scale_for(values, kinds.get(name, "")) if _is_numeric(values) else Scale(1.0, "")
+        scale = (
+            scale_for(values, result.kinds.get(name, "")) if _is_numeric(values) else Scale(1.0, "")
+        )
         numbers = _numbers(values) * scale.factor
         ticks = np.unique(numbers)
         if not _is_numeric(values):

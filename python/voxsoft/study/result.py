@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
@@ -40,6 +40,9 @@ class StudyResult:
         What was asked, by name.
     parameters
         Names of the parameters, in the order of the space.
+    kinds
+        Kind of quantity of each parameter by name (a key of :data:`voxsoft.units.KINDS`); empty
+        where the family is a function, which does not say.
     """
 
     name: str
@@ -47,6 +50,7 @@ class StudyResult:
     trials: tuple[Trial, ...]
     objectives: Mapping[str, Objective]
     parameters: tuple[str, ...]
+    kinds: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def counts(self) -> dict[Status, int]:

@@ -318,7 +318,14 @@ class Study:
             ),
             self.objectives,
             tuple(self.space),
+            self._kinds,
         )
+
+    @property
+    def _kinds(self) -> dict[str, str]:
+        """Kind of quantity of each parameter, which only a parametric design tells."""
+        parameters = self.family.parameters if isinstance(self.family, Design) else {}
+        return {name: parameters[name].kind for name in self.space if name in parameters}
 
     def _how_to_resume(self, study: optuna.Study, total: int) -> str:
         done = len(self._result(study).trials)
