@@ -231,6 +231,7 @@ fn a_center_on_the_surface_is_outside() {
     assert_eq!(count(1.0 + 1e-6), 32);
 }
 
+#[cfg(feature = "threads")]
 #[test]
 fn thread_count_does_not_change_a_cell() {
     let gyroid = Surface::Gyroid

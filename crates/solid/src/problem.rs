@@ -31,8 +31,8 @@ impl Problem {
         for clamp in &clamps {
             check_indices("vertex of a clamp", &clamp.vertices, count)?;
             for &vertex in &clamp.vertices {
-                for axis in 0..3 {
-                    held[vertex as usize][axis] |= clamp.axes[axis];
+                for (held, axis) in held[vertex as usize].iter_mut().zip(clamp.axes) {
+                    *held |= axis;
                 }
             }
         }
