@@ -1,0 +1,245 @@
+"""Every verb of the command line: what it writes, prints and returns."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from voxsoft.cli.app import app
+from voxsoft.files import load
+
+ROOT = Path(__file__).parents[2]
+CYLINDER, BEAM = ROOT / "examples" / "cylinder.toml", ROOT / "examples" / "beam.toml"
+DATA = ROOT / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv"
+FEW = ["--set", "parameters.radius.min=20 mm", "--set", "parameters.height.min=30 mm"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def call(*arguments):
+    """Run the command line in this process; standard error stays apart."""
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def printed(*arguments, code=0):
+    """The object that ``--json`` prints."""
+    outcome = call(*arguments, "--json")
+    assert outcome.exit_code == code, outcome.stderr
+    return json.loads(outcome.stdout)
+
+
+def test_help_is_quick_and_loads_nothing_heavy():
+    script = (
+        "import sys, voxsoft.cli; heavy = {'numpy', 'scipy', 'optuna', 'matplotlib', 'pandas'};"
+        "print(sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
+    assert done.stdout.strip() == "[]", done.stderr
+    outcome = call("--help")
+    assert outcome.exit_code == 0
+    assert all(verb in outcome.stdout for verb in ("new", "sweep", "calibrate", "export"))
+
+
+def test_version():
+    assert call("--version").stdout.startswith("voxsoft ")
+
+
+@pytest.mark.parametrize("template", ["beam", "cylinder", "finger", "pneunet", "sphere"])
+def test_new_writes_a_commented_design_that_checks(template):
+    assert call("new", "mine", "-t", template).exit_code == 0
+    text = Path("mine.toml").read_text()
+    assert text.startswith("# ")
+    assert load("mine.toml").name == "mine"
+    assert printed("check", "mine.toml")["valid"]
+
+
+def test_new_keeps_what_is_there():
+    assert call("new", "mine").exit_code == 0
+    Path("mine.toml").write_text("kept")
+    outcome = call("new", "mine")
+    assert outcome.exit_code == 2
+    assert "--force" in outcome.stderr
+    assert Path("mine.toml").read_text() == "kept"
+    assert call("new", "mine", "--force", "--folder", ".").exit_code == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [(["a", "-t", "arm"], "is not one of"), (["a/b"], "--folder")],
+)
+def test_new_refuses(arguments, words):
+    outcome = call("new", *arguments)
+    assert outcome.exit_code == 2
+    assert words in " ".join(outcome.stderr.split())
+
+
+def test_check_prints_figures_and_findings():
+    report = printed("check", CYLINDER)
+    assert report["valid"]
+    assert report["voxels"] == 300
+    assert report["cavities"][0]["volume"] == pytest.approx(32.5e-6)
+    assert {"where", "what", "try"} <= report["problems"][0].keys()
+    words = call("check", CYLINDER)
+    assert words.stdout == ""
+    assert "a hinge" in words.stderr
+    assert "cavity 0: 32.5 mL" in words.stderr
+
+
+def test_check_says_what_is_wrong_and_returns_3():
+    report = printed(
+        "check", CYLINDER, "--set", "wall=25 mm", "--set", "parameters.wall.max=25 mm", code=3
+    )
+    assert not report["valid"]
+    assert any("no enclosed cavity" in problem["what"] for problem in report["problems"])
+
+
+def test_mesh_writes_and_prints():
+    figures = printed("mesh", CYLINDER, "-o", "c.vtu")
+    assert figures["conforming"]
+    assert figures["watertight"]
+    assert (
+        figures["tets"]
+        == 5 * figures["voxels"]
+        == len(meshio.read("c.vtu").get_cells_type("tetra"))
+    )
+    assert "smallest tet: " in call("mesh", BEAM).stderr
+
+
+def test_run_writes_a_folder_and_prints_si():
+    summary = printed("run", CYLINDER, "--out", "r", "--figure")
+    assert summary["status"] == "ok"
+    assert summary["solver"] == "xpbd"
+    top = summary["probes"]["top"]["displacement"]
+    assert summary["metrics"]["rise"] == top[2] > 0.001
+    assert summary["cavities"][0]["pressure"] == 4000.0
+    names = {path.name for path in Path("r").iterdir()}
+    assert names == {"design.toml", "summary.json", "result.vtu", "body.png"}
+    moved = meshio.read("r/result.vtu").point_data["displacement"]
+    assert moved[:, 2].max() >= top[2]
+
+
+def test_run_names_its_folder_by_design_and_hash():
+    outcome = call("run", BEAM, "--set", "length=50 mm")
+    assert outcome.exit_code == 0, outcome.stderr
+    name = f"beam-{load(BEAM, length='50 mm').hash[:8]}"
+    assert Path("runs", name, "summary.json").exists()
+    assert "sag: " in outcome.stderr
+
+
+def test_run_returns_4_when_not_at_rest():
+    timed = ["--set", "solver.max_time=0.02 s", "--set", "solver.time_step=10 ms"]
+    summary = printed("run", BEAM, *timed, "--out", "r", code=4)
+    assert summary["status"] == "not-at-rest"
+    assert Path("r", "result.vtu").exists(), "the last state is kept"
+
+
+def test_sweep_ends_in_a_table_figures_and_a_folder_and_resumes():
+    outcome = call("sweep", CYLINDER, *FEW, "--out", "s", "--workers", 2)
+    assert outcome.exit_code == 0, outcome.stderr
+    assert "12 designs" in outcome.stderr
+    assert "ok" in outcome.stderr
+    assert "wall (mm)" in outcome.stderr
+    assert "rise (mm)" in outcome.stderr
+    names = {path.name for path in Path("s").iterdir()}
+    assert {"table.csv", "summary.json", "scatter.png", "history.png", "study.journal"} <= names
+    table = Path("s", "table.csv").read_text()
+    again = call("sweep", CYLINDER, *FEW, "--out", "s", "--workers", 2, "--json")
+    assert "12 designs were solved before and not again; 0 are new" in again.stderr
+    found = json.loads(again.stdout)
+    assert found["trials"] == sum(found["counts"].values()) == 12
+    assert found["best"]["parameters"]["wall"] == 0.005
+    assert found["folder"] == "s"
+    assert Path("s", "table.csv").read_text() == table
+
+
+def test_optimize_finds_and_goes_further():
+    first = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 4, "--workers", 2)
+    more = printed("optimize", CYLINDER, "--sampler", "random", "--budget", 6, "--workers", 2)
+    assert (first["trials"], more["trials"]) == (4, 6)
+    assert first["folder"] == more["folder"] == str(Path("runs", "cylinder-optimize"))
+
+
+def test_a_study_folder_of_another_study_is_refused():
+    small = [*FEW, "--set", "parameters.wall.max=5 mm", "--out", "s", "--workers", 2]
+    assert call("sweep", CYLINDER, *small).exit_code == 0
+    outcome = call("sweep", CYLINDER, *small, "--set", "parts.0.material=ecoflex-00-50")
+    assert outcome.exit_code == 2
+    assert "another study" in outcome.stderr
+
+
+def test_calibrate_prints_the_object_and_writes_a_card():
+    quick = ["--method", "genetic", "--generations", 3, "--population", 6, "--workers", 2]
+    outcome = call("calibrate", BEAM, DATA, *quick, "--seed", 1, "--out", "c", "--json")
+    assert outcome.exit_code == 0, outcome.stderr
+    found = json.loads(outcome.stdout)
+    due = {
+        "parameters",
+        "mean_error",
+        "max_error",
+        "fitness",
+        "evaluations",
+        "identifiable",
+        "scale",
+    }
+    assert due <= found.keys()
+    assert 0.001 < found["mean_error"] < found["max_error"] < 0.03
+    names = {path.name for path in Path("c").iterdir()}
+    assert {"ecoflex-00-30.toml", "fitness.png", "shape.png", "profile.png", "shapes.csv"} <= names
+
+
+@pytest.mark.parametrize("name", ["a.vtu", "a.msh", "a.inp", "a.stl", "a.obj", "a.npy", "a.toml"])
+def test_export_of_a_design(name):
+    assert call("export", CYLINDER, name).exit_code == 0
+    path = Path(name)
+    if path.suffix == ".npy":
+        assert np.count_nonzero(np.load(path)) == 300
+    elif path.suffix == ".toml":
+        assert load(path).hash == load(CYLINDER).hash
+        assert '"= ' not in path.read_text()
+    else:
+        points = meshio.read(path).points
+        assert np.ptp(points[:, 2]) == pytest.approx(0.035)
+
+
+def test_export_of_a_run():
+    assert call("run", CYLINDER, "-o", "r").exit_code == 0
+    assert call("export", "r", "rest.stl", "--unit", "mm").exit_code == 0
+    assert call("export", "r", "bent.stl", "--unit", "mm", "--deformed").exit_code == 0
+    assert call("export", "r", "bent.vtu", "--deformed").exit_code == 0
+    assert call("export", "r", "probes.csv").exit_code == 0
+    heights = [np.ptp(meshio.read(f"{name}.stl").points[:, 2]) for name in ("rest", "bent")]
+    assert heights[0] == pytest.approx(35.0)
+    assert heights[1] > 36.0
+    assert np.ptp(meshio.read("bent.vtu").points[:, 2]) == pytest.approx(heights[1] / 1e3)
+    header, top = Path("probes.csv").read_text().splitlines()
+    assert header == "probe,dx_m,dy_m,dz_m"
+    summary = json.loads(Path("r", "summary.json").read_text())
+    rise = summary["probes"]["top"]["displacement"][2]
+    assert float(top.split(",")[3]) == pytest.approx(rise)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([CYLINDER, "a.step"], "unknown format"),
+        ([CYLINDER, "a.csv"], "holds no result"),
+        ([CYLINDER, "a.stl", "--deformed"], "holds no result"),
+        ([CYLINDER, "a.vtu", "--unit", "mm"], "always in m"),
+        ([CYLINDER, "a.stl", "--unit", "kPa"], "a length is due"),
+        ([CYLINDER, "nowhere/a.stl"], "cannot be written"),
+        ([".", "a.stl"], "no run folder"),
+    ],
+)
+def test_export_says_what_is_not_possible(arguments, words):
+    outcome = call("export", *arguments)
+    assert outcome.exit_code == 3
+    assert words in outcome.stderr
+    assert not list(Path().iterdir())
