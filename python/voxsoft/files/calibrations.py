@@ -9,9 +9,10 @@ from pathlib import Path
 
 from voxsoft.calibration import Calibration
 from voxsoft.files.cards import save_card
-from voxsoft.files.designs import FilePath, write_whole
+from voxsoft.files.designs import FilePath
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.files.whole import write_whole
 from voxsoft.plot import plot_fitness, plot_profiles, plot_shape
 
 

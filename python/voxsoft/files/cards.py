@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from voxsoft.files.designs import FilePath, read_document, read_text, write_whole
+from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_text import write_toml
+from voxsoft.files.whole import write_whole
 from voxsoft.materials import Card
 
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from voxsoft.design import Design, set_values
-from voxsoft.errors import DesignError, FileError, Problem, VoxSoftError
+from voxsoft.errors import DesignError, FileError, Problem
 from voxsoft.files.toml_text import line_of
+from voxsoft.files.whole import write_whole
 
 if TYPE_CHECKING:
     from voxsoft.design.resolution import Document
@@ -133,35 +133,6 @@ def read_document(text: str, name: str) -> Document:
         raise FileError(name, "nests brackets too deep for a design") from None
     except ValueError as error:  # numbers of thousands of digits, impossible dates
         raise FileError(name, f"holds a value that cannot be read: {error}") from None
-
-
-def write_whole(path: FilePath, content: str | bytes) -> None:
-    """Write a file beside its final place and move it there, so that no reader sees half of it.
-
-    Text is written as UTF-8.
-
-    Raises
-    ------
-    FileError
-        The file cannot be written.
-    """
-    file = Path(path)
-    try:
-        handle, beside = tempfile.mkstemp(prefix=f".{file.name}.", dir=file.parent)
-    except (OSError, ValueError) as error:
-        raise _cannot_write(path, error) from None
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(content.encode() if isinstance(content, str) else content)
-        Path(beside).replace(file)
-    except OSError as error:
-        Path(beside).unlink(missing_ok=True)
-        raise _cannot_write(path, error) from None
-
-
-def _cannot_write(path: FilePath, error: Exception) -> VoxSoftError:
-    reason = getattr(error, "strerror", None) or str(error)
-    return FileError(str(path), f"cannot be written: {reason}", "check the folder and free space")
 
 
 def _with_whole_paths(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything

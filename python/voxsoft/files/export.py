@@ -14,9 +14,10 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.discretize import mesh_of, voxels_of
 from voxsoft.errors import FileError
-from voxsoft.files.designs import FilePath, load, read_text, save, write_whole
+from voxsoft.files.designs import FilePath, load, read_text, save
 from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
+from voxsoft.files.whole import write_whole
 from voxsoft.simulation import named_regions
 from voxsoft.units import parse
 

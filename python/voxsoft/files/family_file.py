@@ -8,8 +8,9 @@ import tomllib
 from pathlib import Path
 
 from voxsoft.design import Design, families
-from voxsoft.files.designs import FilePath, write_whole
+from voxsoft.files.designs import FilePath
 from voxsoft.files.run_folder import make_folder
+from voxsoft.files.whole import write_whole
 
 
 def write_family(family: str, path: FilePath, *, name: str) -> None:

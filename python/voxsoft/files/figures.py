@@ -6,7 +6,7 @@ import io
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from voxsoft.files.designs import write_whole
+from voxsoft.files.whole import write_whole
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

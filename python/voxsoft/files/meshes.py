@@ -18,9 +18,7 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from pathlib import Path
 
 import meshio
@@ -30,6 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft.errors import FileError, MeshError
 from voxsoft.files import abaqus, gmsh, vtu
 from voxsoft.files.mesh_file import MeshFile, vertex_set
+from voxsoft.files.whole import replace_whole
 from voxsoft.mesh import Mesh
 
 
@@ -109,7 +108,7 @@ def write_mesh(
         raise FileError(str(target), f"{suffix} cannot hold data", "write a .vtu file")
     if suffix in _SURFACES and content.regions:
         raise FileError(str(target), f"{suffix} cannot hold regions", "write .vtu, .msh or .inp")
-    _replace(target, lambda temporary: writer(temporary, content))
+    replace_whole(target, lambda temporary: writer(temporary, content))
 
 
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
@@ -181,27 +180,3 @@ def _checked_data(
             what = f"{kind}[{name!r}] has shape {array.shape} of {array.dtype}"
             raise FileError(str(path), f"{what}; expected ({count}, ...) numbers")
     return arrays
-
-
-def _replace(target: Path, write: Callable[[Path], None]) -> None:
-    """Write beside the target and then take its place, so that no half-written file is left."""
-    try:
-        with tempfile.NamedTemporaryFile(
-            dir=target.parent, prefix=".", suffix=target.suffix, delete=False
-        ) as file:
-            temporary = Path(file.name)
-    except OSError as error:
-        raise _cannot_write(target, error) from error
-    try:
-        write(temporary)
-        temporary.replace(target)
-    except OSError as error:
-        raise _cannot_write(target, error) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-
-
-def _cannot_write(target: Path, error: OSError) -> FileError:
-    what = f"cannot be written: {error.strerror or error}"
-    return FileError(str(target), what, "check that the folder exists and the disk has room")

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from voxsoft.errors import FileError
-from voxsoft.files.designs import write_whole
 from voxsoft.files.meshes import write_mesh
+from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
 
 

@@ -6,9 +6,9 @@ import os
 from importlib.util import find_spec
 from pathlib import Path
 
-from voxsoft.files.designs import write_whole
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.files.whole import write_whole
 from voxsoft.plot import plot_history, plot_pareto, plot_scatter
 from voxsoft.study import StudyResult
 

@@ -1,0 +1,51 @@
+"""Files that are written whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import uuid
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+
+from voxsoft.errors import FileError
+
+
+def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
+    """Write beside the target and then take its place, so that no reader sees half a file.
+
+    Parameters
+    ----------
+    target
+        The file to make or replace.
+    write
+        Writes a file at the path that it is given, which has the target's suffix.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written; the target is as it was.
+    """
+    beside = target.with_name(f".{target.stem}-{uuid.uuid4().hex[:8]}{target.suffix}")
+    try:
+        write(beside)
+        beside.replace(target)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        hint = "check that the folder exists and the disk has room"
+        raise FileError(str(target), f"cannot be written: {reason}", hint) from error
+    finally:
+        with suppress(OSError, ValueError):
+            beside.unlink()
+
+
+def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
+    """Write a file whole; text as UTF-8 with plain line ends.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    replace_whole(Path(path), lambda beside: beside.write_bytes(data))
