@@ -19,7 +19,7 @@ help:
 	@echo "make test-all  also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
 	@echo "make lint      formatters, linters, types, layers"
 	@echo "make bench     benchmarks"
-	@echo "make docs      the documentation as web pages in docs/_build"
+	@echo "make docs      the documentation as web pages in target/docs"
 	@echo "make install   only the environment: .venv/bin/voxsoft"
 
 install: $(STAMP)
@@ -72,4 +72,4 @@ docs: install
 	$(BIN)/mkdocs build --strict
 
 clean:
-	rm -rf $(VENV) target runs dist docs/_build
+	rm -rf $(VENV) target runs dist

@@ -1,0 +1,124 @@
+"""The documents' pages, executed: every block runs, in order, and prints what the page says.
+
+On a page, ``toml`` and ``csv`` blocks with a title are written as files, ``python`` blocks run in
+one namespace, the ``$`` lines of ``console`` blocks run in a shell. A ``text`` block, and the other
+lines of a ``console`` block, is the expected output; ``...`` stands for anything. ``sh`` blocks are
+for the reader alone: they need a network, another program or another machine.
+"""
+
+import contextlib
+import doctest
+import io
+import os
+import re
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+DOCS = ROOT / "docs"
+PAGES = [DOCS / "start.md", *sorted(DOCS.glob("tutorials/*.md")), *sorted(DOCS.glob("how-to/*.md"))]
+FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
+KNOWN = {"python", "console", "text", "toml", "csv", "sh"}
+#: What a long command says of its progress when it has no terminal; a page leaves it out.
+PROGRESS = re.compile(r"^\w+: \d+/\d+, .*\n", re.MULTILINE)
+OUTPUT = doctest.OutputChecker()
+LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
+
+
+@dataclass(frozen=True)
+class Block:
+    language: str
+    title: str | None
+    text: str
+    line: int
+
+
+def blocks_of(page):
+    text = page.read_text(encoding="utf-8")
+    for match in FENCE.finditer(text):
+        yield Block(match[1], match[2], match[3], text.count("\n", 0, match.start()) + 1)
+
+
+def assert_prints(expected, got, where):
+    assert OUTPUT.check_output(expected, got, LOOSE), f"{where}\nexpected:\n{expected}\ngot:\n{got}"
+
+
+def run_python(block, namespace, where):
+    # As many lines before the code as on the page, so that a traceback names the page's line.
+    code = compile("\n" * block.line + block.text, where, "exec")
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(code, namespace)
+    return printed.getvalue()
+
+
+def run_console(block, where):
+    """Run each ``$`` line; the lines up to the next one are what it prints."""
+    commands = re.split(r"^\$ ", block.text, flags=re.MULTILINE)
+    assert not commands[0], f"{where}: a console block starts with '$ '"
+    for command in commands[1:]:
+        line, _, expected = command.partition("\n")
+        done = subprocess.run(
+            ["bash", "-c", line],
+            env=shell_environment(),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, f"{where}: {line}\n{done.stdout}"
+        if expected.strip():
+            assert_prints(expected, PROGRESS.sub("", done.stdout), f"{where}: {line}")
+
+
+def shell_environment():
+    scripts = str(Path(sys.executable).parent)
+    path = os.pathsep.join([scripts, os.environ["PATH"]])
+    return os.environ | {"PATH": path, "COLUMNS": "100", "TERM": "dumb", "NO_COLOR": "1"}
+
+
+def run_page(page):
+    namespace = {"__name__": "__main__"}
+    printed = ""
+    for block in blocks_of(page):
+        where = f"{page.relative_to(ROOT)}:{block.line}"
+        if block.language == "python":
+            printed = run_python(block, namespace, where)
+        elif block.language == "console":
+            run_console(block, where)
+        elif block.language == "text":
+            assert_prints(block.text, printed, where)
+        elif block.title:
+            Path(block.title).write_text(block.text, encoding="utf-8")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
+def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    run_page(page)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
+def test_blocks_are_of_a_kind_that_is_understood(page):
+    blocks = list(blocks_of(page))
+    assert {block.language for block in blocks} <= KNOWN
+    assert any(block.language in ("python", "console") for block in blocks)
+    # Every fence opens and closes: nothing on the page escapes the tests.
+    fences = re.findall(r"^ *```", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert len(fences) == 2 * len(blocks)
+
+
+def test_a_page_that_prints_otherwise_fails(tmp_path, monkeypatch):
+    page = ROOT / "docs" / "wrong.md"
+    monkeypatch.setattr(
+        Path, "read_text", lambda *_, **__: "```python\nprint(1)\n```\n```text\n2\n```\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(AssertionError, match=r"wrong\.md:4"):
+        run_page(page)
