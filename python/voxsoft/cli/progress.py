@@ -30,6 +30,8 @@ class ProgressBar:
         What is being done.
     total
         How many steps there are.
+    transient
+        Whether the bar goes away when all is done.
 
     Examples
     --------
@@ -38,7 +40,7 @@ class ProgressBar:
     ...     bar.advance_to(2, "best 3 mm")
     """
 
-    def __init__(self, title: str, total: int) -> None:
+    def __init__(self, title: str, total: int, *, transient: bool = False) -> None:
         self._title, self._total, self._done = title, total, 0
         self._first: int | None = None
         self._started = self._spoken = time.monotonic()
@@ -51,6 +53,7 @@ class ProgressBar:
             TimeRemainingColumn(),
             TextColumn("{task.fields[note]}"),
             console=console(),
+            transient=transient,
         )
         self._task = self._bar.add_task(title, total=total, note="")
         self._fancy = console().is_terminal

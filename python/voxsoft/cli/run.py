@@ -15,6 +15,7 @@ from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
     from voxsoft.cli.progress import ProgressBar
+    from voxsoft.design import Solver
     from voxsoft.simulation import Result
 
 
@@ -42,8 +43,8 @@ def run(
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
         changes: dict[str, Any] = {} if solver is None else {"method": solver}
-        with ProgressBar("percent", 100) as bar:
-            tell = _percent(bar, loaded.solver.end_time)
+        with ProgressBar("percent", 100, transient=True) as bar:
+            tell = _percent(bar, loaded.solver)
             result = simulate(loaded, progress=tell, **changes)
         folder = out or Path("runs") / f"{loaded.name}-{loaded.hash[:8]}"
         files.write_run(result, folder)
@@ -60,22 +61,24 @@ def run(
         raise typer.Exit(NOT_AT_REST)
 
 
-def _percent(bar: ProgressBar, end_time: float | None) -> Callable[[int, float, float], None]:
+def _percent(bar: ProgressBar, solver: Solver) -> Callable[[int, float, float], None]:
     """Progress in percent: of the end time, or of the digits that the residual must still lose."""
-    first: list[float] = []
+    from voxsoft.simulation.run import DEFAULT_TOLERANCE
+
+    tolerance = solver.tolerance or DEFAULT_TOLERANCE
+    largest = 0.0
 
     def tell(steps: int, time: float, residual: float) -> None:
-        if not first and 0 < residual < math.inf:
-            first.append(residual)
-        if end_time:
-            share = time / end_time
+        nonlocal largest
+        if solver.end_time:
+            share = time / solver.end_time
         else:
             # A residual falls by about the same factor in the same time.
-            from voxsoft.simulation.run import DEFAULT_TOLERANCE
-
-            digits = math.log(max(first[0] / DEFAULT_TOLERANCE, 2.0)) if first else 1.0
-            share = math.log(first[0] / residual) / digits if first and residual > 0 else 0.0
-        bar.advance_to(round(100 * min(max(share, 0.0), 1.0)), f"residual {residual:.1e}")
+            finite = max(residual, tolerance) if math.isfinite(residual) else largest
+            largest = max(largest, finite)
+            digits = math.log(largest / tolerance) if largest > tolerance else 1.0
+            share = math.log(largest / finite) / digits if finite else 0.0
+        bar.advance_to(round(100 * min(share, 1.0)), f"residual {residual:.1e}")
 
     return tell
 
