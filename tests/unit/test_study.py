@@ -420,3 +420,10 @@ def test_a_worker_process_imports_neither_optuna_nor_pandas():
     code = f"import sys, voxsoft.study.outcome; print(sorted({heavy}))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "[]"
+
+
+def test_a_folder_holds_one_study(make):
+    first = make(name="one")
+    with pytest.raises(StudyError, match='holds the study "one"; this one is "two"'):
+        make(name="two")
+    assert make(name="one").grid_size == first.grid_size

@@ -111,12 +111,23 @@ class TrialStorage:
                 stored = study.user_attrs.get(_DEFINITION_KEY)
                 trials = len(study.get_trials(deepcopy=False))
         except KeyError:  # no study of this name yet
+            self._refuse_a_folder_of_another_name()
             return None
         if stored is None and trials:
             raise StudyError(
                 self.where, "holds trials that VoxSoft did not write", "use another study name"
             )
         return stored
+
+    def _refuse_a_folder_of_another_name(self) -> None:
+        """Tables and pictures beside the journal are those of one study."""
+        if not isinstance(self._place, Path):
+            return
+        with StudyJournal(self._place / JOURNAL_NAME, write=False) as journal:
+            names = [study.study_name for study in JournalStorage(journal).get_all_studies()]
+        if names:
+            what = f'holds the study "{names[0]}"; this one is "{self._name}"'
+            raise StudyError(self.where, what, "give each study a folder of its own")
 
     @staticmethod
     def _write_definition(folder: Path, definition: Mapping[str, Any]) -> None:
