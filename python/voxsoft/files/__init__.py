@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from voxsoft.files.calibrations import write_calibration
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.designs import load, save
-    from voxsoft.files.export import export
+    from voxsoft.files.exports import export
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.run_folder import write_run
@@ -33,7 +33,7 @@ __all__ = [
 _HOMES: Final = {
     "check_design": "checks",
     "check_mesh": "checks",
-    "export": "export",
+    "export": "exports",
     "load": "designs",
     "read_mesh": "meshes",
     "save": "designs",
