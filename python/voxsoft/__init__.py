@@ -51,7 +51,17 @@ if TYPE_CHECKING:
     from voxsoft.design.discretize import mesh_of, voxels_of
     from voxsoft.errors import VoxSoftError
     from voxsoft.files import load, save
-    from voxsoft.materials import Card, CompliantLattice, Lattice, load_card
+    from voxsoft.materials import (
+        Card,
+        CompliantLattice,
+        Gent,
+        Lattice,
+        MooneyRivlin,
+        NeoHookean,
+        Ogden,
+        Yeoh,
+        load_card,
+    )
     from voxsoft.mesh import Mesh
     from voxsoft.shapes import *
     from voxsoft.simulation import Result, check, simulate
@@ -82,7 +92,17 @@ _HOMES: Final = {
     "voxsoft.design.discretize": ("mesh_of", "voxels_of"),
     "voxsoft.errors": ("VoxSoftError",),
     "voxsoft.files": ("load", "save"),
-    "voxsoft.materials": ("Card", "CompliantLattice", "Lattice", "load_card"),
+    "voxsoft.materials": (
+        "Card",
+        "CompliantLattice",
+        "Gent",
+        "Lattice",
+        "MooneyRivlin",
+        "NeoHookean",
+        "Ogden",
+        "Yeoh",
+        "load_card",
+    ),
     "voxsoft.mesh": ("Mesh",),
     "voxsoft.simulation": ("Result", "check", "simulate"),
     "voxsoft.study": ("Study",),

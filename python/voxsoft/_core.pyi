@@ -148,7 +148,7 @@ class Shape:
         self, origin: _Point, voxel_size: float, shape: _Cells, memory_limit: int
     ) -> NDArray[np.uint8]: ...
 
-_Material = tuple[bool, float, float, float]
+_Material = tuple[bool, float, float, float] | tuple[str, list[float], float, float]
 _History = tuple[Sequence[float], Sequence[float]] | None
 
 def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...

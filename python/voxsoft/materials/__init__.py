@@ -1,7 +1,8 @@
 """Materials: models with constants in SI units, and the library of cards.
 
-A *model* says how a material answers (``"lattice"``: edge and bulk modulus); a *card* is a named
-model with its density and where its numbers come from. Cards are plain TOML files.
+A *model* says how a material answers: ``"lattice"`` (edge and bulk modulus, the paper's), or a
+hyperelastic one, ``"neo-hookean"``, ``"mooney-rivlin"``, ``"yeoh"``, ``"ogden"``, ``"gent"``. A
+*card* is a named model with its density and where its numbers come from, in a plain TOML file.
 
 Examples
 --------
@@ -9,22 +10,46 @@ Examples
 >>> soft = Lattice(edge=20 * kPa, bulk=100 * kPa)
 >>> round(soft.young(voxel_size=5e-3) / 1e3, 1)
 49.0
+>>> NeoHookean(young=60 * kPa).shear < 60 * kPa / 2
+True
 >>> "ecoflex-00-30" in card_names()
 True
 """
 
 from voxsoft.materials.card import Card, card_names, load_card, material_of
+from voxsoft.materials.gent import Gent
+from voxsoft.materials.homogeneous import MODES, Mode, nominal_stress, nominal_tangent
+from voxsoft.materials.hyperelastic import Hyperelastic, PronyTerm
 from voxsoft.materials.lattice import SILICONE_DENSITY, CompliantLattice, Lattice
 from voxsoft.materials.model import AnyMaterial, Material
+from voxsoft.materials.mooney_rivlin import MooneyRivlin
+from voxsoft.materials.neo_hookean import NeoHookean
+from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
+from voxsoft.materials.yeoh import Yeoh
 
 __all__ = [
+    "MODES",
     "SILICONE_DENSITY",
     "AnyMaterial",
     "Card",
     "CompliantLattice",
+    "Gent",
+    "Hyperelastic",
     "Lattice",
     "Material",
+    "Mode",
+    "MooneyRivlin",
+    "NeoHookean",
+    "Ogden",
+    "PronyTerm",
+    "StableRange",
+    "Yeoh",
     "card_names",
     "load_card",
     "material_of",
+    "nominal_stress",
+    "nominal_tangent",
+    "stable_range",
+    "stable_ranges",
 ]

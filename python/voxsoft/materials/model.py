@@ -6,10 +6,15 @@ from typing import Annotated
 
 from pydantic import Field
 
+from voxsoft.materials.gent import Gent
 from voxsoft.materials.lattice import CompliantLattice, Lattice
+from voxsoft.materials.mooney_rivlin import MooneyRivlin
+from voxsoft.materials.neo_hookean import NeoHookean
+from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.yeoh import Yeoh
 
 #: Any material model.
-Material = Lattice | CompliantLattice
+Material = Lattice | CompliantLattice | NeoHookean | MooneyRivlin | Yeoh | Ogden | Gent
 
 #: The same as a pydantic field, told apart by ``model``.
 AnyMaterial = Annotated[Material, Field(discriminator="model")]
