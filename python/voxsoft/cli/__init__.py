@@ -1,4 +1,4 @@
-"""The command line ``voxsoft``: new, check, mesh, run, calibrate, sweep, optimize, export."""
+"""The command line ``voxsoft``: new, check, mesh, run, calibrate, material, sweep, ..."""
 
 from voxsoft.cli.app import main
 

@@ -10,6 +10,7 @@ import typer
 from voxsoft.cli.calibrate import calibrate
 from voxsoft.cli.check import check
 from voxsoft.cli.export import export
+from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
 from voxsoft.cli.new import new
 from voxsoft.cli.run import run
@@ -25,6 +26,7 @@ app = typer.Typer(
 )
 for command in (new, check, mesh, run, calibrate, sweep, optimize, export):
     app.command()(command)
+app.add_typer(material)
 
 
 def _print_version(wanted: bool) -> None:

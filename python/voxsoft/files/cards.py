@@ -19,7 +19,7 @@ def card_text(card: Card) -> str:
     >>> card_text(load_card("ecoflex-00-30")).splitlines()[1]
     'name = "ecoflex-00-30"'
     """
-    dumped = card.model_dump(mode="json", by_alias=True)
+    dumped = card.model_dump(mode="json", by_alias=True, exclude_none=True)
     return write_toml({key: value for key, value in dumped.items() if value not in ("", {})})
 
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import resources
-from typing import Any, ClassVar, Literal
+from importlib.resources.abc import Traversable
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, ValidationError
 
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.materials.model import AnyMaterial, Material
 from voxsoft.records import Record, closest, plain_error
-from voxsoft.units import FILE_CONTEXT
+from voxsoft.units import FILE_CONTEXT, UnitOf
 
 
 class Card(Record):
@@ -28,9 +29,13 @@ class Card(Record):
     material
         The model and its constants.
     source
-        Where the numbers come from: data, method, licence, in plain words.
+        Where the numbers come from: data and method, in plain words.
     caution
-        What the numbers are not good for.
+        What the numbers are not good for, and what the source is worth.
+    licence
+        Under which terms the numbers may be passed on, where they are not VoxSoft's own.
+    elongation_at_break
+        Strain at break (change of length over length), if it was measured.
     calibration
         What a calibration noted: voxel size, solver settings, errors, seed, versions.
 
@@ -49,6 +54,8 @@ class Card(Record):
     material: AnyMaterial
     source: str = ""
     caution: str = ""
+    licence: str = ""
+    elongation_at_break: Annotated[float, UnitOf("number", positive=True)] | None = None
     calibration: dict[str, Any] = Field(default_factory=dict)
 
     @classmethod
@@ -63,9 +70,18 @@ class Card(Record):
 @cache
 def _shipped() -> Mapping[str, Card]:
     folder = resources.files("voxsoft.materials") / "cards"
-    files = sorted((f for f in folder.iterdir() if f.name.endswith(".toml")), key=lambda f: f.name)
+    files = sorted(_card_files(folder), key=lambda file: file.name)
     cards = (Card.from_document(tomllib.loads(file.read_text(encoding="utf-8"))) for file in files)
     return {card.name: card for card in cards}
+
+
+def _card_files(folder: Traversable) -> Iterator[Traversable]:
+    """Find the cards in a folder and in those below it, each of which has a licence of its own."""
+    for entry in folder.iterdir():
+        if entry.is_dir():
+            yield from _card_files(entry)
+        elif entry.name.endswith(".toml"):
+            yield entry
 
 
 def card_names() -> tuple[str, ...]:

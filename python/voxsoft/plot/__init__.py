@@ -16,10 +16,12 @@ Examples
 
 from voxsoft.plot.body import plot_body
 from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
+from voxsoft.plot.coupon import plot_coupons
 from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
     "plot_body",
+    "plot_coupons",
     "plot_fitness",
     "plot_history",
     "plot_pareto",

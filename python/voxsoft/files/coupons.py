@@ -1,0 +1,121 @@
+"""Coupon tests on the disk: curves and observations in, a material card and its evidence out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from voxsoft.errors import FileError, MeasurementError
+from voxsoft.files.cards import save_card
+from voxsoft.files.designs import FilePath, read_document, read_text
+from voxsoft.files.figures import save_figure
+from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.materials import Mode
+from voxsoft.materials.card import Card
+from voxsoft.materials.coupon import (
+    CouponFit,
+    Curve,
+    ObservedModulus,
+    read_curve,
+    read_observations,
+)
+from voxsoft.plot.coupon import plot_coupons
+
+
+def load_curve(
+    path: FilePath,
+    *,
+    mode: Mode = "uniaxial",
+    area: float | None = None,
+    length: float | None = None,
+) -> Curve:
+    r"""Read a stress-strain curve from a CSV file.
+
+    Parameters
+    ----------
+    path
+        The file; :func:`voxsoft.materials.coupon.read_curve` says what it may hold.
+    mode
+        ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
+    area, length
+        Original cross section in m² and gauge length in m, for forces and displacements.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable or too large file.
+    MeasurementError
+        Text that is not UTF-8, or a table that cannot be used, with the line.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "coupon.csv"
+    >>> _ = file.write_text("strain,stress_kPa\n0,0\n0.1,5\n0.2,9\n0.3,13\n0.4,17\n")
+    >>> float(load_curve(file).stress[-1])
+    17000.0
+    """
+    name = Path(path).name
+    try:
+        text = read_text(path)
+    except FileError as error:
+        if "UTF-8" in error.what:
+            raise MeasurementError(error.where, error.what, "save the table as CSV") from None
+        raise
+    return read_curve(text, name=name, mode=mode, area=area, length=length)
+
+
+def load_observations(path: FilePath) -> list[ObservedModulus]:
+    r"""Read observed moduli (bending, frequency, or known) from a TOML file.
+
+    Raises
+    ------
+    FileError
+        The file cannot be read, or is not TOML.
+    MeasurementError
+        A table that is not an observation; every problem is listed.
+
+    Examples
+    --------
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "beam.toml"
+    >>> table = '[[observation]]\nkind = "modulus"\nyoung = "60 kPa"\nuncertainty = "3 kPa"'
+    >>> _ = file.write_text(table)
+    >>> load_observations(file)
+    [ObservedModulus(name='modulus', young=60000.0, uncertainty=3000.0)]
+    """
+    return read_observations(read_document(read_text(path), Path(path).name))
+
+
+def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]:
+    """Write a fit to a folder, which is made if it is not there.
+
+    The folder then holds ``NAME.toml``, the material card; ``summary.json``, everything in SI
+    units; and ``fits.png``, the picture.
+
+    Parameters
+    ----------
+    fit
+        What :func:`voxsoft.materials.coupon.fit_coupons` returned.
+    card
+        A card of it, see :meth:`~voxsoft.materials.coupon.CouponFit.card`.
+    folder
+        Where to write.
+
+    Returns
+    -------
+    list of pathlib.Path
+        What was written, the card first.
+
+    Raises
+    ------
+    FileError
+        The folder or a file in it cannot be written.
+    """
+    place = make_folder(folder)
+    written = [place / f"{card.name}.toml", place / "summary.json"]
+    save_card(card, written[0])
+    write_json(written[1], fit.summary() | provenance())
+    written.append(
+        save_figure(plot_coupons(fit, str(card.calibration["model"])), place / "fits.png")
+    )
+    return written

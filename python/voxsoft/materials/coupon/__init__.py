@@ -1,0 +1,39 @@
+r"""Coupon tests: stress-strain curves of a material, and the models fitted to them.
+
+Examples
+--------
+>>> text = "strain,stress_kPa\n0,0\n0.1,5.471\n0.3,14.17\n0.6,24.18\n0.8,29.83\n1,35\n"
+>>> fit = fit_coupons([read_curve(text, name="coupon 1")])
+>>> fit.recommended.name
+'neo-hookean'
+"""
+
+from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, Toe, ToeCorrection
+from voxsoft.materials.coupon.fit import DEFAULT_MAX_STRAIN, fit_coupons
+from voxsoft.materials.coupon.observation import (
+    BendingObservation,
+    FrequencyObservation,
+    ModulusObservation,
+    ObservedModulus,
+    read_observations,
+)
+from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
+from voxsoft.materials.coupon.table import read_curve
+
+__all__ = [
+    "DEFAULT_MAX_STRAIN",
+    "TOE_CORRECTIONS",
+    "BendingObservation",
+    "CouponFit",
+    "Curve",
+    "FrequencyObservation",
+    "Interval",
+    "ModelFit",
+    "ModulusObservation",
+    "ObservedModulus",
+    "Toe",
+    "ToeCorrection",
+    "fit_coupons",
+    "read_curve",
+    "read_observations",
+]

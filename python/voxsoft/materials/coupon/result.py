@@ -1,0 +1,326 @@
+"""What the coupons of a material say: the models, how good they are, and what to beware of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from voxsoft.errors import MaterialError
+from voxsoft.materials.card import Card
+from voxsoft.materials.coupon.curve import Curve, Toe, ToeCorrection
+from voxsoft.materials.coupon.observation import ObservedModulus
+from voxsoft.materials.hyperelastic import Hyperelastic
+from voxsoft.materials.stability import StableRange
+from voxsoft.records import closest
+from voxsoft.units import format_quantity
+
+# Models whose predictions err by at most this factor more than the best are taken for as good;
+# among them the one with the fewest constants is recommended.
+_AS_GOOD: Final = 1.1
+_FIRST_INVARIANT: Final = ("neo-hookean", "gent", "yeoh")
+# A strain of slack that changes moduli by more than a tenth, for a curve whose first 30 % count.
+_LARGE_TOE: Final = 0.03
+# No rubber is softer or stiffer than this, in Pa.
+_RUBBER: Final = (1e2, 1e8)
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A constant with its 95 % confidence interval, all in SI units."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def half_width(self) -> float:
+        """Half the length of the interval."""
+        return 0.5 * (self.high - self.low)
+
+
+@dataclass(frozen=True)
+class ModelFit:
+    """One model fitted to all data.
+
+    Attributes
+    ----------
+    name
+        The family: ``"yeoh-3"``.
+    material
+        The model with the constants found.
+    constants
+        Every constant with its interval, by name; moduli in Pa.
+    young
+        Initial Young's modulus in Pa, with its interval.
+    rmse, max_error
+        Root mean square and largest error of the stress over the fitted points, in Pa.
+    cv_rmse
+        The same root mean square where each fifth of every curve is predicted from the other four.
+    r2
+        Share of the variance of the stress that is explained.
+    stability
+        Where it is stable, in the three modes.
+    stable_in_fit
+        Whether it is stable over all strains that were fitted, in their modes.
+    """
+
+    name: str
+    material: Hyperelastic
+    constants: Mapping[str, Interval]
+    young: Interval
+    rmse: float
+    max_error: float
+    cv_rmse: float
+    r2: float
+    stability: tuple[StableRange, ...]
+    stable_in_fit: bool
+
+    @property
+    def size(self) -> int:
+        """Number of constants."""
+        return len(self.constants)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to be careful about, in sentences."""
+        found = [] if self.stable_in_fit else [f"{self.name} is unstable inside the fitted range"]
+        return found + [f"{self.name}, {r.sentence}" for r in self.stability if r.sentence]
+
+
+@dataclass(frozen=True)
+class CouponFit:
+    """What the coupons of a material say.
+
+    Attributes
+    ----------
+    measured
+        The curves as they came.
+    curves
+        The curves that were fitted: toe corrected, up to the largest strain.
+    toes
+        The toe of each curve, where it could be told.
+    correction
+        What was done about it.
+    observed
+        Moduli from other tests.
+    max_strain
+        The largest strain that was asked for.
+    models
+        The fits, best prediction first.
+    rejected
+        Models that could not be fitted, and why.
+    """
+
+    measured: tuple[Curve, ...]
+    curves: tuple[Curve, ...]
+    toes: tuple[Toe | None, ...]
+    correction: ToeCorrection
+    observed: tuple[ObservedModulus, ...]
+    max_strain: float
+    models: tuple[ModelFit, ...]
+    rejected: Mapping[str, str]
+
+    @property
+    def recommended(self) -> ModelFit:
+        """The model with the fewest constants among the sound ones that predict about best.
+
+        Sound are those that are stable over the fitted range and, where all curves are uniaxial,
+        are written in ``I₁`` alone (neo-Hookean, Gent, Yeoh): what Ogden and Mooney–Rivlin models
+        then say of the other modes is a guess, and an inflated robot lives there. "About best" is
+        within 10 % of the smallest ``cv_rmse``. Where no model is sound, all of them count.
+        """
+        stable = [fit for fit in self.models if fit.stable_in_fit] or list(self.models)
+        if {curve.mode for curve in self.curves} == {"uniaxial"}:
+            stable = [f for f in stable if f.material.model in _FIRST_INVARIANT] or stable
+        limit = _AS_GOOD * min(fit.cv_rmse for fit in stable)
+        return min(
+            (fit for fit in stable if fit.cv_rmse <= limit), key=lambda f: (f.size, f.cv_rmse)
+        )
+
+    def of(self, name: str | None = None) -> ModelFit:
+        """Return the fit of a model by name; default: the recommended one.
+
+        Raises
+        ------
+        MaterialError
+            No such model, or one that could not be fitted.
+        """
+        if name is None:
+            return self.recommended
+        by_name = {fit.name: fit for fit in self.models}
+        if name in self.rejected:
+            raise MaterialError(name, f"could not be fitted: {self.rejected[name]}")
+        if name not in by_name:
+            raise MaterialError("model", f'"{name}" is not known', closest(name, by_name))
+        return by_name[name]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What to be careful about in the data, in sentences."""
+        found: list[str] = []
+        for curve, toe in zip(self.measured, self.toes, strict=True):
+            found += _about_the_start(curve, toe, self.correction)
+        if {curve.mode for curve in self.curves} == {"uniaxial"}:
+            found.append(
+                "Only uniaxial curves: mooney-rivlin and ogden are guesses in the other modes; "
+                "neo-hookean, gent and yeoh are safer there"
+            )
+        young = self.recommended.young.value
+        if not _RUBBER[0] < young < _RUBBER[1]:
+            found.append(
+                f"Young's modulus comes out as {_kpa(young)}, which is no rubber: check the units"
+            )
+        for seen in self.observed:
+            misfit = abs(young - seen.young) / seen.uncertainty
+            if misfit > 2.0:
+                found.append(
+                    f"{seen.name} ({_kpa(seen.young)}) and {self.recommended.name} "
+                    f"({_kpa(young)}) differ by {misfit:.1f} standard uncertainties"
+                )
+        return found
+
+    def card(
+        self, name: str, model: str | None = None, *, title: str = "", source: str = ""
+    ) -> Card:
+        """Make a material card of a model.
+
+        Parameters
+        ----------
+        name
+            What designs call it.
+        model
+            One of the models; default: the recommended one.
+        title, source
+            See :class:`~voxsoft.materials.Card`; the source has a default that names the curves.
+        """
+        fit = self.of(model)
+        breaks = [c.elongation_at_break for c in self.measured if c.elongation_at_break]
+        modes = ", ".join(dict.fromkeys(curve.mode for curve in self.curves))
+        names = ", ".join(curve.name for curve in self.curves)
+        return Card(
+            name=name,
+            title=title,
+            material=fit.material,
+            source=source or f"Fitted to {modes} curves: {names}.",
+            caution=". ".join(
+                [
+                    f"Fitted to strains between {self._span(0):.2f} and {self._span(1):.2f}",
+                    *fit.warnings,
+                    *self.warnings,
+                ]
+            )
+            + ".",
+            elongation_at_break=min(breaks) if breaks else None,
+            calibration=self._notes(fit),
+        )
+
+    def summary(self) -> dict[str, Any]:
+        """Everything as plain data in SI units."""
+        return {
+            "recommended": self.recommended.name,
+            "toe": self.correction,
+            "max_strain": self.max_strain,
+            "curves": [
+                {
+                    "name": curve.name,
+                    "mode": curve.mode,
+                    "points": len(curve.strain),
+                    "strain": [float(curve.strain.min()), float(curve.strain.max())],
+                    "elongation_at_break": curve.elongation_at_break,
+                    "toe_strain": None if toe is None else toe.strain,
+                    "offset": None if toe is None else toe.offset,
+                }
+                for curve, toe in zip(self.curves, self.toes, strict=True)
+            ],
+            "observed": [seen._asdict() for seen in self.observed],
+            "models": [_summary_of(fit) for fit in self.models],
+            "rejected": dict(self.rejected),
+            "warnings": self.recommended.warnings + self.warnings,
+        }
+
+    def _span(self, end: int) -> float:
+        choose = (min, max)[end]
+        return float(choose(choose(curve.strain) for curve in self.curves))
+
+    def _notes(self, fit: ModelFit) -> dict[str, Any]:
+        notes: dict[str, Any] = {
+            "method": "least squares of engineering stress, incompressible",
+            "model": fit.name,
+            "data": [curve.name for curve in self.curves],
+            "modes": [curve.mode for curve in self.curves],
+            "points": [len(curve.strain) for curve in self.curves],
+            "strain_range": [round(self._span(0), 6), round(self._span(1), 6)],
+            "toe_correction": self.correction,
+            "toe_strain": [0.0 if toe is None else round(toe.strain, 6) for toe in self.toes],
+            "stress_offset": [_kpa(0.0 if toe is None else toe.offset) for toe in self.toes],
+            "rmse": _kpa(fit.rmse),
+            "cross_validated_rmse": _kpa(fit.cv_rmse),
+            "young": _kpa(fit.young.value),
+            "young_interval": _between(fit.young, "modulus"),
+        }
+        if self.observed:
+            notes["observed"] = [
+                f"{seen.name}: E = {_kpa(seen.young)} ± {_kpa(seen.uncertainty)}"
+                for seen in self.observed
+            ]
+        for name, interval in fit.constants.items():
+            notes[f"{name}_interval"] = _between(interval, _kind_of(name))
+        notes["interval_method"] = (
+            "linearized least squares, residual scale widened for residuals that follow one "
+            "another; it holds for this model and these specimens"
+        )
+        return notes
+
+
+def _summary_of(fit: ModelFit) -> dict[str, Any]:
+    return {
+        "name": fit.name,
+        "material": fit.material.model_dump(by_alias=True),
+        "constants": {
+            name: {"value": i.value, "low": i.low, "high": i.high}
+            for name, i in fit.constants.items()
+        },
+        "young": {"value": fit.young.value, "low": fit.young.low, "high": fit.young.high},
+        "rmse": fit.rmse,
+        "max_error": fit.max_error,
+        "cv_rmse": fit.cv_rmse,
+        "r2": fit.r2,
+        "stable_in_fit": fit.stable_in_fit,
+        "stable": {found.mode: list(found.stable) for found in fit.stability},
+        "warnings": fit.warnings,
+    }
+
+
+def _about_the_start(curve: Curve, toe: Toe | None, correction: ToeCorrection) -> list[str]:
+    first = float(np.abs(curve.strain).min())
+    found = []
+    if toe is None:
+        found.append(f"{curve.name}: too few points below 30 % strain to tell the toe")
+    elif abs(toe.strain) > _LARGE_TOE:
+        done = {"strain": "taken off the strain", "stress": "taken off the stress"}
+        found.append(
+            f"{curve.name}: toe of {toe.strain:.1%} strain, or {_kpa(toe.offset)} of load-cell "
+            f"offset, {done.get(correction, 'left in')}: small-strain moduli are uncertain"
+        )
+    if first > 0.04:
+        found.append(
+            f"{curve.name}: the first point is at {first:.1%} strain: "
+            "small-strain moduli are extrapolated"
+        )
+    return found
+
+
+def _kind_of(name: str) -> str:
+    return "number" if name == "jm" or name.startswith("alpha") else "modulus"
+
+
+def _between(interval: Interval, kind: str) -> str:
+    low, high = (format_quantity(float(f"{v:.4g}"), kind) for v in (interval.low, interval.high))
+    return f"between {low} and {high} (95 %)"
+
+
+def _kpa(value: float) -> str:
+    return format_quantity(float(f"{value:.4g}"), "modulus")

@@ -1,0 +1,302 @@
+"""Curves from the tables that testing machines write."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from voxsoft.errors import MeasurementError, UnitError
+from voxsoft.materials.coupon.curve import Curve
+from voxsoft.materials.homogeneous import Mode
+from voxsoft.materials.hyperelastic import Floats
+from voxsoft.units import format_quantity, parse
+
+_NAMES: Final = {
+    "strain": ("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
+    "stretch": ("stretch", "stretch ratio", "lambda"),
+    "displacement": ("displacement", "extension", "elongation", "crosshead"),
+    "stress": ("stress", "eng stress", "engineering stress", "nominal stress", "tensile stress"),
+    "force": ("force", "load"),
+}
+_TRUE: Final = ("true strain", "log strain", "true stress", "cauchy stress")
+_STRAINS: Final = ("strain", "stretch", "displacement")
+_STRESSES: Final = ("stress", "force")
+_KIND: Final = {"displacement": "length", "stress": "pressure", "force": "force"}
+_EXAMPLE: Final = {"displacement": "displacement_mm", "stress": "stress_kPa", "force": "force_N"}
+_NO_UNIT: Final = ("", "-", "1", "mm/mm", "m/m", "in/in")
+_PERCENT: Final = ("%", "percent", "pct")
+# Machines write units in any case; "Mpa" is no millipascal.
+_CASELESS: Final = {u.lower(): u for u in ("Pa", "kPa", "MPa", "GPa", "N", "kN", "mm", "m", "psi")}
+_ALLOWED: Final = (
+    "strain (or strain_percent, stretch, displacement_mm) and stress_kPa (or _Pa, _MPa, force_N)"
+)
+# The most that any rubber stretches is some 20 times its length.
+_LARGEST_STRAIN: Final = 25.0
+_LARGEST_TEXT: Final = 50_000_000
+
+
+class _Column(NamedTuple):
+    at: int
+    head: str
+    name: str
+    unit: str
+
+
+def read_curve(
+    text: str,
+    *,
+    name: str = "curve",
+    mode: Mode = "uniaxial",
+    area: float | None = None,
+    length: float | None = None,
+) -> Curve:
+    r"""Read a stress-strain curve from a table with one header line.
+
+    Parameters
+    ----------
+    text
+        Comma, semicolon or tab separated. Columns are found by name, units stand behind the name:
+        ``strain`` (or ``eng_strain``; ``strain_percent``, ``strain (%)``), ``stretch`` or
+        ``displacement_mm``; and ``stress_kPa`` (``stress [MPa]``, ``eng_stress_Pa``, ...) or
+        ``force_N``. Strain and stress are engineering quantities. Other columns are left alone.
+    name
+        What errors and reports call it.
+    mode
+        The test: ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
+    area
+        Original cross section in m², for a column of forces.
+    length
+        Original gauge length in m, for a column of displacements.
+
+    Returns
+    -------
+    Curve
+        Cut at the largest stress if the stress falls to less than half of it after that: the
+        specimen broke.
+
+    Raises
+    ------
+    MeasurementError
+        No such columns (those that came are listed), a unit of the wrong kind, text where a number
+        is due, too few points, a cycle.
+
+    Examples
+    --------
+    >>> rows = "".join(f"\n{10 * i},{i}" for i in range(8))
+    >>> read_curve("strain (%),stress [kPa]" + rows).stress[:3].tolist()
+    [0.0, 1000.0, 2000.0]
+    >>> read_curve("time,voltage")
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.MeasurementError: curve: no column of strain and no column of stress among ...
+    """
+    separator, rows = _rows(text, name)
+    start, across, along = _header(rows, name)
+    columns = [across, along]
+    if _is_units_row(rows, start, columns):
+        unit_row = rows[start + 1]
+        columns = [c._replace(unit=unit_row[c.at].strip(" ()[]")) for c in columns]
+        start += 1
+    numbers = _numbers(rows, start + 1, columns, name, decimal_comma=separator != ",")
+    strain = _strain(numbers[:, 0], columns[0], length, name)
+    stress = _stress(numbers[:, 1], columns[1], area, name)
+    broken = _break(strain, stress)
+    whole = slice(None) if broken is None else slice(0, broken + 1)
+    return Curve(
+        strain[whole],
+        stress[whole],
+        mode,
+        name,
+        None if broken is None else float(strain[broken]),
+    )
+
+
+def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:
+    if len(text) > _LARGEST_TEXT or "\0" in text:
+        raise MeasurementError(name, "is not a table of text", "save the table as CSV")
+    lines = text.lstrip("\ufeff").splitlines()
+    head = next((line for line in lines if line.strip()), "")
+    separator = max(";\t,", key=head.count)
+    try:
+        rows = list(csv.reader(io.StringIO("\n".join(lines)), delimiter=separator))
+    except csv.Error as error:
+        raise MeasurementError(name, f"is not a table: {error}", "save it as CSV") from None
+    if not any(any(cell.strip() for cell in row) for row in rows):
+        raise MeasurementError(name, "is empty", f"give columns {_ALLOWED}")
+    return separator, rows
+
+
+def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Column]:
+    """Find the line that names a strain and a stress; machines write some lines above it."""
+    first = next(i for i, row in enumerate(rows) if any(cell.strip() for cell in row))
+    for at, row in enumerate(rows[: first + 60]):
+        columns = [column for i, cell in enumerate(row) if (column := _column(i, cell))]
+        across = _one_of(columns, _STRAINS, f"{name}, line {at + 1}")
+        along = _one_of(columns, _STRESSES, f"{name}, line {at + 1}")
+        if across and along:
+            return at, across, along
+    heads = [cell.strip() for cell in rows[first] if cell.strip()]
+    found = [column for i, cell in enumerate(rows[first]) if (column := _column(i, cell))]
+    missing = [
+        f"no column of {what}"
+        for what, names in (("strain", _STRAINS), ("stress", _STRESSES))
+        if not any(column.name in names for column in found)
+    ]
+    came = ", ".join(f'"{head}"' for head in heads[:12]) + (", ..." if len(heads) > 12 else "")
+    hint = f"name them {_ALLOWED}"
+    if any(_split(head)[0] in _TRUE for head in heads):
+        hint = "engineering quantities are due: stress = true stress/stretch, strain = stretch - 1"
+    raise MeasurementError(name, f"{' and '.join(missing)} among {came}", hint)
+
+
+def _one_of(columns: Sequence[_Column], names: Sequence[str], where: str) -> _Column | None:
+    """Choose the column with the first of these names."""
+    for name in names:
+        same = [column for column in columns if column.name == name]
+        if len(same) > 1:
+            heads = " and ".join(f'"{column.head}"' for column in same)
+            raise MeasurementError(where, f"{heads} are both a {name}", "leave one of them out")
+        if same:
+            return same[0]
+    return None
+
+
+def _column(index: int, cell: str) -> _Column | None:
+    label, unit = _split(cell)
+    for name, labels in _NAMES.items():
+        if label in labels:
+            return _Column(index, cell.strip(), name, unit)
+    return None
+
+
+def _split(cell: str) -> tuple[str, str]:
+    """Part a head such as ``eng_stress_Pa`` or ``Load [N]`` into its label and its unit."""
+    head = cell.strip()
+    bracketed = re.fullmatch(r"(.*?)[\s_]*[(\[](.*)[)\]]", head)
+    if bracketed:
+        return _label(bracketed[1]), bracketed[2].strip()
+    known = {label for labels in _NAMES.values() for label in labels}
+    if _label(head) in known or _label(head) in _TRUE:
+        return _label(head), ""
+    label, joint, unit = head.replace(" ", "_").rpartition("_")
+    return (_label(label), unit) if joint else (_label(head), "")
+
+
+def _label(text: str) -> str:
+    return re.sub(r"[\s_]+", " ", text).strip().lower()
+
+
+def _is_units_row(rows: Sequence[Sequence[str]], start: int, columns: Sequence[_Column]) -> bool:
+    if start + 1 >= len(rows) or any(column.unit for column in columns):
+        return False
+    row = rows[start + 1]
+    cells = [row[column.at].strip() if column.at < len(row) else "" for column in columns]
+    return any(cells) and all(not re.search(r"\d", cell.replace("^2", "")) for cell in cells)
+
+
+def _numbers(
+    rows: Sequence[Sequence[str]],
+    start: int,
+    columns: Sequence[_Column],
+    name: str,
+    *,
+    decimal_comma: bool,
+) -> Floats:
+    found = []
+    for number, row in enumerate(rows[start:], start=start + 1):
+        if not any(cell.strip() for cell in row):
+            continue
+        pair = []
+        for column in columns:
+            cell = row[column.at].strip() if column.at < len(row) else ""
+            try:
+                pair.append(float(cell.replace(",", ".") if decimal_comma else cell))
+            except ValueError:
+                raise MeasurementError(
+                    f"{name}, line {number}",
+                    f'"{cell[:40]}" in column "{column.head}" is not a number',
+                    "take the line out if nothing was measured there",
+                ) from None
+        found.append(pair)
+    return np.array(found, dtype=np.float64).reshape(-1, 2)
+
+
+def _factor(column: _Column, name: str) -> float:
+    kind = _KIND[column.name]
+    if not column.unit:
+        raise MeasurementError(
+            name,
+            f'column "{column.head}" has no unit',
+            f'call it "{_EXAMPLE[column.name]}", say',
+        )
+    try:
+        return parse(f"1 {_CASELESS.get(column.unit.lower(), column.unit)}", kind)
+    except UnitError as error:
+        raise MeasurementError(
+            name, f'column "{column.head}": {error.what}', f'call it "{_EXAMPLE[column.name]}", say'
+        ) from None
+
+
+def _strain(
+    values: Floats,
+    column: _Column,
+    length: float | None,
+    name: str,
+) -> Floats:
+    if column.name == "displacement":
+        if length is None:
+            raise MeasurementError(
+                name,
+                f'column "{column.head}" is a displacement, which needs the gauge length',
+                'give --length "33 mm"',
+            )
+        return values * _factor(column, name) / length
+    unit = column.unit.lower()
+    if unit in _PERCENT:
+        values = values / 100.0
+    elif unit not in _NO_UNIT:
+        raise MeasurementError(
+            name, f'column "{column.head}": "{column.unit}" is no unit of strain', "use % or none"
+        )
+    strain = values - 1.0 if column.name == "stretch" else values
+    if len(strain) and np.abs(strain).max() > _LARGEST_STRAIN:
+        raise MeasurementError(
+            name,
+            f'column "{column.head}" goes to {np.abs(values).max():g}; no rubber stretches so far',
+            'if these are percent, call it "strain_percent"',
+        )
+    return strain
+
+
+def _stress(
+    values: Floats,
+    column: _Column,
+    area: float | None,
+    name: str,
+) -> Floats:
+    if column.name == "stress":
+        return values * _factor(column, name)
+    if area is None:
+        raise MeasurementError(
+            name,
+            f'column "{column.head}" is a force, which needs the original cross section',
+            f'give --area "{format_quantity(18e-6, "area")}"',
+        )
+    return values * _factor(column, name) / area
+
+
+def _break(
+    strain: Floats,
+    stress: Floats,
+) -> int | None:
+    """Index of the last point before the break, if the specimen broke in tension."""
+    if len(stress) < 2 or not (np.isfinite(stress).all() and np.isfinite(strain).all()):
+        return None
+    top = int(np.argmax(stress))
+    broke = top < len(stress) - 1 and stress[top] > 0.0 and stress[-1] < 0.5 * stress[top]
+    return top if broke else None
