@@ -131,7 +131,7 @@ def list_cards(json: Json = False) -> None:
         print_json({"cards": [_summary(card) for card in cards]})
         return
     rows = [_row(card) for card in cards]
-    columns = ["card", "model", "Young's modulus", "Poisson", "density", "break"]
+    columns = ["card", "model", "initial E", "break"]
     show_table("Materials", columns, rows)
     say("voxsoft material show CARD says where the numbers come from")
 
@@ -230,14 +230,11 @@ def _moduli(material: Material) -> tuple[float, float]:
 
 
 def _row(card: Card) -> list[str]:
-    young, poisson = _moduli(card.material)
     broken = card.elongation_at_break
     return [
         card.name,
         card.material.model,
-        quantity(young, "modulus"),
-        f"{poisson:.4g}",
-        quantity(card.material.density, "density"),
+        quantity(_moduli(card.material)[0], "modulus"),
         "" if broken is None else f"{broken:.0%}",
     ]
 
