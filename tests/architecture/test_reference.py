@@ -2,12 +2,14 @@
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import pytest
 import typer
 
 from voxsoft import Design
 from voxsoft.cli.app import app
+from voxsoft.materials import Material
 from voxsoft.metrics import METRICS
 from voxsoft.shapes import KINDS
 
@@ -67,6 +69,20 @@ def test_every_option_is_there_with_its_verbs():
 
 def test_every_kind_of_shape_is_there():
     assert cells(section("design-file.md", "Shapes"), 1) == KINDS_IN_FILES
+
+
+def test_every_material_model_is_there_with_its_constants():
+    text = section("design-file.md", "Materials")
+    rows = [row.split("|") for row in re.findall(r"^\|(.*)\|$", text, re.MULTILINE)[2:]]
+    documented = {row[0].strip(" `"): set(re.findall(r"`(\w+)`", row[1])) for row in rows}
+    shared = {"model", "poisson", "density", "prony"}
+    real = {
+        model.model_fields["model"].default: {
+            field.alias or name for name, field in model.model_fields.items() if name not in shared
+        }
+        for model in get_args(Material)
+    }
+    assert documented == real
 
 
 def test_every_metric_is_there():

@@ -211,7 +211,8 @@ def _kpa(value: float) -> str:
 
 
 def _with_interval(interval: Interval) -> str:
-    return f"{interval.value / 1e3:.4g} ± {interval.half_width / 1e3:.2g} kPa"
+    spread = float(f"{interval.half_width / 1e3:.2g}")
+    return f"{interval.value / 1e3:.4g} ± {spread:g} kPa"
 
 
 def _constant(name: str, value: float) -> str:
