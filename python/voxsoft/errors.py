@@ -122,6 +122,10 @@ class SimulationError(VoxSoftError, RuntimeError):
     """A simulation that could not be set up or run."""
 
 
+class OutsideCodeError(SimulationError):
+    """An outside finite-element code that crashed, said nothing, or took too long."""
+
+
 class StudyError(VoxSoftError, RuntimeError):
     """A study that could not be set up, stored or resumed."""
 

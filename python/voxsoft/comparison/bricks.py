@@ -1,0 +1,389 @@
+"""The voxels of a design as bricks of an ordinary finite-element code, whole or split.
+
+A voxel split ``r`` times along each axis gives ``r³`` bricks. Clamps, loads and cavities are taken
+from the mesh of whole voxels, so that every split solves the same mechanical problem: a node of
+the split grid is held where all corners of the edge, face or voxel that it lies on are held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import product
+from typing import Final, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Clamp, Force, Gravity, Pressure, Traction
+from voxsoft.errors import SimulationError
+from voxsoft.materials import Material
+from voxsoft.simulation import Setup
+from voxsoft.simulation.places import vertices_in
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Nodes of a brick: corners; with the middles of edges; with those of faces and of the brick too.
+NodeCount = Literal[8, 20, 27]
+
+#: Corners of a brick in units of its edge: bottom counter-clockwise, then top.
+CORNERS: Final = np.array(
+    [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+)
+_EDGES: Final = [
+    (0, 1),
+    (1, 2),
+    (2, 3),
+    (3, 0),
+    (4, 5),
+    (5, 6),
+    (6, 7),
+    (7, 4),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+]
+#: Corners of each face in the numbering of Abaqus and CalculiX, F1 to F6.
+FACES: Final = ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0))
+#: The face whose outward normal points along an axis: (axis, whether along it) → index in FACES.
+_FACE_OF: Final = {
+    (2, False): 0,
+    (2, True): 1,
+    (1, False): 2,
+    (0, True): 3,
+    (1, True): 4,
+    (0, False): 5,
+}
+#: Nodes of a brick in half edges, in the order of CalculiX's C3D20, then faces and center.
+_HALVES: Final = np.concatenate(
+    [
+        2 * CORNERS,
+        [CORNERS[a] + CORNERS[b] for a, b in _EDGES],
+        [CORNERS[list(face)].sum(axis=0) // 2 for face in FACES],
+        [(1, 1, 1)],
+    ]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class FacePressure:
+    """A pressure in Pa that follows some faces of bricks: rows (brick, face)."""
+
+    faces: Ints
+    value: float
+
+
+@dataclass(frozen=True, eq=False)
+class BrickModel:
+    """A mechanical problem on bricks: what an outside code is given.
+
+    Attributes
+    ----------
+    nodes
+        Positions in m, (n, 3).
+    bricks
+        Node indices, (m, k) with k = 8, 20 or 27.
+    parts, materials
+        The part of each brick (m,), counted from 0, and the material of each part.
+    fixed, values
+        Which components are prescribed (n, 3), and to what displacement in m.
+    forces
+        Dead forces in N, (n, 3); weight is not among them.
+    gravity
+        Acceleration in m/s², (3,).
+    pressures
+        Pressures on faces.
+    vertex_nodes
+        The node at each vertex of the voxel mesh.
+    edge
+        Edge of a brick in m.
+    split
+        Bricks along each edge of a voxel.
+    """
+
+    nodes: Floats = field(repr=False)
+    bricks: Ints = field(repr=False)
+    parts: Ints = field(repr=False)
+    materials: tuple[Material, ...]
+    fixed: NDArray[np.bool_] = field(repr=False)
+    values: Floats = field(repr=False)
+    forces: Floats = field(repr=False)
+    gravity: Floats
+    pressures: tuple[FacePressure, ...] = field(repr=False)
+    vertex_nodes: Ints = field(repr=False)
+    edge: float
+    split: int
+
+    @classmethod
+    def of(cls, setup: Setup, *, split: int = 1, nodes: NodeCount = 20) -> Self:
+        """Make bricks of the voxels of a design.
+
+        Parameters
+        ----------
+        setup
+            A design made ready, with a mesh made of voxels.
+        split
+            Bricks along each edge of a voxel, at least 1.
+        nodes
+            Nodes of a brick: 8, 20 or 27.
+
+        Raises
+        ------
+        SimulationError
+            A mesh that is not made of voxels, or a floor, which no outside code is given.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> BrickModel.of(Setup.of(families.beam()), nodes=8).bricks.shape
+        (80, 8)
+        >>> BrickModel.of(Setup.of(families.beam()), split=2).bricks.shape
+        (640, 20)
+        """
+        if setup.design.floor is not None:
+            raise SimulationError(
+                "floor", "cannot be given to an outside code", "clamp the foot instead"
+            )
+        grid = _Lattice.of(setup)
+        cells = _split_cells(grid.cells, split)
+        keys = 2 * cells[:, None, :] + _HALVES[:nodes]
+        found, bricks = np.unique(_flat(keys.reshape(-1, 3), grid.span, split), return_inverse=True)
+        places = _unflat(found, grid.span, split)
+        size = grid.size / split
+        model = cls(
+            nodes=grid.origin + places * (size / 2),
+            bricks=bricks.reshape(len(cells), nodes).astype(np.int64),
+            parts=np.repeat(grid.parts, split**3),
+            materials=tuple(setup.design.material_of(part) for part in setup.design.parts),
+            fixed=np.zeros((len(places), 3), dtype=bool),
+            values=np.zeros((len(places), 3)),
+            forces=np.zeros((len(places), 3)),
+            gravity=np.zeros(3),
+            pressures=(),
+            vertex_nodes=np.searchsorted(
+                found, _flat(2 * split * grid.vertices, grid.span, split)
+            ).astype(np.int64),
+            edge=size,
+            split=split,
+        )
+        spread = _Spread(grid, places, split)
+        return model._with_clamps(setup, spread)._with_loads(setup, grid, spread)
+
+    @cached_property
+    def volumes(self) -> Floats:
+        """Volume of each brick in m³, (m,)."""
+        return np.full(len(self.bricks), self.edge**3)
+
+    @cached_property
+    def weights(self) -> Floats:
+        """Weight at each node in N, consistent with the shape functions, (n, 3)."""
+        shares = {
+            8: np.full(8, 1 / 8),
+            20: np.repeat([-1 / 8, 1 / 6], [8, 12]),
+            27: np.repeat([1 / 216, 4 / 216, 16 / 216, 64 / 216], [8, 12, 6, 1]),
+        }[self.bricks.shape[1]]
+        density = np.array([material.density for material in self.materials])[self.parts]
+        mass = np.zeros(len(self.nodes))
+        np.add.at(mass, self.bricks, (density * self.volumes)[:, None] * shares)
+        return np.outer(mass, self.gravity)
+
+    def _with_clamps(self, setup: Setup, spread: _Spread) -> Self:
+        fixed, values = self.fixed.copy(), self.values.copy()
+        for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
+            moved = np.zeros_like(setup.mesh.vertices)
+            moved[vertices] = prescribed(clamp, setup.mesh.vertices[vertices])
+            held = spread.where_all(vertices)
+            for axis in clamp.axes:
+                column = "xyz".index(axis)
+                fixed[held, column] = True
+                values[held, column] = spread.interpolate(moved[:, column], held)
+        return replace(self, fixed=fixed, values=values)
+
+    def _with_loads(self, setup: Setup, grid: _Lattice, spread: _Spread) -> Self:
+        forces, gravity = self.forces.copy(), self.gravity.copy()
+        pressures: list[FacePressure] = []
+        design, mesh = setup.design, setup.mesh
+        for index, load in enumerate(design.loads):
+            factor = 1.0 if load.history is None else load.history.factor[-1]
+            if isinstance(load, Gravity):
+                down = np.asarray(load.direction) / np.linalg.norm(load.direction)
+                gravity += factor * load.value * down
+            elif isinstance(load, Pressure):
+                chosen = mesh.cavities if load.cavity == "all" else [mesh.cavities[load.cavity]]
+                for cavity in chosen:
+                    faces = grid.split_faces(cavity.triangles, self.split)
+                    pressures.append(FacePressure(faces, factor * load.value))
+            elif isinstance(load, Force):
+                vertices = vertices_in(load.region, mesh, design.shapes, f"loads[{index}]")
+                forces += factor * spread.share(vertices, np.asarray(load.value))
+            elif isinstance(load, Traction):
+                vertices = vertices_in(load.region, mesh, design.shapes, f"loads[{index}]")
+                inside = np.zeros(len(mesh.vertices), dtype=bool)
+                inside[vertices] = True
+                loaded = mesh.triangles[inside[mesh.triangles].all(axis=1)]
+                faces = grid.split_faces(loaded, self.split)
+                if isinstance(load.value, float):
+                    pressures.append(FacePressure(faces, factor * load.value))
+                else:
+                    forces += factor * self._traction(faces, np.asarray(load.value))
+        return replace(self, forces=forces, gravity=gravity, pressures=tuple(pressures))
+
+    def face_nodes(self, faces: Ints) -> Ints:
+        """Nodes of faces (f, 4, 8 or 9): corners, then middles of edges, then center."""
+        count = {8: 4, 20: 8, 27: 9}[self.bricks.shape[1]]
+        return self.bricks[faces[:, :1], _FACE_NODES[faces[:, 1], :count]]
+
+    @property
+    def face_shares(self) -> Floats:
+        """Share of each node of a face in an even load, in the order of :meth:`face_nodes`."""
+        return {
+            8: np.full(4, 1 / 4),
+            20: np.repeat([-1 / 12, 1 / 3], [4, 4]),
+            27: np.repeat([1 / 36, 4 / 36, 16 / 36], [4, 4, 1]),
+        }[self.bricks.shape[1]]
+
+    def _traction(self, faces: Ints, traction: Floats) -> Floats:
+        nodes = self.face_nodes(faces)
+        area = np.zeros(len(self.nodes))
+        np.add.at(area, nodes, np.tile(self.edge**2 * self.face_shares, (len(nodes), 1)))
+        return np.outer(area, traction)
+
+
+def _face_nodes() -> Ints:
+    """Nodes of each face of a 27-node brick: corners in turn, edges in turn, center."""
+    number = {tuple(half): index for index, half in enumerate(_HALVES.tolist())}
+    rows = []
+    for face in FACES:
+        corners = 2 * CORNERS[list(face)]
+        edges = (corners + np.roll(corners, -1, axis=0)) // 2
+        row = [*corners, *edges, corners.sum(axis=0) // 4]
+        rows.append([number[tuple(each.tolist())] for each in row])
+    return np.array(rows)
+
+
+_FACE_NODES: Final = _face_nodes()
+
+
+def prescribed(clamp: Clamp, points: Floats) -> Floats:
+    """Displacement in m that a clamp ends up giving to points in m, (n, 3)."""
+    moved = np.zeros_like(points)
+    motion = clamp.motion
+    if motion is None:
+        return moved
+    factor = 1.0 if motion.history is None else motion.history.factor[-1]
+    if motion.rotation is not None:
+        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
+        arms = points - np.asarray(motion.rotation.center)
+        angle = factor * motion.rotation.angle
+        along = np.outer(arms @ axis, axis)
+        moved += (np.cos(angle) - 1) * (arms - along) + np.sin(angle) * np.cross(axis, arms)
+    return moved + factor * np.asarray(motion.displacement)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lattice:
+    """Voxels and vertices on the integer lattice of a mesh."""
+
+    origin: Floats
+    size: float
+    span: Ints
+    vertices: Ints
+    cells: Ints
+    parts: Ints
+
+    @classmethod
+    def of(cls, setup: Setup) -> Self:
+        mesh = setup.mesh
+        if mesh.voxel_size is None:
+            raise SimulationError(
+                "mesh", "is not made of voxels", "compare designs, or solids sampled as voxels"
+            )
+        origin = mesh.vertices.min(axis=0)
+        vertices = np.rint((mesh.vertices - origin) / mesh.voxel_size).astype(np.int64)
+        cells = vertices[mesh.tets].reshape(-1, 20, 3).min(axis=1)
+        parts = mesh.tet_part[::5].astype(np.int64) - 1
+        return cls(origin, mesh.voxel_size, vertices.max(axis=0), vertices, cells, parts)
+
+    def split_faces(self, triangles: NDArray[np.integer], split: int) -> Ints:
+        """Rows (brick, face) of the faces that triangles of the surface cover."""
+        corners = self.vertices[triangles]
+        low = corners.min(axis=1)
+        axis = np.argmin(np.ptp(corners, axis=1), axis=1)
+        sides = corners[:, 1:] - corners[:, :1]
+        normal = np.cross(sides[:, 0], sides[:, 1])
+        along = np.take_along_axis(normal, axis[:, None], axis=1)[:, 0] > 0
+        cell = low - np.eye(3, dtype=np.int64)[axis] * along[:, None]
+        number = {tuple(each): index for index, each in enumerate(self.cells.tolist())}
+        coarse = {
+            (number[tuple(each)], int(way), bool(up))
+            for each, way, up in zip(cell.tolist(), axis, along, strict=True)
+        }
+        fine = np.arange(split**3).reshape(split, split, split)
+        rows: list[tuple[int, int]] = []
+        for voxel, way, up in sorted(coarse):
+            layer = np.take(fine, split - 1 if up else 0, axis=way).ravel()
+            rows.extend((voxel * split**3 + brick, _FACE_OF[way, up]) for brick in layer.tolist())
+        return np.array(rows, dtype=np.int64).reshape(-1, 2)
+
+
+class _Spread:
+    """From flags and forces at vertices of voxels to nodes of the split grid."""
+
+    def __init__(self, grid: _Lattice, places: Ints, split: int) -> None:
+        self._count = len(places)
+        unit = 2 * split
+        number = np.full(grid.span + 1, -1)
+        number[tuple(grid.vertices.T)] = np.arange(len(grid.vertices))
+        low, fraction = np.divmod(places, unit)
+        self._corners = np.full((self._count, 8), -1)
+        self._weights = np.zeros((self._count, 8))
+        for column, steps in enumerate(product((0, 1), repeat=3)):
+            step = np.array(steps)
+            weight = np.where(step, fraction / unit, 1 - fraction / unit).prod(axis=1)
+            used = weight > 0
+            self._corners[used, column] = number[tuple((low[used] + step).T)]
+            self._weights[:, column] = weight
+
+    def where_all(self, vertices: Iterable[int] | NDArray[np.integer]) -> Ints:
+        """Nodes for which all corners of the edge, face or voxel around them are in a set."""
+        inside = np.zeros(self._corners.max() + 2, dtype=bool)
+        inside[np.asarray(vertices, dtype=np.int64)] = True
+        return np.flatnonzero((inside[self._corners] | (self._weights == 0)).all(axis=1))
+
+    def interpolate(self, values: Floats, nodes: Ints) -> Floats:
+        """Values at vertices, trilinear at nodes."""
+        filled: Floats = (self._weights[nodes] * values[self._corners[nodes]]).sum(axis=1)
+        return filled
+
+    def share(self, vertices: NDArray[np.integer], total: Floats) -> Floats:
+        """A force shared by vertices, spread over the edges, faces and voxels that they span."""
+        nodes = self.where_all(vertices)
+        corners, weights = self._corners[nodes], self._weights[nodes]
+        sums = np.zeros(self._corners.max() + 2)
+        np.add.at(sums, corners, weights)
+        shares = (weights / np.where(sums > 0, sums, 1.0)[corners]).sum(axis=1) / len(vertices)
+        forces = np.zeros((self._count, 3))
+        forces[nodes] = np.outer(shares, total)
+        return forces
+
+
+def _split_cells(cells: Ints, split: int) -> Ints:
+    inner = np.array(list(product(range(split), repeat=3)))
+    fine: Ints = (cells[:, None, :] * split + inner).reshape(-1, 3)
+    return fine
+
+
+def _flat(keys: Ints, span: Ints, split: int) -> Ints:
+    counts = 2 * split * span + 1
+    flat: Ints = (keys[:, 0] * counts[1] + keys[:, 1]) * counts[2] + keys[:, 2]
+    return flat
+
+
+def _unflat(flat: Ints, span: Ints, split: int) -> Ints:
+    counts = 2 * split * span + 1
+    rest, z = np.divmod(flat, counts[2])
+    x, y = np.divmod(rest, counts[1])
+    return np.column_stack((x, y, z))
