@@ -139,5 +139,17 @@ def test_an_offset_of_the_load_cell_is_found():
         assert toe.young == pytest.approx(60e3)
 
 
+def test_the_uncertainty_of_a_toe_is_its_scatter_over_specimens():
+    strain = np.linspace(0.01, 1.0, 60)
+    stretch = 1.0 + strain
+    toes = [
+        Curve(strain, 20e3 * (stretch - stretch**-2) + 200.0 * noise).toe()
+        for noise in np.random.default_rng(5).standard_normal((200, 60))
+    ]
+    # 200 specimens know their standard deviation to 5 %; three times that.
+    scatter = np.std([toe.strain for toe in toes])
+    assert np.mean([toe.uncertainty for toe in toes]) == pytest.approx(scatter, rel=0.15)
+
+
 def test_few_points_at_the_start_tell_no_toe():
     assert Curve(np.linspace(0.2, 3.0, 20), np.linspace(5e3, 60e3, 20)).toe() is None

@@ -170,7 +170,8 @@ def _show_fit(answer: CouponFit, chosen: str) -> None:
     for curve, raw, toe in zip(answer.curves, answer.measured, answer.toes, strict=True):
         said = f"{curve.name}: {curve.mode}, {len(curve.strain)} of {len(raw.strain)} points"
         if toe is not None:
-            said += f", toe {toe.strain:.2%} strain (load-cell offset {_kpa(toe.offset)})"
+            said += f", toe ({100.0 * toe.strain:.2f} ± {100.0 * toe.uncertainty:.2f}) % strain"
+            said += f" or load-cell offset {_kpa(toe.offset)}"
         say(plain(said))
     rows = [
         [

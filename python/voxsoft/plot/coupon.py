@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _COLORS: Final = (*SERIES, GRAY, BLACK)
-_DASHES: Final = ("-", "--", "-.", ":")
+_DASHES: Final = ("--", "-.", ":")
 _SHAPES: Final[dict[Mode, str]] = {"uniaxial": "o", "equibiaxial": "s", "planar": "^"}
 _SAMPLES: Final = 200
 # The start that beams in bending feel.
@@ -66,7 +66,8 @@ def plot_coupons(fit: CouponFit, model: str | None = None) -> Figure:
     plain_axes(whole, x="strain", y=scale.label("engineering stress"), title="all models")
     _draw_curves(start, fit, everything, chosen, scale, _SMALL)
     plain_axes(start, x="strain", y=scale.label("engineering stress"), title="the start")
-    plain_legend(whole, loc="upper left")
+    handles, labels = whole.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False, fontsize=9)
     _draw_errors(errors, fit, everything, chosen, stresses)
     _draw_modes(modes, fit, chosen, scale)
     return figure
@@ -75,7 +76,7 @@ def plot_coupons(fit: CouponFit, model: str | None = None) -> Figure:
 def _legend_order(fit: CouponFit, chosen: ModelFit) -> list[tuple[ModelFit, str, str]]:
     """Pair every model with its color and dashes; the same model looks the same in all panels."""
     looks = [
-        (found, _COLORS[i % len(_COLORS)], _DASHES[i % len(_DASHES)])
+        (found, _COLORS[i % len(_COLORS)], "-" if found is chosen else _DASHES[i % len(_DASHES)])
         for i, found in enumerate(fit.models)
     ]
     return sorted(looks, key=lambda look: look[0] is not chosen)
@@ -165,17 +166,29 @@ def _draw_modes(axes: Axes, fit: CouponFit, chosen: ModelFit, scale: Scale) -> N
     The panel ends at three times the largest measured stress: a model that goes off there in a mode
     that nobody measured is not to be trusted in it.
     """
-    top = 3.0 * max(float(np.abs(curve.stress).max()) for curve in fit.curves) * scale.factor
+    limit = 3.0 * max(float(np.abs(curve.stress).max()) for curve in fit.curves) * scale.factor
+    top = 0.0
     largest = max(float(curve.stretch.max()) for curve in fit.curves)
     for mode, color in zip(MODES, SERIES, strict=False):
         low = 0.7
         stretch = np.linspace(low, max(largest, 1.3), _SAMPLES)
         stress = nominal_stress(chosen.material, stretch, mode) * scale.factor
+        top = max(top, min(1.1 * float(np.nanmax(stress)), limit))
         stable = stable_range(chosen.material, mode, low, float(stretch[-1])).stable
         inside = (stretch >= stable[0] * (1.0 - 1e-9)) & (stretch <= stable[1] * (1.0 + 1e-9))
         axes.plot(stretch - 1.0, stress, ":", color=color, linewidth=1.2)
         axes.plot(
             stretch - 1.0, np.where(inside, stress, np.nan), color=color, linewidth=1.8, label=mode
+        )
+    for curve in fit.curves:
+        axes.plot(
+            curve.strain,
+            curve.stress * scale.factor,
+            _SHAPES[curve.mode],
+            color=GRAY,
+            markerfacecolor="none",
+            markersize=3,
+            zorder=1,
         )
     axes.axvspan(*_span(list(fit.curves), np.inf), color=PALE, alpha=0.3, linewidth=0)
     axes.set_ylim(-0.5 * top, top)

@@ -38,6 +38,8 @@ class Toe(NamedTuple):
         Its initial slope as a Young's modulus in Pa.
     strain
         Where the line's initial tangent meets zero stress, ``-offset/slope``: the slack.
+    uncertainty
+        Standard uncertainty of that strain, from the scatter about the line.
     points
         How many points it was drawn through.
     """
@@ -45,6 +47,7 @@ class Toe(NamedTuple):
     offset: float
     young: float
     strain: float
+    uncertainty: float
     points: int
 
 
@@ -142,9 +145,15 @@ class Curve:
         (offset, shear), *_ = np.linalg.lstsq(columns, self.stress[start], rcond=None)
         if shear <= 0.0:
             return None
-        slope = _initial_slope(self.mode) * shear
+        slope, points = _initial_slope(self.mode) * shear, int(np.count_nonzero(start))
+        scatter = self.stress[start] - columns @ np.array([offset, shear])
+        variance = scatter @ scatter / (points - 2) * np.linalg.inv(columns.T @ columns)[0, 0]
         return Toe(
-            float(offset), float(3.0 * shear), float(-offset / slope), int(np.count_nonzero(start))
+            float(offset),
+            float(3.0 * shear),
+            float(-offset / slope),
+            float(np.sqrt(max(variance, 0.0)) / slope),
+            points,
         )
 
     def corrected(self, correction: ToeCorrection = "strain") -> Curve:

@@ -23,6 +23,8 @@ _AS_GOOD: Final = 1.1
 _FIRST_INVARIANT: Final = ("neo-hookean", "gent", "yeoh")
 # A strain of slack that changes moduli by more than a tenth, for a curve whose first 30 % count.
 _LARGE_TOE: Final = 0.03
+# A toe that no measurement of strain resolves.
+_SMALL_TOE: Final = 1e-3
 # No rubber is softer or stiffer than this, in Pa.
 _RUBBER: Final = (1e2, 1e8)
 
@@ -231,6 +233,7 @@ class CouponFit:
                     "strain": [float(curve.strain.min()), float(curve.strain.max())],
                     "elongation_at_break": curve.elongation_at_break,
                     "toe_strain": None if toe is None else toe.strain,
+                    "toe_uncertainty": None if toe is None else toe.uncertainty,
                     "offset": None if toe is None else toe.offset,
                 }
                 for curve, toe in zip(self.curves, self.toes, strict=True)
@@ -299,6 +302,11 @@ def _about_the_start(curve: Curve, toe: Toe | None, correction: ToeCorrection) -
     found = []
     if toe is None:
         found.append(f"{curve.name}: too few points below 30 % strain to tell the toe")
+    elif correction != "off" and _SMALL_TOE < abs(toe.strain) < 2.0 * toe.uncertainty:
+        found.append(
+            f"{curve.name}: the toe of {toe.strain:.1%} strain is no larger than its own "
+            f"uncertainty of {toe.uncertainty:.1%}: without correction (off) the fit may be better"
+        )
     elif abs(toe.strain) > _LARGE_TOE:
         done = {"strain": "taken off the strain", "stress": "taken off the stress"}
         found.append(
