@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from voxsoft.calibration import Calibration, Experiment, Measurement, calibrate
+    from voxsoft.comparison import Comparison, compare
     from voxsoft.design import (
         Clamp,
         Constraint,
@@ -70,6 +71,7 @@ if TYPE_CHECKING:
 
 _HOMES: Final = {
     "voxsoft.calibration": ("Calibration", "Experiment", "Measurement", "calibrate"),
+    "voxsoft.comparison": ("Comparison", "compare"),
     "voxsoft.design": (
         "Clamp",
         "Constraint",

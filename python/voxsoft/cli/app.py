@@ -9,6 +9,7 @@ import typer
 
 from voxsoft.cli.calibrate import calibrate
 from voxsoft.cli.check import check
+from voxsoft.cli.compare import compare
 from voxsoft.cli.export import export
 from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
@@ -24,7 +25,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_show_locals=False,
 )
-for command in (new, check, mesh, run, calibrate, sweep, optimize, export):
+for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, export):
     app.command()(command)
 app.add_typer(material)
 

@@ -98,6 +98,8 @@ class BrickModel:
         Pressures on faces.
     vertex_nodes
         The node at each vertex of the voxel mesh.
+    clamp_nodes
+        The nodes that each clamp holds.
     edge
         Edge of a brick in m.
     split
@@ -114,6 +116,7 @@ class BrickModel:
     gravity: Floats
     pressures: tuple[FacePressure, ...] = field(repr=False)
     vertex_nodes: Ints = field(repr=False)
+    clamp_nodes: tuple[Ints, ...] = field(repr=False)
     edge: float
     split: int
 
@@ -166,6 +169,7 @@ class BrickModel:
             vertex_nodes=np.searchsorted(
                 found, _flat(2 * split * grid.vertices, grid.span, split)
             ).astype(np.int64),
+            clamp_nodes=(),
             edge=size,
             split=split,
         )
@@ -192,15 +196,17 @@ class BrickModel:
 
     def _with_clamps(self, setup: Setup, spread: _Spread) -> Self:
         fixed, values = self.fixed.copy(), self.values.copy()
+        nodes: list[Ints] = []
         for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
             moved = np.zeros_like(setup.mesh.vertices)
             moved[vertices] = prescribed(clamp, setup.mesh.vertices[vertices])
             held = spread.where_all(vertices)
+            nodes.append(held)
             for axis in clamp.axes:
                 column = "xyz".index(axis)
                 fixed[held, column] = True
                 values[held, column] = spread.interpolate(moved[:, column], held)
-        return replace(self, fixed=fixed, values=values)
+        return replace(self, fixed=fixed, values=values, clamp_nodes=tuple(nodes))
 
     def _with_loads(self, setup: Setup, grid: _Lattice, spread: _Spread) -> Self:
         forces, gravity = self.forces.copy(), self.gravity.copy()

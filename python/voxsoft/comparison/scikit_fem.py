@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from itertools import product
 from typing import Any, Final
 
@@ -64,12 +64,7 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     SimulationError
         A material that is not hyperelastic.
     """
-    try:
-        import skfem  # noqa: F401 - asked for here, used below
-    except ImportError as error:
-        raise MissingPackageError(
-            "scikit-fem", "is not installed", "pip install 'voxsoft[fea]'"
-        ) from error
+    release = scikit_fem_version()
     started = time.perf_counter()
     bricks = _Bricks(model)
     reached, moved = _follow(bricks, started + time_limit, time_limit)
@@ -78,7 +73,7 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     whole = reached == 1.0
     return OutsideAnswer(
         code="scikit-fem",
-        version=version("scikit-fem"),
+        version=release,
         element="Q2-P1",
         status="ok" if whole else "not-converged",
         message=(
@@ -93,6 +88,22 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
         unknowns=int((~model.fixed).sum()),
         seconds=time.perf_counter() - started,
     )
+
+
+def scikit_fem_version() -> str:
+    """Version of scikit-fem.
+
+    Raises
+    ------
+    MissingPackageError
+        It is not installed.
+    """
+    try:
+        return version("scikit-fem")
+    except PackageNotFoundError as error:
+        raise MissingPackageError(
+            "scikit-fem", "is not installed", "pip install 'voxsoft[fea]'"
+        ) from error
 
 
 def _follow(bricks: _Bricks, deadline: float, time_limit: float) -> tuple[float, Floats]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 if TYPE_CHECKING:
     from voxsoft.files.calibrations import write_calibration
     from voxsoft.files.checks import check_design, check_mesh
+    from voxsoft.files.comparison_report import write_comparison
     from voxsoft.files.designs import load, save
     from voxsoft.files.exports import export
     from voxsoft.files.family_file import write_family
@@ -23,6 +24,7 @@ __all__ = [
     "read_mesh",
     "save",
     "write_calibration",
+    "write_comparison",
     "write_family",
     "write_mesh",
     "write_run",
@@ -38,6 +40,7 @@ _HOMES: Final = {
     "read_mesh": "meshes",
     "save": "designs",
     "write_calibration": "calibrations",
+    "write_comparison": "comparison_report",
     "write_family": "family_file",
     "write_mesh": "meshes",
     "write_run": "run_folder",

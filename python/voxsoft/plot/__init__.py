@@ -16,16 +16,28 @@ Examples
 
 from voxsoft.plot.body import plot_body
 from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
+from voxsoft.plot.comparison import (
+    plot_agreement,
+    plot_convergence,
+    plot_errors,
+    plot_shapes,
+    plot_times,
+)
 from voxsoft.plot.coupon import plot_coupons
 from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
+    "plot_agreement",
     "plot_body",
+    "plot_convergence",
     "plot_coupons",
+    "plot_errors",
     "plot_fitness",
     "plot_history",
     "plot_pareto",
     "plot_profiles",
     "plot_scatter",
     "plot_shape",
+    "plot_shapes",
+    "plot_times",
 ]

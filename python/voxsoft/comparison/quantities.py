@@ -1,0 +1,94 @@
+"""The numbers that a comparison puts side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import metrics
+from voxsoft.comparison.bricks import BrickModel
+from voxsoft.comparison.outside import OutsideAnswer
+from voxsoft.simulation import Result, Setup
+from voxsoft.units import format_quantity
+
+Floats = NDArray[np.float64]
+
+
+class Quantity(NamedTuple):
+    """A number in SI units.
+
+    Attributes
+    ----------
+    value
+        The number.
+    kind
+        A key of :data:`voxsoft.units.KINDS`.
+    scale
+        What a difference is measured against: the length of the vector that the number is a
+        component of, or the size of the number.
+    """
+
+    value: float
+    kind: str
+    scale: float
+
+
+Quantities = Mapping[str, Quantity]
+
+
+def in_words(value: float, kind: str) -> str:
+    """Write an SI number with a unit that suits its size, to four digits.
+
+    Examples
+    --------
+    >>> in_words(0.5, "angle"), in_words(-0.0123456, "length")
+    ('28.65 deg', '-12.35 mm')
+    """
+    if kind == "angle":
+        return f"{np.degrees(value):.4g} deg"
+    return format_quantity(float(f"{value:.4g}"), kind)
+
+
+def of_result(setup: Setup, result: Result) -> Quantities:
+    """Displacements of probes, reactions of clamps, volumes of cavities of a run of our own."""
+    held = [result.reactions[vertices].sum(axis=0) for vertices in setup.clamped]
+    return _quantities(setup, result.positions, held)
+
+
+def of_answer(setup: Setup, model: BrickModel, answer: OutsideAnswer) -> Quantities:
+    """The same of an answer of an outside code."""
+    forces = np.zeros_like(model.nodes)
+    forces[answer.held] = answer.reactions
+    held = [forces[nodes].sum(axis=0) for nodes in model.clamp_nodes]
+    return _quantities(setup, setup.mesh.vertices + answer.displacements, held)
+
+
+def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantities:
+    found: dict[str, Quantity] = {}
+    rest = setup.mesh.vertices
+    for name, place in setup.places.items():
+        moved = metrics.mean_displacement(rest, positions, place.vertices, place.weights)
+        found |= _components(name, moved, "length")
+        flat = np.ptp(rest[place.vertices], axis=0)
+        if np.count_nonzero(flat > 0) > 1 and setup.design.probes[name].point is None:
+            turned = metrics.mean_rotation(rest, positions, place.vertices)
+            found[f"{name} rotation"] = Quantity(turned, "angle", abs(turned))
+    for index, force in enumerate(held):
+        name = "reaction" if len(held) == 1 else f"reaction of clamp {index}"
+        found |= _components(name, force, "force")
+    for index, cavity in enumerate(setup.mesh.cavities):
+        volume = metrics.enclosed_volume(cavity.triangles, positions)
+        grown = volume - cavity.volume
+        found[f"growth of cavity {index}"] = Quantity(grown, "volume", abs(grown))
+    return found
+
+
+def _components(name: str, vector: Floats, kind: str) -> dict[str, Quantity]:
+    size = float(np.linalg.norm(vector))
+    return {
+        f"{name} {axis}": Quantity(float(value), kind, size)
+        for axis, value in zip("xyz", vector, strict=True)
+    }

@@ -1,0 +1,312 @@
+"""One call from a design to its comparison."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from voxsoft.calibration import Experiment, Measurement
+from voxsoft.comparison.bricks import BrickModel
+from voxsoft.comparison.comparison import Comparison, Judged, Run
+from voxsoft.comparison.quantities import of_answer, of_result
+from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
+from voxsoft.design import Design, Solver
+from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
+from voxsoft.mesh import Mesh
+from voxsoft.simulation import Result, Setup, simulate
+from voxsoft.units import format_quantity
+from voxsoft.voxels import Voxels
+
+#: An outside code: the first that is installed, one by name, or none.
+Outside = Literal["auto", "calculix", "scikit-fem", "none"]
+OUTSIDE: Final[tuple[Outside, ...]] = ("auto", "calculix", "scikit-fem", "none")
+
+#: Solvers of our own, and seconds that each run may take, unless asked otherwise.
+DEFAULT_SOLVERS: Final = ("xpbd", "statics")
+DEFAULT_TIME_LIMIT: Final = 300.0
+DEFAULT_SPLITS: Final = (1, 2)
+
+#: Called before each run with its label, how many runs are done, and how many there are.
+ProgressCallback = Callable[[str, int, int], None]
+
+
+def compare(
+    design: Design,
+    *,
+    solvers: Sequence[str] = DEFAULT_SOLVERS,
+    outside: Outside = "auto",
+    voxel_sizes: Sequence[float] | None = None,
+    splits: Sequence[int] = DEFAULT_SPLITS,
+    measured: Sequence[Measurement] = (),
+    time_limit: float = DEFAULT_TIME_LIMIT,
+    progress: ProgressCallback | None = None,
+) -> Comparison:
+    """Solve a design in several ways, and estimate how far each is from the truth.
+
+    All solvers and the outside code answer on the voxels of the design. The last of the solvers
+    also answers on the same voxels split finer, and on other sizes of voxels, which may change the
+    shape; so does the outside code on split voxels. From each of these series the discretization
+    error is estimated (:func:`voxsoft.comparison.discretization_error`). A run that fails, takes
+    too long or does not come to rest is listed with what it said, and the others go on.
+
+    Parameters
+    ----------
+    design
+        What to compare, as it comes to rest: choices of its own about the solver do not count.
+    solvers
+        Of our own, ``"xpbd"`` and ``"statics"``; the estimates are for the last.
+    outside
+        ``"calculix"``, ``"scikit-fem"``, ``"auto"`` (the first of the two that is installed;
+        default), or ``"none"``.
+    voxel_sizes
+        Sizes of voxels in m that the last solver answers on besides the design's own; default: one
+        half as large. An empty list for none.
+    splits
+        Bricks along the edge of a voxel, rising; default 1 and 2.
+    measured
+        Measurements of the real body.
+    time_limit
+        Seconds that each run may take.
+    progress
+        Called before each run with its label, how many are done and how many there are.
+
+    Raises
+    ------
+    DesignError
+        A solver that does not exist, or a design that cannot be solved: no clamp, a probe outside
+        the body, ...
+    MeasurementError
+        A measurement that does not fit the design.
+    MissingPackageError
+        The outside code that is asked for is not installed.
+    SimulationError
+        No solver at all, or splits that do not rise from 1.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> beam = families.beam().model_copy(update={"voxel_size": 10e-3})
+    >>> found = compare(beam, solvers=["xpbd"], outside="none", voxel_sizes=[5e-3], splits=[1])
+    >>> [run.label for run in found.runs]
+    ['xpbd, 10 mm', 'xpbd, 5 mm']
+    >>> found.estimates[0].runs
+    ('xpbd, 10 mm', 'xpbd, 5 mm')
+    """
+    if not solvers:
+        raise SimulationError("solvers", "names none", 'name "xpbd", "statics" or both')
+    for method in solvers:
+        Solver(method=method)  # Refuses a name that is no solver before anything runs.
+    if list(splits) != sorted(set(splits)) or not splits or splits[0] < 1:
+        raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
+    code = _outside(outside)
+    plain = design.model_copy(update={"solver": Solver()})
+    base = Setup.of(plain, may_fly=False)
+    experiments = [Experiment(plain, measurement) for measurement in measured]
+    sizes = [design.voxel_size / 2] if voxel_sizes is None else list(voxel_sizes)
+    tasks = list(_tasks(plain, base, tuple(solvers), code, sizes, tuple(splits), time_limit))
+    runs: list[Run] = []
+    for index, task in enumerate(tasks):
+        if progress is not None:
+            progress(task.label, index, len(tasks))
+        runs.append(_run(task, design.voxel_size, experiments))
+    note = "" if code or outside == "none" else _NO_OUTSIDE
+    judged = tuple(Judged.of(experiment) for experiment in experiments)
+    return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note)
+
+
+_NO_OUTSIDE = (
+    "no outside code is installed: apt install calculix-ccx (Debian, Ubuntu), or "
+    "pip install 'voxsoft[fea]' for the one with scikit-fem"
+)
+
+
+#: Solver and mesh of a run, and its result.
+_Solved = tuple[tuple[str, Mesh], Result]
+
+
+@dataclass(frozen=True)
+class _Task:
+    """A run that is still to be made."""
+
+    label: str
+    code: str
+    voxel_size: float
+    split: int
+    solve: Callable[[], Any]
+
+
+def _outside(asked: Outside) -> str | None:
+    """Name of the outside code to use."""
+    # `files` lies above `comparison` in the layers, and only `files` may touch the disk; this
+    # reaches up when called, so that no import runs in a circle.
+    from voxsoft.files.calculix import calculix_path
+
+    if asked not in OUTSIDE:
+        known = ", ".join(OUTSIDE)
+        raise SimulationError("outside", f'"{asked}" is not a code', f"known are {known}")
+    probes: dict[str, Callable[[], object]] = {
+        "calculix": calculix_path,
+        "scikit-fem": scikit_fem_version,
+    }
+    if asked in probes:
+        probes[asked]()
+        return asked
+    for name, look in probes.items() if asked == "auto" else ():
+        try:
+            look()
+        except MissingPackageError:
+            continue
+        return name
+    return None
+
+
+def _tasks(
+    design: Design,
+    base: Setup,
+    solvers: tuple[str, ...],
+    code: str | None,
+    sizes: list[float],
+    splits: tuple[int, ...],
+    time_limit: float,
+) -> Iterator[_Task]:
+    own = _length(design.voxel_size)
+    last = solvers[-1]
+    before: list[_Solved] = []
+
+    def solving(method: str, setup: Callable[[], Setup]) -> Callable[[], Any]:
+        return lambda: _solve(setup(), method, time_limit, before)
+
+    for method in solvers:
+        label = f"{method}, {own}"
+        yield _Task(label, method, design.voxel_size, 1, solving(method, lambda: base))
+    for split in splits:
+        if split > 1:
+            finer = f"{last}, {own} split {split}"
+            setup = partial(split_setup, base, split)
+            yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
+    for size in sizes:
+        if size != design.voxel_size:
+            other = design.model_copy(update={"voxel_size": size})
+            setup = partial(Setup.of, other, may_fly=False)
+            yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
+    for split in splits if code else ():
+        whole = "" if split == 1 else f" split {split}"
+        label = f"{'CalculiX' if code == 'calculix' else code}, {own}{whole}"
+        solve = partial(_solve_outside, base, str(code), split, time_limit)
+        yield _Task(label, str(code), design.voxel_size, split, solve)
+
+
+def _length(size: float) -> str:
+    return format_quantity(float(f"{size:.6g}"), "length")
+
+
+def split_setup(setup: Setup, split: int) -> Setup:
+    """The same body on voxels split along each axis: no corner of a voxel moves.
+
+    Parameters
+    ----------
+    setup
+        A design made ready.
+    split
+        New voxels along the edge of an old one.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> fine = split_setup(Setup.of(families.beam()), 2)
+    >>> len(fine.mesh.tets) // 5, fine.mesh.voxel_size
+    (640, 0.0025)
+    """
+    from voxsoft.design.discretize import voxels_of
+
+    voxels = voxels_of(setup.design)
+    cells = voxels.array
+    for axis in range(3):
+        cells = np.repeat(cells, split, axis=axis)
+    finer = Voxels.from_array(cells, voxels.voxel_size / split, voxels.origin)
+    found = Setup(setup.design, finer.mesh())
+    found.check(may_fly=False)
+    return found
+
+
+def _solve(
+    setup: Setup, method: str, time_limit: float, before: list[_Solved]
+) -> tuple[Setup, Result]:
+    """Solve, unless the same voxels were solved before: places and loads follow from the mesh."""
+    found = next((result for other, result in before if other == (method, setup.mesh)), None)
+    if found is not None:
+        return setup, found
+    end = time.monotonic() + time_limit
+
+    def watch(steps: int, _: float, residual: float) -> None:
+        if time.monotonic() > end:
+            raise SimulationError(
+                method,
+                f"did not come to rest within {time_limit:g} s ({steps} steps, residual "
+                f"{residual:.1e})",
+                "allow more time, or take larger voxels",
+            )
+
+    result = simulate(setup, method=method, progress=watch)
+    before.append(((method, setup.mesh), result))
+    return setup, result
+
+
+def _solve_outside(setup: Setup, code: str, split: int, time_limit: float) -> Any:  # noqa: ANN401
+    if code == "calculix":
+        from voxsoft.files.calculix import run_calculix
+
+        model = BrickModel.of(setup, split=split, nodes=20)
+        return setup, model, run_calculix(model, time_limit=time_limit)
+    model = BrickModel.of(setup, split=split, nodes=27)
+    return setup, model, run_scikit_fem(model, time_limit=time_limit)
+
+
+def _run(task: _Task, voxel_size: float, experiments: Sequence[Experiment]) -> Run:
+    """Make a run; an error becomes its message."""
+    started = time.perf_counter()
+    known: dict[str, Any] = {
+        "label": task.label,
+        "code": task.code,
+        "voxel_size": task.voxel_size,
+        "split": task.split,
+    }
+    try:
+        solved = task.solve()
+    except VoxSoftError as error:
+        seconds = time.perf_counter() - started
+        return Run(**known, status="failed", message=str(error), seconds=seconds)
+    if len(solved) == 2:
+        setup, result = solved
+        positions, quantities = result.positions, of_result(setup, result)
+        known |= {
+            "status": result.status,
+            "message": result.message,
+            "seconds": result.seconds,
+            "cells": len(setup.mesh.tets) // 5,
+            "detail": f"residual {result.residual:.1e}",
+            "result": result,
+        }
+    else:
+        setup, model, answer = solved
+        positions, quantities = (
+            setup.mesh.vertices + answer.displacements,
+            of_answer(setup, model, answer),
+        )
+        known |= {
+            "status": answer.status,
+            "message": answer.message,
+            "seconds": answer.seconds,
+            "cells": len(model.bricks),
+            "detail": f"{answer.code} {answer.version} {answer.element}",
+        }
+    whole = task.voxel_size == voxel_size and len(positions) == len(
+        experiments[0].setup.mesh.vertices if experiments else positions
+    )
+    stations = tuple(each.seen_at(positions) for each in experiments) if whole else ()
+    return Run(**known, quantities=quantities, stations=stations)
