@@ -191,6 +191,7 @@ impl PyProblem {
             tets: rows("tets", &tets)?,
             tet_part: tet_part.as_array().to_vec(),
             tet_block: tet_block.as_array().to_vec(),
+            ..Mesh::default()
         };
         let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
         Ok(Self { mesh, problem })

@@ -16,7 +16,7 @@ use std::ops::Range;
 use crate::color::{color_order, interleave};
 use crate::lattice::Stiffness;
 use crate::vector::{Vec3, cross, dot, norm, sub};
-use crate::{LatticeMaterial, ProblemError};
+use crate::{Brick, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube};
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
 const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
@@ -29,7 +29,7 @@ const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
 ];
 
 /// The plain arrays that a body is built from.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Positions at rest in m.
     pub vertices: Vec<Vec3>,
@@ -39,6 +39,11 @@ pub struct Mesh {
     pub tet_part: Vec<u8>,
     /// The block of each tetrahedron (its voxel); blocks are numbered from 0 without gaps.
     pub tet_block: Vec<u32>,
+    /// The part of each block that is filled with material, above zero; empty means all of it.
+    /// Masses and all stiffness scale with it.
+    pub block_fraction: Vec<f64>,
+    /// Membranes on triangles.
+    pub membranes: Vec<Membrane>,
 }
 
 /// An edge constraint.
@@ -74,6 +79,9 @@ pub struct Body {
     masses: Vec<f64>,
     edges: Vec<Edge>,
     tets: Vec<Tet>,
+    bricks: Vec<Brick>,
+    hyperelastic: Vec<HyperelasticMaterial>,
+    membranes: Vec<Membrane>,
     chunk_edges: Vec<u32>,
     chunk_tets: Vec<u32>,
     colors: Vec<u32>,
@@ -83,8 +91,14 @@ pub struct Body {
 
 impl Body {
     /// Builds the body; `materials[mesh.tet_part[t]]` is the material of tetrahedron `t`.
-    pub fn new(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<Self, ProblemError> {
-        check(mesh, materials)?;
+    ///
+    /// Blocks of a hyperelastic material must be voxels, cubes of five tetrahedra along the axes.
+    pub fn new<M: Clone + Into<Material>>(
+        mesh: &Mesh,
+        materials: &[M],
+    ) -> Result<Self, ProblemError> {
+        let materials: Vec<Material> = materials.iter().cloned().map(Into::into).collect();
+        check(mesh, materials.len())?;
         let order = color_order(mesh);
         let volumes: Vec<f64> = mesh
             .tets
@@ -99,20 +113,33 @@ impl Body {
         }
 
         let mut masses = vec![0.0; mesh.vertices.len()];
+        let mut bricks = Vec::new();
+        for membrane in &mesh.membranes {
+            membrane.add_mass(&mut masses);
+        }
         let mut found: Vec<Edge> = Vec::new();
         let mut edge_index: HashMap<[u32; 2], usize> = HashMap::new();
         let (mut tets, mut edge_order) = (Vec::with_capacity(mesh.tets.len()), Vec::new());
         let (mut chunk_edges, mut chunk_tets) = (vec![0], vec![0]);
         for chunk in &order.chunks {
             let mut owned: Vec<Vec<usize>> = Vec::with_capacity(chunk.len());
+            let mut volume_constraints: Vec<Vec<Tet>> = Vec::with_capacity(chunk.len());
             for block in chunk {
                 let first_new = found.len();
                 let side = f64::cbrt(block.iter().map(|&t| volumes[t]).sum());
+                let fraction = fraction_of(mesh, block);
+                let mut constraints = Vec::with_capacity(block.len());
                 for &t in block {
-                    let material = materials[usize::from(mesh.tet_part[t])];
+                    let material = &materials[usize::from(mesh.tet_part[t])];
                     for vertex in mesh.tets[t] {
-                        masses[vertex as usize] += material.density() * volumes[t] / 4.0;
+                        masses[vertex as usize] += fraction * material.density() * volumes[t] / 4.0;
                     }
+                    let Material::Lattice(material) = *material else {
+                        continue;
+                    };
+                    let mut constraint = volume_constraint(mesh.tets[t], volumes[t], material);
+                    constraint.stiffness *= fraction;
+                    constraints.push(constraint);
                     for (pair, opposite) in TET_EDGES {
                         let ends = pair.map(|corner| mesh.tets[t][corner]);
                         let apexes = opposite.map(|corner| mesh.tets[t][corner]);
@@ -123,32 +150,62 @@ impl Body {
                         });
                         let share = dihedral(&mesh.vertices, key, apexes) / TAU;
                         let edge = &mut found[index];
-                        edge.stiffness += edge_stiffness(material, edge.length, share, side)
-                            .ok_or(ProblemError::NotVoxels { tet: t })?;
+                        edge.stiffness += fraction
+                            * edge_stiffness(material, edge.length, share, side)
+                                .ok_or(ProblemError::NotVoxels { tet: t })?;
                     }
                 }
+                if let Material::Hyperelastic(_) = materials[usize::from(mesh.tet_part[block[0]])] {
+                    let (vertices, side) = cube::corners(mesh, block)
+                        .ok_or(ProblemError::NotCubes { tet: block[0] })?;
+                    let material = u32::from(mesh.tet_part[block[0]]);
+                    bricks.push(Brick {
+                        vertices,
+                        material,
+                        side,
+                        fraction,
+                    });
+                }
                 owned.push((first_new..found.len()).collect());
+                volume_constraints.push(constraints);
             }
-            tets.extend(interleave(chunk).map(|t| {
-                let material = materials[usize::from(mesh.tet_part[t])];
-                volume_constraint(mesh.tets[t], volumes[t], material)
-            }));
+            tets.extend(interleave(&volume_constraints));
             edge_order.extend(interleave(&owned));
             chunk_edges.push(edge_order.len() as u32);
             chunk_tets.push(tets.len() as u32);
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
+        // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
+        // a neighbour, which no brick asks for.
+        let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
+            Vec::new()
+        } else {
+            let some = materials.iter().find_map(Material::hyperelastic);
+            let each = |m: &Material| m.hyperelastic().or(some).cloned();
+            materials.iter().filter_map(each).collect()
+        };
+        let young = |brick: &Brick| hyperelastic[brick.material as usize].young();
+        let brick_energy = bricks.iter().map(|b| young(b) * b.volume()).sum::<f64>();
+        let edge_energy = edges
+            .iter()
+            .map(|e| e.stiffness * e.length.powi(2))
+            .sum::<f64>();
+        let mut strain_forces = edge_forces(&edges, masses.len());
+        for brick in &bricks {
+            for vertex in brick.vertices {
+                strain_forces[vertex as usize] += young(brick) * brick.volume() / brick.side;
+            }
+        }
         Ok(Self {
-            unit_strain_force: unit_strain_force(&edges, masses.len()),
-            unit_strain_energy: edges
-                .iter()
-                .map(|e| e.stiffness * e.length.powi(2))
-                .sum::<f64>()
-                / 2.0,
+            unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
+            unit_strain_energy: (edge_energy + brick_energy) / 2.0,
             rest: mesh.vertices.clone(),
             masses,
             edges,
             tets,
+            bricks,
+            hyperelastic,
+            membranes: mesh.membranes.clone(),
             chunk_edges,
             chunk_tets,
             colors: order.colors,
@@ -180,6 +237,21 @@ impl Body {
         &self.tets
     }
 
+    /// All hyperelastic voxels, blocks of one colour after the other.
+    pub fn bricks(&self) -> &[Brick] {
+        &self.bricks
+    }
+
+    /// The material of a hyperelastic voxel.
+    pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
+        &self.hyperelastic[brick.material as usize]
+    }
+
+    /// All membranes.
+    pub fn membranes(&self) -> &[Membrane] {
+        &self.membranes
+    }
+
     /// The chunks in the order of solution: the ranges of their edges and tetrahedra.
     pub fn chunks(&self) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
         let range = |ends: &[u32], i: usize| ends[i] as usize..ends[i + 1] as usize;
@@ -192,13 +264,13 @@ impl Body {
         &self.colors
     }
 
-    /// The norm over vertices of the edge forces at a strain of one, in N: a measure of force that
+    /// The norm over vertices of the elastic forces at a strain of one, in N: a measure of force that
     /// does not need a load.
     pub fn unit_strain_force(&self) -> f64 {
         self.unit_strain_force
     }
 
-    /// The energy of all edges at a strain of one, in J.
+    /// The energy of the body at a strain of one, in J.
     pub fn unit_strain_energy(&self) -> f64 {
         self.unit_strain_energy
     }
@@ -217,7 +289,7 @@ impl Body {
     }
 }
 
-fn check(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<(), ProblemError> {
+fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
     let expected = mesh.tets.len();
     for (what, got) in [
         ("parts of tetrahedra", mesh.tet_part.len()),
@@ -258,16 +330,39 @@ fn check(mesh: &Mesh, materials: &[LatticeMaterial]) -> Result<(), ProblemError>
         }
     }
     for &part in &mesh.tet_part {
-        in_range(
-            "material of a tetrahedron",
-            usize::from(part),
-            materials.len(),
-        )?;
+        in_range("material of a tetrahedron", usize::from(part), materials)?;
     }
     for &block in &mesh.tet_block {
         in_range("block of a tetrahedron", block as usize, expected)?;
     }
+    for &value in &mesh.block_fraction {
+        if !(value > 0.0 && value.is_finite()) {
+            let what = "part of a voxel that is filled";
+            return Err(ProblemError::NotPositive { what, value });
+        }
+    }
+    if !mesh.block_fraction.is_empty() {
+        let blocks = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
+        if mesh.block_fraction.len() != blocks {
+            return Err(ProblemError::Length {
+                what: "filled parts of blocks",
+                got: mesh.block_fraction.len(),
+                expected: blocks,
+            });
+        }
+    }
+    for membrane in &mesh.membranes {
+        for vertex in membrane.vertices() {
+            in_range("vertex of a membrane", vertex as usize, mesh.vertices.len())?;
+        }
+    }
     Ok(())
+}
+
+/// The filled part of a block, given by its tetrahedra.
+fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
+    let index = mesh.tet_block[block[0]] as usize;
+    mesh.block_fraction.get(index).copied().unwrap_or(1.0)
 }
 
 /// The signed volume of a tetrahedron in m³.
@@ -288,14 +383,14 @@ fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial)
     }
 }
 
-fn unit_strain_force(edges: &[Edge], vertices: usize) -> f64 {
+fn edge_forces(edges: &[Edge], vertices: usize) -> Vec<f64> {
     let mut forces = vec![0.0; vertices];
     for edge in edges {
         for vertex in edge.vertices {
             forces[vertex as usize] += edge.stiffness * edge.length;
         }
     }
-    forces.iter().map(|force| force * force).sum::<f64>().sqrt()
+    forces
 }
 
 fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {

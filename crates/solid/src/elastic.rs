@@ -1,6 +1,7 @@
-//! Energy and forces of the constraints.
+//! Energy, forces and stiffness of a body: constraints, hyperelastic voxels, membranes.
 
 use crate::body::{Body, Edge, Tet};
+use crate::matrix::cross_matrix;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
 impl Edge {
@@ -13,6 +14,24 @@ impl Edge {
         let length = norm(along);
         let inverse = if length > 0.0 { 1.0 / length } else { 0.0 };
         (length - self.length, scale(inverse, along))
+    }
+
+    /// The Hessian of `k C²/2`: `k (n nᵀ + (C/L)(1 − n nᵀ))` between a vertex and itself.
+    fn hessian(&self, positions: &[Vec3]) -> [[f64; 6]; 6] {
+        let (stretch, n) = self.evaluate(positions);
+        let length = stretch + self.length;
+        let across = if length > 0.0 { stretch / length } else { 0.0 };
+        let mut matrix = [[0.0; 6]; 6];
+        for i in 0..3 {
+            for j in 0..3 {
+                let unit = if i == j { across } else { 0.0 };
+                let k = self.stiffness * ((1.0 - across) * n[i] * n[j] + unit);
+                for (a, b, sign) in [(0, 0, 1.0), (0, 3, -1.0), (3, 0, -1.0), (3, 3, 1.0)] {
+                    matrix[a + i][b + j] = sign * k;
+                }
+            }
+        }
+        matrix
     }
 }
 
@@ -35,6 +54,44 @@ impl Tet {
         ];
         (dot(u, gb) - self.volume, [ga, gb, gc, gd])
     }
+
+    /// The Hessian of `k C²/2`: `k (∇C ∇Cᵀ + C ∇²V)`.
+    fn hessian(&self, positions: &[Vec3]) -> [[f64; 12]; 12] {
+        let (change, gradients) = self.evaluate(positions);
+        let mut matrix = volume_hessian(self.vertices.map(|v| positions[v as usize]));
+        for (row, entries) in matrix.iter_mut().enumerate() {
+            for (column, entry) in entries.iter_mut().enumerate() {
+                let outer = gradients[row / 3][row % 3] * gradients[column / 3][column % 3];
+                *entry = self.stiffness * (outer + change * *entry);
+            }
+        }
+        matrix
+    }
+}
+
+/// The Hessian of the volume of a tetrahedron.
+///
+/// The gradient by `b` is `(c − a) × (d − a)/6`, linear in the others: blocks are `±[difference]×/6`.
+pub(crate) fn volume_hessian(corners: [Vec3; 4]) -> [[f64; 12]; 12] {
+    let mut matrix = [[0.0; 12]; 12];
+    // For each pair of corners the edge between the other two, turned so that the sign is right.
+    for (p, q, from, to) in [
+        (0, 1, 3, 2),
+        (0, 2, 1, 3),
+        (0, 3, 2, 1),
+        (1, 2, 3, 0),
+        (1, 3, 0, 2),
+        (2, 3, 1, 0),
+    ] {
+        let block = cross_matrix(scale(1.0 / 6.0, sub(corners[to], corners[from])));
+        for i in 0..3 {
+            for j in 0..3 {
+                matrix[3 * p + i][3 * q + j] = block[i][j];
+                matrix[3 * q + j][3 * p + i] = block[i][j];
+            }
+        }
+    }
+    matrix
 }
 
 /// The elastic energy in J.
@@ -49,7 +106,13 @@ pub fn energy(body: &Body, positions: &[Vec3]) -> f64 {
         .iter()
         .map(|tet| tet.stiffness * tet.evaluate(positions).0.powi(2))
         .sum();
-    (edges + tets) / 2.0
+    let bricks: f64 = body
+        .bricks()
+        .iter()
+        .map(|brick| brick.energy(body.material_of(brick), positions))
+        .sum();
+    let membranes: f64 = body.membranes().iter().map(|m| m.energy(positions)).sum();
+    (edges + tets) / 2.0 + bricks + membranes
 }
 
 /// Adds the elastic forces in N, minus the gradient of [`energy`].
@@ -67,6 +130,47 @@ pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
         for (vertex, gradient) in tet.vertices.into_iter().zip(gradients) {
             axpy(&mut forces[vertex as usize], -pressure, gradient);
         }
+    }
+    add_element_forces(body, positions, forces);
+}
+
+/// Adds the forces of hyperelastic voxels and membranes alone, which are not constraints.
+pub fn add_element_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
+    for brick in body.bricks() {
+        brick.add_forces(body.material_of(brick), positions, forces);
+    }
+    for membrane in body.membranes() {
+        membrane.add_forces(positions, forces);
+    }
+}
+
+/// Hands the stiffness matrix (N/m), the Hessian of [`energy`], to `visit` piece by piece: the
+/// vertices of a piece, and its dense row-major matrix with rows and columns `3 place + axis`.
+pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[u32], &[f64])) {
+    for edge in body.edges() {
+        visit(&edge.vertices, edge.hessian(positions).as_flattened());
+    }
+    for tet in body.tets() {
+        visit(&tet.vertices, tet.hessian(positions).as_flattened());
+    }
+    visit_element_stiffness(body, positions, visit);
+}
+
+/// The part of [`visit_stiffness`] that belongs to hyperelastic voxels and membranes.
+pub fn visit_element_stiffness(
+    body: &Body,
+    positions: &[Vec3],
+    visit: &mut dyn FnMut(&[u32], &[f64]),
+) {
+    for brick in body.bricks() {
+        let stiffness = brick.stiffness(body.material_of(brick), positions);
+        visit(&brick.vertices, stiffness.as_flattened());
+    }
+    for membrane in body.membranes() {
+        visit(
+            &membrane.vertices(),
+            membrane.stiffness(positions).as_flattened(),
+        );
     }
 }
 
@@ -88,6 +192,16 @@ pub fn row_sums(body: &Body, positions: &[Vec3], sums: &mut [f64]) {
             sums[vertex as usize] += tet.stiffness * length * total;
         }
     }
+    visit_element_stiffness(body, positions, &mut |vertices, matrix| {
+        let size = 3 * vertices.len();
+        for (place, vertex) in vertices.iter().enumerate() {
+            let rows = matrix[3 * place * size..].chunks(size).take(3);
+            let largest = rows
+                .map(|row| row.iter().map(|k| k.abs()).sum())
+                .fold(0.0, f64::max);
+            sums[*vertex as usize] += largest;
+        }
+    });
 }
 
 /// Adds the product of the material part of the stiffness matrix at `positions` with `direction`.
@@ -116,6 +230,70 @@ pub fn add_stiffness_product(
                 tet.stiffness * change,
                 gradients[i],
             );
+        }
+    }
+    visit_element_stiffness(body, positions, &mut |vertices, matrix| {
+        let size = 3 * vertices.len();
+        for (row, entries) in matrix.chunks(size).enumerate() {
+            let mut sum = 0.0;
+            for (column, k) in entries.iter().enumerate() {
+                sum += k * direction[vertices[column / 3] as usize][column % 3];
+            }
+            product[vertices[row / 3] as usize][row % 3] += sum;
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constraint_stiffness_is_the_derivative_of_the_forces() {
+        let positions = vec![
+            [0.1, 0.0, 0.2],
+            [1.2, 0.1, 0.0],
+            [0.0, 0.8, 0.1],
+            [0.2, 0.1, 1.1],
+        ];
+        let edge = Edge {
+            vertices: [0, 2],
+            length: 1.3,
+            stiffness: 2.0,
+        };
+        let tet = Tet {
+            vertices: [0, 1, 2, 3],
+            volume: 0.1,
+            stiffness: 3.0,
+        };
+        let step = 1e-6;
+        for column in 0..12 {
+            let moved = |t: f64| {
+                let mut moved = positions.clone();
+                moved[column / 3][column % 3] += t;
+                moved
+            };
+            let tet_force = |t: f64, row: usize| {
+                let (change, gradients) = tet.evaluate(&moved(t));
+                tet.stiffness * change * gradients[row / 3][row % 3]
+            };
+            let edge_force = |t: f64, axis: usize| {
+                let (change, gradient) = edge.evaluate(&moved(t));
+                edge.stiffness * change * gradient[axis]
+            };
+            for row in 0..12 {
+                let slope = (tet_force(step, row) - tet_force(-step, row)) / (2.0 * step);
+                assert!((slope - tet.hessian(&positions)[row][column]).abs() < 1e-8);
+            }
+            let place = [0, 6]
+                .iter()
+                .position(|&first| (first..first + 3).contains(&column));
+            let Some(place) = place else { continue };
+            for axis in 0..3 {
+                let slope = (edge_force(step, axis) - edge_force(-step, axis)) / (2.0 * step);
+                let got = edge.hessian(&positions)[axis][3 * place + column % 3];
+                assert!((slope - got).abs() < 1e-8);
+            }
         }
     }
 }

@@ -40,6 +40,28 @@ pub enum ProblemError {
         /// Its value.
         value: f64,
     },
+    /// A hyperelastic block is no voxel.
+    #[error(
+        "hyperelastic materials need a mesh of voxels: the block of tetrahedron {tet} is not a cube of five"
+    )]
+    NotCubes {
+        /// A tetrahedron of the block.
+        tet: usize,
+    },
+    /// A membrane's triangle has no area at rest.
+    #[error("a membrane triangle at vertices {vertices:?} has no area at rest")]
+    FlatMembrane {
+        /// Its vertices.
+        vertices: [u32; 3],
+    },
+    /// A direction is not a unit vector.
+    #[error("{what}: a unit vector is due, its length is {length}")]
+    NotUnit {
+        /// The vector's name.
+        what: &'static str,
+        /// Its length.
+        length: f64,
+    },
     /// A number is NaN or infinite.
     #[error("{what} holds a number that is not finite")]
     NotFinite {

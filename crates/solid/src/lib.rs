@@ -23,6 +23,7 @@
 //!     tets: vec![[0, 1, 2, 3]],
 //!     tet_part: vec![0],
 //!     tet_block: vec![0],
+//!     ..Mesh::default()
 //! };
 //! let rubber = LatticeMaterial::from_moduli(25e3, 100e3, 1070.0)?;
 //! let body = Body::new(&mesh, &[rubber])?;
@@ -35,22 +36,32 @@
 
 pub mod balance;
 pub mod body;
+pub mod brick;
 mod clamp;
 mod color;
+mod cube;
 pub mod elastic;
 mod error;
 mod history;
+pub mod hyperelastic;
 mod lattice;
 mod load;
+mod material;
+pub mod matrix;
+mod membrane;
 mod problem;
 mod state;
 pub mod vector;
 
 pub use body::{Body, Edge, Mesh, Tet};
+pub use brick::Brick;
 pub use clamp::{Clamp, Motion};
 pub use error::ProblemError;
 pub use history::History;
+pub use hyperelastic::{Fiber, HyperelasticMaterial, Model};
 pub use lattice::LatticeMaterial;
 pub use load::{Load, LoadKind};
+pub use material::Material;
+pub use membrane::{Membrane, MembraneMaterial};
 pub use problem::{Floor, Problem};
 pub use state::State;

@@ -19,6 +19,7 @@ fn body(cells: [usize; 3], h: f64, materials: &[LatticeMaterial]) -> Body {
         tets: mesh.tets.iter().map(|tet| tet.map(|v| v as u32)).collect(),
         tet_part: mesh.tet_part.iter().map(|part| part - 1).collect(),
         tet_block: (0..count).map(|tet| tet / 5).collect(),
+        ..Mesh::default()
     };
     Body::new(&mesh, materials).unwrap()
 }

@@ -22,6 +22,7 @@ pub fn block(cells: [usize; 3], h: f64) -> Mesh {
         tets: mesh.tets.iter().map(|tet| tet.map(|v| v as u32)).collect(),
         tet_part: vec![0; count],
         tet_block: (0..count as u32).map(|tet| tet / 5).collect(),
+        ..Mesh::default()
     }
 }
 

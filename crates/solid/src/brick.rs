@@ -1,0 +1,460 @@
+//! The hyperelastic voxel: a cube of eight nodes that neither locks nor has zero-energy modes.
+//!
+//! # Kinematics
+//!
+//! The map of a cube of side `h` is `x(ξ) = x₀ + h/2 (f₁ξ + f₂η + f₃ζ + p₁ηζ + p₂ζξ + p₃ξη + p₄ξηζ)` with
+//! `fₖ, pₖ = Σ ±xₐ/(4h)`, the sign being that of the monomial at node `a`. The columns `fₖ` are the mean
+//! deformation gradient `F₀ = R S`; the `p` are the hourglass modes, rotated back: `p̂ = Rᵀp`.
+//!
+//! # Assumed stretch
+//!
+//! Along each axis, say ζ, the stretch varies linearly, `S ± Ĥ_ζ` at `ζ = ±1`, with
+//!
+//! - `H₁₁ = p̂₂·e₁`, `H₂₂ = p̂₁·e₂`: bending. The shear `γ₁₃ ∝ ξ` that comes with the mode is left
+//!   out: it is what locks a full brick.
+//! - `H₃₃ = −ν/(1−ν) (H₁₁ + H₂₂)`: a plate that bends is free to change its thickness.
+//! - `H₁₂ = (p̂₁·e₁ + p̂₂·e₂)/2`: twist.
+//!
+//! The isochoric energy is the mean over the six face centres (exact for fields linear in one
+//! coordinate), so that bending follows the material at any stretch. The volumetric energy is that of
+//! `det S`, one number for each voxel (mean dilatation), plus its quadratic part for `tr H`, which is
+//! small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial stretch bilinear in two
+//! coordinates. Energy per rest volume:
+//!
+//! `Φ = U(det S) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ (tr H)² + E/18 |p₄|² + fibres(S)`
+//!
+//! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
+//! derivatives of `R`, see [`Brick::add_stiffness`].
+
+use crate::hyperelastic::symmetric::{
+    Sym, isochoric, isochoric_stress, to_matrix, to_sym, volumetric, volumetric_stress,
+};
+use crate::hyperelastic::{HyperelasticMaterial, fiber};
+use crate::matrix::{
+    IDENTITY, Mat3, apply, apply_transposed, axial, cross_matrix, multiply, plus, polar, solve_spd,
+    transpose,
+};
+use crate::vector::{Vec3, add, axpy, scale, sub};
+
+const SQRT_2: f64 = std::f64::consts::SQRT_2;
+
+/// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+const CORNERS: usize = 8;
+
+/// The signs of ξ, η, ζ, ηζ, ζξ, ξη, ξηζ at the corners.
+const SIGNS: [[f64; CORNERS]; 7] = [
+    [-1.0, -1.0, -1.0, -1.0, 1.0, 1.0, 1.0, 1.0],
+    [-1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0],
+    [-1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0, 1.0, 1.0, -1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0, -1.0, -1.0, 1.0, -1.0, 1.0],
+    [1.0, 1.0, -1.0, -1.0, -1.0, -1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0, -1.0, 1.0, -1.0, -1.0, 1.0],
+];
+
+/// The three axes `n` with the other two.
+const AXES: [(usize, usize, usize); 3] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
+
+/// The axes of an off-diagonal place of a [`Sym`] are the two that differ from it.
+const OFF: usize = 3;
+
+/// A hyperelastic voxel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Brick {
+    /// The eight vertices; corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+    pub vertices: [u32; CORNERS],
+    /// Its material, an index into the list of the body.
+    pub material: u32,
+    /// Side in m.
+    pub side: f64,
+    /// The part of the cube that is filled with material.
+    pub fraction: f64,
+}
+
+/// The modes of a voxel: columns of `F₀` and hourglass vectors, without unit.
+type Modes = [Vec3; 7];
+
+/// The generalised coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
+const SHAPE: usize = 15;
+
+/// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
+pub type BrickMatrix = [[f64; 24]; 24];
+
+/// Where the energy of one voxel comes from, at one state.
+struct Rotated {
+    rotation: Mat3,
+    stretch: Sym,
+    hourglass: [Vec3; 3],
+    bilinear: Vec3,
+}
+
+/// Gradient of the energy by the generalised coordinates.
+struct Gradient {
+    stress: Sym,
+    hourglass: [Vec3; 3],
+}
+
+impl Rotated {
+    fn of(modes: &Modes) -> Self {
+        let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
+        let (rotation, stretch) = polar(&gradient);
+        Self {
+            stretch: to_sym(&stretch),
+            hourglass: std::array::from_fn(|m| apply_transposed(&rotation, modes[3 + m])),
+            bilinear: modes[6],
+            rotation,
+        }
+    }
+
+    /// `Ĥₙ` for the axis `n` with the others `i, j`, and the two bending strains.
+    #[inline(always)]
+    fn variation(&self, (n, i, j): (usize, usize, usize), thinning: f64) -> (Sym, f64) {
+        let p = &self.hourglass;
+        let sum = p[j][i] + p[i][j];
+        let mut h = [0.0; 6];
+        h[i] = p[j][i];
+        h[j] = p[i][j];
+        h[n] = -thinning * sum;
+        h[OFF + n] = (p[i][i] + p[j][j]) / SQRT_2;
+        (h, sum)
+    }
+
+    fn energy(&self, material: &HyperelasticMaterial) -> f64 {
+        let thinning = material.thinning();
+        let mut value = volumetric_stress(material, &self.stretch).0
+            + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>();
+        for fiber in material.fibers() {
+            value += fiber::energy(fiber, &self.stretch);
+        }
+        for axes in AXES {
+            let (h, sum) = self.variation(axes, thinning);
+            let trace = (1.0 - thinning) * sum;
+            value += material.bulk() * trace * trace / 6.0;
+            for sign in [1.0, -1.0] {
+                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
+                value += isochoric_stress(material.model(), &at).0 / 6.0;
+            }
+        }
+        value
+    }
+
+    fn gradient(&self, material: &HyperelasticMaterial) -> Gradient {
+        let thinning = material.thinning();
+        let mut gradient = Gradient {
+            stress: volumetric_stress(material, &self.stretch).1,
+            hourglass: [[0.0; 3]; 3],
+        };
+        for fiber in material.fibers() {
+            fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
+        }
+        for axes in AXES {
+            let (h, sum) = self.variation(axes, thinning);
+            let stress = |sign: f64| {
+                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
+                isochoric_stress(material.model(), &at).1
+            };
+            let (high, low) = (stress(1.0), stress(-1.0));
+            let trace = material.bulk() * (1.0 - thinning).powi(2) * sum / 3.0;
+            let mut moment = [0.0; 6];
+            for k in 0..6 {
+                gradient.stress[k] += (high[k] + low[k]) / 6.0;
+                moment[k] = (high[k] - low[k]) / 6.0;
+            }
+            add_moment(&mut gradient.hourglass, axes, thinning, &moment, trace);
+        }
+        gradient
+    }
+
+    /// The Hessian by `S` and `p̂` (rows 0–5 and `6 + 3 mode + axis`).
+    fn hessian(&self, material: &HyperelasticMaterial) -> [[f64; SHAPE]; SHAPE] {
+        let thinning = material.thinning();
+        let mut hessian = [[0.0; SHAPE]; SHAPE];
+        let mut center = volumetric(material, &self.stretch).tangent;
+        for fiber in material.fibers() {
+            fiber::add_tangent(fiber, &self.stretch, &mut center);
+        }
+        for axes in AXES {
+            let (h, _) = self.variation(axes, thinning);
+            let tangent = |sign: f64| {
+                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
+                isochoric(material.model(), &at).tangent
+            };
+            let (high, low) = (tangent(1.0), tangent(-1.0));
+            let directions = hourglass_directions(axes, thinning);
+            for k in 0..6 {
+                for l in 0..6 {
+                    center[k][l] += (high[k][l] + low[k][l]) / 6.0;
+                }
+            }
+            for (place, direction) in &directions {
+                let mut mixed = [0.0; 6];
+                let mut twice = [0.0; 6];
+                for k in 0..6 {
+                    for l in 0..6 {
+                        mixed[k] += (high[k][l] - low[k][l]) / 6.0 * direction[l];
+                        twice[k] += (high[k][l] + low[k][l]) / 6.0 * direction[l];
+                    }
+                    hessian[k][*place] += mixed[k];
+                    hessian[*place][k] += mixed[k];
+                }
+                let trace = direction[0] + direction[1] + direction[2];
+                for (other, across) in &directions {
+                    let bend: f64 = (0..6).map(|k| across[k] * twice[k]).sum();
+                    let other_trace = across[0] + across[1] + across[2];
+                    hessian[*other][*place] += bend + material.bulk() * trace * other_trace / 3.0;
+                }
+            }
+        }
+        for k in 0..6 {
+            for l in 0..6 {
+                hessian[k][l] += center[k][l];
+            }
+        }
+        hessian
+    }
+}
+
+/// The derivatives of `Ĥₙ` by the four hourglass coordinates that it depends on.
+fn hourglass_directions((n, i, j): (usize, usize, usize), thinning: f64) -> [(usize, Sym); 4] {
+    let bending = |axis: usize| {
+        let mut h = [0.0; 6];
+        h[axis] = 1.0;
+        h[n] = -thinning;
+        h
+    };
+    let mut twist = [0.0; 6];
+    twist[OFF + n] = 1.0 / SQRT_2;
+    let place = |mode: usize, axis: usize| 6 + 3 * mode + axis;
+    [
+        (place(j, i), bending(i)),
+        (place(i, j), bending(j)),
+        (place(i, i), twist),
+        (place(j, j), twist),
+    ]
+}
+
+#[inline(always)]
+fn add_moment(
+    hourglass: &mut [Vec3; 3],
+    (n, i, j): (usize, usize, usize),
+    thinning: f64,
+    moment: &Sym,
+    trace: f64,
+) {
+    hourglass[j][i] += moment[i] - thinning * moment[n] + trace;
+    hourglass[i][j] += moment[j] - thinning * moment[n] + trace;
+    let twist = moment[OFF + n] / SQRT_2;
+    hourglass[i][i] += twist;
+    hourglass[j][j] += twist;
+}
+
+/// How `R` turns when `F₀` changes: with `B = Rᵀ dF₀`, `Rᵀ dR = [w]×` and `G w = axial(B − Bᵀ)`,
+/// `G = tr S − S`.
+fn spin_matrix(stretch: &Mat3) -> Mat3 {
+    let trace = stretch[0][0] + stretch[1][1] + stretch[2][2];
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| if i == j { trace } else { 0.0 } - stretch[i][j])
+    })
+}
+
+/// Adds `a ⊗ b` to a matrix.
+#[inline(always)]
+fn add_outer(matrix: &mut Mat3, a: Vec3, b: Vec3) {
+    for i in 0..3 {
+        axpy(&mut matrix[i], a[i], b);
+    }
+}
+
+impl Brick {
+    /// Rest volume of the material in m³.
+    pub fn volume(&self) -> f64 {
+        self.fraction * self.side.powi(3)
+    }
+
+    fn modes(&self, positions: &[Vec3]) -> Modes {
+        let x = self.vertices.map(|v| positions[v as usize]);
+        let factor = 1.0 / (4.0 * self.side);
+        // A Walsh–Hadamard transform: sums and differences along z, y, x.
+        let (mut s, mut d) = ([[0.0; 3]; 4], [[0.0; 3]; 4]);
+        for k in 0..4 {
+            s[k] = add(x[2 * k], x[2 * k + 1]);
+            d[k] = sub(x[2 * k + 1], x[2 * k]);
+        }
+        let split = |a: [Vec3; 4]| {
+            let (low, high) = (add(a[0], a[1]), add(a[2], a[3]));
+            let (down, up) = (sub(a[1], a[0]), sub(a[3], a[2]));
+            [sub(high, low), add(down, up), sub(up, down), add(low, high)]
+        };
+        let [along_x, along_y, along_xy, _] = split(s);
+        let [along_zx, along_yz, along_xyz, along_z] = split(d);
+        [
+            along_x, along_y, along_z, along_yz, along_zx, along_xy, along_xyz,
+        ]
+        .map(|mode| scale(factor, mode))
+    }
+
+    /// The elastic energy in J.
+    pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
+        self.volume() * Rotated::of(&self.modes(positions)).energy(material)
+    }
+
+    /// The mean deformation gradient.
+    pub fn deformation(&self, positions: &[Vec3]) -> Mat3 {
+        let modes = self.modes(positions);
+        std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
+    }
+
+    /// Adds the elastic forces in N, minus the gradient of [`Brick::energy`].
+    ///
+    /// With `T = ∂Φ/∂S`, `sₘ = ∂Φ/∂p̂ₘ` and `N = T S + Σ sₘ ⊗ p̂ₘ`, the gradient by `F₀` is
+    /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`.
+    pub fn add_forces(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
+        let state = Rotated::of(&self.modes(positions));
+        let gradient = state.gradient(material);
+        let stress = to_matrix(&gradient.stress);
+        let stretch = to_matrix(&state.stretch);
+        let mut couple = multiply(&stress, &stretch);
+        for m in 0..3 {
+            add_outer(&mut couple, gradient.hourglass[m], state.hourglass[m]);
+        }
+        let y = solve_spd(&spin_matrix(&stretch), axial(&couple));
+        let first = multiply(&state.rotation, &plus(&stress, -1.0, &cross_matrix(y)));
+        let mut modes = [[0.0; 3]; 7];
+        for k in 0..3 {
+            modes[k] = [first[0][k], first[1][k], first[2][k]];
+            modes[3 + k] = apply(&state.rotation, gradient.hourglass[k]);
+        }
+        modes[6] = scale(material.young() / 9.0, state.bilinear);
+        let factor = self.volume() / (4.0 * self.side);
+        for (corner, vertex) in self.vertices.into_iter().enumerate() {
+            let force = &mut forces[vertex as usize];
+            for k in 0..7 {
+                axpy(force, -factor * SIGNS[k][corner], modes[k]);
+            }
+        }
+    }
+
+    /// The Hessian of the energy in N/m, exact.
+    ///
+    /// In the rotated frame a change of `F₀` by `B` and of `pₘ` by `bₘ` turns `R` by `w`, `Ω = [w]×`, and
+    /// changes `S` by `B − ΩS`, `p̂ₘ` by `bₘ − Ωp̂ₘ`. The gradients `T − [y]×` and `sₘ` change by
+    /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
+    pub fn stiffness(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> BrickMatrix {
+        let state = Rotated::of(&self.modes(positions));
+        let gradient = state.gradient(material);
+        let hessian = state.hessian(material);
+        let stress = to_matrix(&gradient.stress);
+        let stretch = to_matrix(&state.stretch);
+        let spin = spin_matrix(&stretch);
+        let mut couple = multiply(&stress, &stretch);
+        for m in 0..3 {
+            add_outer(&mut couple, gradient.hourglass[m], state.hourglass[m]);
+        }
+        let y = solve_spd(&spin, axial(&couple));
+        let skewed = plus(&stress, -1.0, &cross_matrix(y));
+
+        // Rows and columns: mode (f₁ f₂ f₃ p₁ p₂ p₃), then axis; in the rotated frame.
+        let mut rotated = [[0.0; 18]; 18];
+        for column in 0..18 {
+            let (mode, axis) = (column / 3, column % 3);
+            let mut change = [0.0; SHAPE];
+            let mut omega = [[0.0; 3]; 3];
+            let mut stretch_change = [[0.0; 3]; 3];
+            if mode < 3 {
+                let mut b = [[0.0; 3]; 3];
+                b[axis][mode] = 1.0;
+                omega = cross_matrix(solve_spd(&spin, axial(&b)));
+                stretch_change = plus(&b, -1.0, &multiply(&omega, &stretch));
+                change[..6].copy_from_slice(&to_sym(&stretch_change));
+                for m in 0..3 {
+                    let turned = apply(&omega, state.hourglass[m]);
+                    for k in 0..3 {
+                        change[6 + 3 * m + k] = -turned[k];
+                    }
+                }
+            } else {
+                change[6 + 3 * (mode - 3) + axis] = 1.0;
+            }
+            let mut response = [0.0; SHAPE];
+            for (row, entries) in response.iter_mut().zip(&hessian) {
+                *row = entries.iter().zip(&change).map(|(h, c)| h * c).sum();
+            }
+            let stress_change = to_matrix(&std::array::from_fn(|k| response[k]));
+            let part = |values: &[f64; SHAPE], m: usize| {
+                std::array::from_fn::<f64, 3, _>(|k| values[6 + 3 * m + k])
+            };
+            let mut couple_change = plus(
+                &multiply(&stress_change, &stretch),
+                1.0,
+                &multiply(&stress, &stretch_change),
+            );
+            for m in 0..3 {
+                add_outer(&mut couple_change, part(&response, m), state.hourglass[m]);
+                add_outer(&mut couple_change, gradient.hourglass[m], part(&change, m));
+            }
+            let trace = stretch_change[0][0] + stretch_change[1][1] + stretch_change[2][2];
+            let spin_change = plus(&scaled_identity(trace), -1.0, &stretch_change);
+            let y_change = solve_spd(&spin, sub(axial(&couple_change), apply(&spin_change, y)));
+            let first = plus(
+                &plus(&multiply(&omega, &skewed), 1.0, &stress_change),
+                -1.0,
+                &cross_matrix(y_change),
+            );
+            for m in 0..3 {
+                let second = add(apply(&omega, gradient.hourglass[m]), part(&response, m));
+                for k in 0..3 {
+                    rotated[3 * m + k][column] = first[k][m];
+                    rotated[9 + 3 * m + k][column] = second[k];
+                }
+            }
+        }
+        self.expand(&rotated, &state.rotation, material.young() / 9.0)
+    }
+
+    /// Turns the blocks back and spreads modes over corners.
+    fn expand(&self, rotated: &[[f64; 18]; 18], rotation: &Mat3, bilinear: f64) -> BrickMatrix {
+        let back = transpose(rotation);
+        let mut blocks = [[[[0.0; 3]; 3]; 7]; 7];
+        for a in 0..6 {
+            for b in 0..6 {
+                let block: Mat3 =
+                    std::array::from_fn(|i| std::array::from_fn(|j| rotated[3 * a + i][3 * b + j]));
+                blocks[a][b] = multiply(&multiply(rotation, &block), &back);
+            }
+        }
+        blocks[6][6] = scaled_identity(bilinear);
+        let mut half = [[[[0.0; 3]; 3]; CORNERS]; 7];
+        for a in 0..7 {
+            for corner in 0..CORNERS {
+                for b in 0..7 {
+                    half[a][corner] = plus(&half[a][corner], SIGNS[b][corner], &blocks[a][b]);
+                }
+            }
+        }
+        let factor = self.volume() / (16.0 * self.side * self.side);
+        let mut matrix = [[0.0; 24]; 24];
+        for corner in 0..CORNERS {
+            for other in 0..CORNERS {
+                let mut block = [[0.0; 3]; 3];
+                for a in 0..7 {
+                    block = plus(&block, factor * SIGNS[a][corner], &half[a][other]);
+                }
+                for i in 0..3 {
+                    for j in 0..3 {
+                        matrix[3 * corner + i][3 * other + j] = block[i][j];
+                    }
+                }
+            }
+        }
+        matrix
+    }
+}
+
+fn scaled_identity(s: f64) -> Mat3 {
+    IDENTITY.map(|row| row.map(|x| s * x))
+}

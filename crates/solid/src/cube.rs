@@ -1,0 +1,40 @@
+//! Finding the cube that a block of five tetrahedra fills.
+
+use crate::Mesh;
+
+/// How far a corner may be from its place, in sides: lattice positions are products of integers and
+/// the voxel size, exact to rounding.
+const SLACK: f64 = 1e-6;
+
+/// The corners of a block, corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)`, and its side in m; `None` if
+/// it is no cube along the axes.
+pub(crate) fn corners(mesh: &Mesh, block: &[usize]) -> Option<([u32; 8], f64)> {
+    let mut vertices: Vec<u32> = block.iter().flat_map(|&t| mesh.tets[t]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    if vertices.len() != 8 || block.len() != 5 {
+        return None;
+    }
+    let points = || vertices.iter().map(|&v| mesh.vertices[v as usize]);
+    let low = points().fold([f64::INFINITY; 3], |m, p| {
+        std::array::from_fn(|i| m[i].min(p[i]))
+    });
+    let high = points().fold([f64::NEG_INFINITY; 3], |m, p| {
+        std::array::from_fn(|i| m[i].max(p[i]))
+    });
+    let side = high[0] - low[0];
+    let mut corners = [u32::MAX; 8];
+    for (&vertex, point) in vertices.iter().zip(points()) {
+        let mut corner = 0;
+        for axis in 0..3 {
+            let place = (point[axis] - low[axis]) / side;
+            let bit = place.round();
+            if !((place - bit).abs() < SLACK && (0.0..=1.0).contains(&bit)) {
+                return None;
+            }
+            corner = 2 * corner + bit as usize;
+        }
+        corners[corner] = vertex;
+    }
+    (!corners.contains(&u32::MAX)).then_some((corners, side))
+}

@@ -1,0 +1,162 @@
+use super::Fiber;
+use crate::ProblemError;
+
+/// The isochoric part of a hyperelastic energy, constants in Pa unless they have no unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Model {
+    /// `C₁₀ (Ī₁ − 3)`; the initial shear modulus is `2 C₁₀`.
+    NeoHookean {
+        /// `C₁₀`.
+        c10: f64,
+    },
+    /// `C₁₀ (Ī₁ − 3) + C₀₁ (Ī₂ − 3)`; the initial shear modulus is `2 (C₁₀ + C₀₁)`.
+    MooneyRivlin {
+        /// `C₁₀`.
+        c10: f64,
+        /// `C₀₁`.
+        c01: f64,
+    },
+    /// `Σ Cᵢ₀ (Ī₁ − 3)ⁱ` with three terms; the initial shear modulus is `2 C₁₀`.
+    Yeoh {
+        /// `C₁₀, C₂₀, C₃₀`.
+        c: [f64; 3],
+    },
+    /// `Σ 2μᵢ/αᵢ² (λ̄₁^αᵢ + λ̄₂^αᵢ + λ̄₃^αᵢ − 3)`; the initial shear modulus is `Σ μᵢ`. Terms with
+    /// `μ = 0` are not used.
+    Ogden {
+        /// Pairs of `μᵢ` (Pa) and `αᵢ`.
+        terms: [(f64, f64); 3],
+    },
+    /// `−μ Jₘ/2 ln(1 − (Ī₁ − 3)/Jₘ)`; the initial shear modulus is `μ`. Past
+    /// [`Model::GENT_REACH`] of the limit the logarithm goes on as its Taylor polynomial.
+    Gent {
+        /// `μ`.
+        shear: f64,
+        /// `Jₘ`, the limit of `Ī₁ − 3`.
+        limit: f64,
+    },
+}
+
+impl Model {
+    /// The part of Gent's limit up to which the logarithm is used: a solver may step past the limit
+    /// on its way and must find a finite energy there.
+    pub const GENT_REACH: f64 = 0.98;
+
+    /// The initial shear modulus in Pa.
+    pub fn shear(&self) -> f64 {
+        match self {
+            Self::NeoHookean { c10 } => 2.0 * c10,
+            Self::MooneyRivlin { c10, c01 } => 2.0 * (c10 + c01),
+            Self::Yeoh { c } => 2.0 * c[0],
+            Self::Ogden { terms } => terms.iter().map(|(mu, _)| mu).sum(),
+            Self::Gent { shear, .. } => *shear,
+        }
+    }
+}
+
+/// A hyperelastic material, with fibres if it has any.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HyperelasticMaterial {
+    model: Model,
+    bulk: f64,
+    density: f64,
+    fibers: Vec<Fiber>,
+}
+
+impl HyperelasticMaterial {
+    /// From the isochoric model, the bulk modulus `K` (Pa) and the density (kg/m³).
+    pub fn new(model: Model, bulk: f64, density: f64) -> Result<Self, ProblemError> {
+        for (what, value) in [
+            ("initial shear modulus (Pa)", model.shear()),
+            ("bulk modulus (Pa)", bulk),
+            ("density (kg/m³)", density),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ProblemError::NotPositive { what, value });
+            }
+        }
+        if let Model::Gent { limit, .. } = model
+            && !(limit > 0.0 && limit.is_finite())
+        {
+            let what = "Gent's limit Jm";
+            return Err(ProblemError::NotPositive { what, value: limit });
+        }
+        if let Model::Ogden { terms } = model
+            && let Some(&(_, value)) = terms.iter().find(|(mu, alpha)| *mu != 0.0 && *alpha == 0.0)
+        {
+            let what = "size of an Ogden exponent";
+            return Err(ProblemError::NotPositive { what, value });
+        }
+        Ok(Self {
+            model,
+            bulk,
+            density,
+            fibers: Vec::new(),
+        })
+    }
+
+    /// The same material with families of fibres.
+    pub fn with_fibers(self, fibers: Vec<Fiber>) -> Result<Self, ProblemError> {
+        for fiber in &fibers {
+            if !(fiber.modulus > 0.0 && fiber.modulus.is_finite()) {
+                return Err(ProblemError::NotPositive {
+                    what: "modulus of fibres (Pa)",
+                    value: fiber.modulus,
+                });
+            }
+            let length = crate::vector::norm(fiber.direction);
+            if !((length - 1.0).abs() < 1e-9) {
+                return Err(ProblemError::NotUnit {
+                    what: "direction of fibres",
+                    length,
+                });
+            }
+        }
+        Ok(Self { fibers, ..self })
+    }
+
+    /// A compressible neo-Hookean material of a Young's modulus (Pa) and Poisson's ratio.
+    pub fn neo_hookean(young: f64, poisson: f64, density: f64) -> Result<Self, ProblemError> {
+        let c10 = young / (4.0 * (1.0 + poisson));
+        let bulk = young / (3.0 * (1.0 - 2.0 * poisson));
+        Self::new(Model::NeoHookean { c10 }, bulk, density)
+    }
+
+    /// The isochoric model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The families of fibres.
+    pub fn fibers(&self) -> &[Fiber] {
+        &self.fibers
+    }
+
+    /// `ν/(1 − ν)`: how much a thin plate thins for the sum of its strains in the plane.
+    pub(crate) fn thinning(&self) -> f64 {
+        let (k, g) = (self.bulk, self.model.shear());
+        (3.0 * k - 2.0 * g) / (3.0 * k + 4.0 * g)
+    }
+
+    /// The bulk modulus in Pa.
+    pub fn bulk(&self) -> f64 {
+        self.bulk
+    }
+
+    /// The density in kg/m³.
+    pub fn density(&self) -> f64 {
+        self.density
+    }
+
+    /// Poisson's ratio for small strain.
+    pub fn poisson(&self) -> f64 {
+        let (k, g) = (self.bulk, self.model.shear());
+        (3.0 * k - 2.0 * g) / (2.0 * (3.0 * k + g))
+    }
+
+    /// Young's modulus in Pa for small strain.
+    pub fn young(&self) -> f64 {
+        let (k, g) = (self.bulk, self.model.shear());
+        9.0 * k * g / (3.0 * k + g)
+    }
+}

@@ -1,0 +1,218 @@
+//! Membranes: thin layers (fabric, film) that resist stretch in their plane and no bending.
+//!
+//! A triangle carries a Saint Venant–Kirchhoff energy in plane stress: with Green's strain `E` in the
+//! plane of rest, `A t Y/(2(1 − ν²)) ((1 − ν) E:E + ν (tr E)²)`. It is meant for layers much stiffer
+//! than what they are bonded to, whose strains stay small while they turn as they like.
+
+use crate::ProblemError;
+use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
+
+/// What a membrane is made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MembraneMaterial {
+    /// Young's modulus in Pa.
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// Thickness in m.
+    pub thickness: f64,
+    /// Density in kg/m³.
+    pub density: f64,
+}
+
+/// A membrane triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Membrane {
+    vertices: [u32; 3],
+    /// Gradients in the plane of rest of the three linear shape functions, 1/m.
+    gradients: [[f64; 2]; 3],
+    area: f64,
+    material: MembraneMaterial,
+}
+
+/// Strain in the plane: 11, 22 and twice 12.
+type Plane = [f64; 3];
+
+impl Membrane {
+    /// A membrane on three vertices with the rest positions `corners`.
+    pub fn new(
+        vertices: [u32; 3],
+        corners: [Vec3; 3],
+        material: MembraneMaterial,
+    ) -> Result<Self, ProblemError> {
+        for (what, value) in [
+            ("Young's modulus of a membrane (Pa)", material.young),
+            ("thickness of a membrane (m)", material.thickness),
+            ("density of a membrane (kg/m³)", material.density),
+            ("1 − ν² of a membrane", 1.0 - material.poisson.powi(2)),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ProblemError::NotPositive { what, value });
+            }
+        }
+        let (u, v) = (sub(corners[1], corners[0]), sub(corners[2], corners[0]));
+        let normal = cross(u, v);
+        let twice_area = norm(normal);
+        let length = norm(u);
+        if !(twice_area > 1e-12 * length * norm(v)) {
+            return Err(ProblemError::FlatMembrane { vertices });
+        }
+        let first = scale(1.0 / length, u);
+        let second = cross(scale(1.0 / twice_area, normal), first);
+        // In the frame of the plane: u = (length, 0), v = (a, b).
+        let (a, b) = (dot(v, first), dot(v, second));
+        let gu = [1.0 / length, -a / (length * b)];
+        let gv = [0.0, 1.0 / b];
+        Ok(Self {
+            vertices,
+            gradients: [[-gu[0] - gv[0], -gu[1] - gv[1]], gu, gv],
+            area: twice_area / 2.0,
+            material,
+        })
+    }
+
+    /// The three vertices.
+    pub fn vertices(&self) -> [u32; 3] {
+        self.vertices
+    }
+
+    pub(crate) fn add_mass(&self, masses: &mut [f64]) {
+        for vertex in self.vertices {
+            let mass = self.material.density * self.material.thickness * self.area;
+            masses[vertex as usize] += mass / 3.0;
+        }
+    }
+
+    /// The two tangent vectors and Green's strain.
+    fn strain(&self, positions: &[Vec3]) -> ([Vec3; 2], Plane) {
+        let mut tangents = [[0.0; 3]; 2];
+        for (vertex, gradient) in self.vertices.into_iter().zip(self.gradients) {
+            for k in 0..2 {
+                axpy(&mut tangents[k], gradient[k], positions[vertex as usize]);
+            }
+        }
+        let [a, b] = tangents;
+        let strain = [(dot(a, a) - 1.0) / 2.0, (dot(b, b) - 1.0) / 2.0, dot(a, b)];
+        (tangents, strain)
+    }
+
+    /// Membrane forces (Pa times m³) conjugate to the strain.
+    fn stress(&self, [e11, e22, g12]: Plane) -> Plane {
+        let m = &self.material;
+        let factor = self.area * m.thickness * m.young / (1.0 - m.poisson * m.poisson);
+        [
+            factor * (e11 + m.poisson * e22),
+            factor * (e22 + m.poisson * e11),
+            factor * (1.0 - m.poisson) / 2.0 * g12,
+        ]
+    }
+
+    /// The derivative of the strain by the position of a corner.
+    fn slopes(&self, [a, b]: [Vec3; 2], corner: usize) -> [Vec3; 3] {
+        let [p, q] = self.gradients[corner];
+        [
+            scale(p, a),
+            scale(q, b),
+            std::array::from_fn(|i| p * b[i] + q * a[i]),
+        ]
+    }
+
+    /// The energy in J.
+    pub fn energy(&self, positions: &[Vec3]) -> f64 {
+        let (_, strain) = self.strain(positions);
+        0.5 * dot(strain, self.stress(strain))
+    }
+
+    /// Adds the elastic forces in N.
+    pub fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        let (tangents, strain) = self.strain(positions);
+        let stress = self.stress(strain);
+        for corner in 0..3 {
+            let force = &mut forces[self.vertices[corner] as usize];
+            for (slope, t) in self.slopes(tangents, corner).into_iter().zip(stress) {
+                axpy(force, -t, slope);
+            }
+        }
+    }
+
+    /// The Hessian of the energy in N/m, row and column `3 corner + axis`.
+    pub fn stiffness(&self, positions: &[Vec3]) -> [[f64; 9]; 9] {
+        let (tangents, strain) = self.strain(positions);
+        let stress = self.stress(strain);
+        let slopes: [_; 3] = std::array::from_fn(|corner| self.slopes(tangents, corner));
+        let mut matrix = [[0.0; 9]; 9];
+        for c in 0..3 {
+            for d in 0..3 {
+                let ([p, q], [r, s]) = (self.gradients[c], self.gradients[d]);
+                let geometric = stress[0] * p * r + stress[1] * q * s + stress[2] * (p * s + q * r);
+                for j in 0..3 {
+                    let change = self.stress(std::array::from_fn(|k| slopes[d][k][j]));
+                    for i in 0..3 {
+                        let material: f64 = (0..3).map(|k| slopes[c][k][i] * change[k]).sum();
+                        matrix[3 * c + i][3 * d + j] =
+                            material + if i == j { geometric } else { 0.0 };
+                    }
+                }
+            }
+        }
+        matrix
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CLOTH: MembraneMaterial = MembraneMaterial {
+        young: 2.0,
+        poisson: 0.3,
+        thickness: 0.1,
+        density: 1.0,
+    };
+    const REST: [Vec3; 3] = [[0.0, 0.0, 1.0], [2.0, 0.0, 1.0], [0.5, 1.0, 1.5]];
+
+    #[test]
+    fn forces_and_stiffness_are_derivatives() {
+        let membrane = Membrane::new([0, 1, 2], REST, CLOTH).unwrap();
+        let at = [[0.1, 0.0, 1.2], [2.3, 0.2, 0.9], [0.4, 1.2, 1.5]];
+        let mut forces = vec![[0.0; 3]; 3];
+        membrane.add_forces(&at, &mut forces);
+        let stiffness = membrane.stiffness(&at);
+        let step = 1e-6;
+        for column in 0..9 {
+            let moved = |t: f64| {
+                let mut moved = at;
+                moved[column / 3][column % 3] += t;
+                moved
+            };
+            let slope =
+                (membrane.energy(&moved(step)) - membrane.energy(&moved(-step))) / (2.0 * step);
+            assert!((slope + forces[column / 3][column % 3]).abs() < 1e-9);
+            let (mut high, mut low) = (vec![[0.0; 3]; 3], vec![[0.0; 3]; 3]);
+            membrane.add_forces(&moved(step), &mut high);
+            membrane.add_forces(&moved(-step), &mut low);
+            for row in 0..9 {
+                let change = (high[row / 3][row % 3] - low[row / 3][row % 3]) / (2.0 * step);
+                assert!((change + stiffness[row][column]).abs() < 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn stretched_along_one_axis_it_is_a_strip() {
+        // Strain e along x, free across: energy ½ Y e² A t, with Green's strain e = ε + ε²/2.
+        let flat = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+        let membrane = Membrane::new([0, 1, 2], flat, CLOTH).unwrap();
+        let green: f64 = 1e-3;
+        let (long, short) = ((1.0 + 2.0 * green).sqrt(), (1.0 - 2.0 * 0.3 * green).sqrt());
+        let stretched = [[0.0; 3], [long, 0.0, 0.0], [0.0, short, 0.0]];
+        let expected = 0.5 * 2.0 * green * green * 0.5 * 0.1;
+        assert!((membrane.energy(&stretched) / expected - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn refuses_a_triangle_without_area() {
+        let line = [[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
+        assert!(Membrane::new([0, 1, 2], line, CLOTH).is_err());
+    }
+}

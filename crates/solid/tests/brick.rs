@@ -1,0 +1,179 @@
+//! The hyperelastic voxel: derivatives, rigid motion, spectrum, exact bending, inversion.
+
+use proptest::prelude::*;
+use voxsoft_solid::matrix::{apply, polar};
+use voxsoft_solid::vector::{Vec3, add};
+use voxsoft_solid::{Brick, Fiber, HyperelasticMaterial, Model};
+
+const SIDE: f64 = 0.5;
+
+fn cube() -> (Brick, Vec<Vec3>) {
+    let corner = |c: usize| [c >> 2 & 1, c >> 1 & 1, c & 1].map(|bit| SIDE * bit as f64);
+    let brick = Brick {
+        vertices: std::array::from_fn(|c| c as u32),
+        material: 0,
+        side: SIDE,
+        fraction: 0.7,
+    };
+    (brick, (0..8).map(corner).collect())
+}
+
+fn materials() -> Vec<HyperelasticMaterial> {
+    let ogden = Model::Ogden {
+        terms: [(1.2, 1.7), (0.1, 7.0), (0.2, -3.4)],
+    };
+    let fiber = Fiber {
+        direction: [0.6, 0.0, 0.8],
+        modulus: 5.0,
+        compression: true,
+    };
+    vec![
+        HyperelasticMaterial::neo_hookean(1.0, 0.49, 1.0).unwrap(),
+        HyperelasticMaterial::neo_hookean(1.0, 0.2, 1.0)
+            .unwrap()
+            .with_fibers(vec![fiber])
+            .unwrap(),
+        HyperelasticMaterial::new(ogden, 30.0, 1.0).unwrap(),
+    ]
+}
+
+fn moved() -> impl Strategy<Value = Vec<Vec3>> {
+    let (_, rest) = cube();
+    prop::collection::vec(prop::array::uniform3(-0.1..0.1f64), 8)
+        .prop_map(move |u| rest.iter().zip(u).map(|(x, u)| add(*x, u)).collect())
+}
+
+fn forces(brick: &Brick, material: &HyperelasticMaterial, positions: &[Vec3]) -> Vec<Vec3> {
+    let mut forces = vec![[0.0; 3]; 8];
+    brick.add_forces(material, positions, &mut forces);
+    forces
+}
+
+proptest! {
+    // Central differences with h = 1e-6 (a strain of 2e-6) err by about h² × 1e3 + 1e-16/h.
+    #[test]
+    fn forces_and_stiffness_are_derivatives(positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
+        let (brick, _) = cube();
+        let step = 1e-6;
+        let at = |t: f64| -> Vec<Vec3> {
+            positions.iter().zip(&direction).map(|(x, d)| std::array::from_fn(|i| x[i] + t * d[i])).collect()
+        };
+        for material in materials() {
+            let here = forces(&brick, &material, &positions);
+            let power: f64 = here.iter().zip(&direction).map(|(f, d)| f[0] * d[0] + f[1] * d[1] + f[2] * d[2]).sum();
+            let change = (brick.energy(&material, &at(step)) - brick.energy(&material, &at(-step))) / (2.0 * step);
+            prop_assert!((change + power).abs() < 1e-6, "{change} {power}");
+            let stiffness = brick.stiffness(&material, &positions);
+            let (high, low) = (forces(&brick, &material, &at(step)), forces(&brick, &material, &at(-step)));
+            for row in 0..24 {
+                let (vertex, axis) = (row / 3, row % 3);
+                let product: f64 = (0..24).map(|c| stiffness[row][c] * direction[c / 3][c % 3]).sum();
+                let slope = (high[vertex][axis] - low[vertex][axis]) / (2.0 * step);
+                prop_assert!((slope + product).abs() < 2e-5, "row {row}: {slope} {product}");
+                for column in 0..24 {
+                    prop_assert!((stiffness[row][column] - stiffness[column][row]).abs() < 1e-10 * 30.0);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rigid_motion_costs_nothing(turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
+        let (brick, rest) = cube();
+        let (rotation, _) = polar(&turn);
+        let turned: Vec<Vec3> = rest.iter().map(|x| add(apply(&rotation, *x), shift)).collect();
+        for material in materials() {
+            prop_assert!(brick.energy(&material, &turned).abs() < 1e-13);
+            // Rounding of coordinates of size 10 over the side, times the bulk modulus.
+            prop_assert!(forces(&brick, &material, &turned).iter().flatten().all(|f| f.abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn pushes_back_when_inside_out(positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
+        let (brick, _) = cube();
+        for material in materials() {
+            prop_assert!(brick.energy(&material, &positions).is_finite());
+            prop_assert!(forces(&brick, &material, &positions).iter().flatten().all(|f| f.is_finite()));
+            prop_assert!(brick.stiffness(&material, &positions).as_flattened().iter().all(|f| f.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn six_motions_cost_nothing_and_no_more() {
+    let (brick, rest) = cube();
+    for material in materials() {
+        let values = eigenvalues(&brick.stiffness(&material, &rest));
+        assert!(values[5].abs() < 1e-13, "{values:?}");
+        // The softest true mode: 1/20 of E h would be a near mechanism.
+        assert!(
+            values[6] > 0.01 * material.young() * brick.volume() / SIDE.powi(2),
+            "{values:?}"
+        );
+    }
+}
+
+/// All eigenvalues of a symmetric matrix in rising order, by Jacobi rotations.
+fn eigenvalues(matrix: &[[f64; 24]; 24]) -> Vec<f64> {
+    let mut a = *matrix;
+    for _ in 0..30 {
+        for p in 0..24 {
+            for q in p + 1..24 {
+                if a[p][q] == 0.0 {
+                    continue;
+                }
+                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let c = 1.0 / (t * t + 1.0).sqrt();
+                let s = t * c;
+                for k in 0..24 {
+                    let (x, y) = (a[k][p], a[k][q]);
+                    a[k][p] = c * x - s * y;
+                    a[k][q] = s * x + c * y;
+                }
+                for k in 0..24 {
+                    let (x, y) = (a[p][k], a[q][k]);
+                    a[p][k] = c * x - s * y;
+                    a[q][k] = s * x + c * y;
+                }
+            }
+        }
+    }
+    let mut values: Vec<f64> = (0..24).map(|i| a[i][i]).collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+#[test]
+fn bends_as_a_plate_and_as_a_beam() {
+    // Plane sections: u₁ = κ x z, and u₃ = −κ x²/2 has no share in one voxel's nodes but its mean, so
+    // the energy is that of the bending strain ε₁₁ = κ z alone: ½ E/(1 − ν²) κ² h²/12 per volume with
+    // the width held flat, and ½ E κ² h²/12 with ε₂₂ = −ν κ z (anticlastic).
+    let (brick, rest) = cube();
+    let curvature = 1e-4;
+    for material in [
+        HyperelasticMaterial::neo_hookean(1.0, 0.3, 1.0).unwrap(),
+        HyperelasticMaterial::neo_hookean(1.0, 0.499, 1.0).unwrap(),
+    ] {
+        let poisson = material.poisson();
+        for (across, modulus) in [(0.0, 1.0 / (1.0 - poisson * poisson)), (poisson, 1.0)] {
+            let bent: Vec<Vec3> = rest
+                .iter()
+                .map(|x| {
+                    let from_middle = x.map(|value| value - SIDE / 2.0);
+                    let strain = curvature * from_middle[2];
+                    [
+                        x[0] + strain * from_middle[0],
+                        x[1] - across * strain * from_middle[1],
+                        x[2],
+                    ]
+                })
+                .collect();
+            let expected = 0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume();
+            let ratio = brick.energy(&material, &bent) / expected;
+            // Terms of third order in the strain are 1e-4 of it.
+            assert!((ratio - 1.0).abs() < 1e-3, "{poisson} {across}: {ratio}");
+        }
+    }
+}
