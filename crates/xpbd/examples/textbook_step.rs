@@ -23,8 +23,8 @@ fn beam() -> Result<Problem, Box<dyn std::error::Error>> {
         tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
         tet_part: vec![0; count],
         tet_block: (0..count as u32).map(|t| t / 5).collect(),
-        ..Mesh::default()
         vertices: tets.vertices,
+        ..Mesh::default()
     };
     let held = (0..mesh.vertices.len() as u32).filter(|&v| mesh.vertices[v as usize][0] < 1e-9);
     let clamp = Clamp::fixed(held.collect());
