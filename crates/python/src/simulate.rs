@@ -124,6 +124,7 @@ impl PyProblemParts {
         self.load(
             LoadKind::Pressure {
                 triangles,
+                voids: Vec::new(),
                 pressure,
             },
             history,

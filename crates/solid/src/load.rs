@@ -19,6 +19,9 @@ pub enum LoadKind {
     Pressure {
         /// The loaded triangles.
         triangles: Vec<[u32; 3]>,
+        /// Tetrahedra of cut voxels with the part of each that belongs to the cavity: the pressure
+        /// works on the volume that the triangles enclose plus these parts.
+        voids: Vec<([u32; 4], f64)>,
         /// The pressure; positive pushes against the solid.
         pressure: f64,
     },
@@ -44,4 +47,23 @@ impl Load {
             history: History::constant(),
         }
     }
+}
+
+/// Whether triangles close a volume: every edge is met once from each side.
+pub(crate) fn is_closed(triangles: &[[u32; 3]]) -> bool {
+    let mut edges: Vec<(u32, u32, i8)> = triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(from, to)| {
+            if from < to {
+                (from, to, 1)
+            } else {
+                (to, from, -1)
+            }
+        })
+        .collect();
+    edges.sort_unstable();
+    edges
+        .chunk_by(|x, y| (x.0, x.1) == (y.0, y.1))
+        .all(|same| same.iter().map(|&(.., side)| i32::from(side)).sum::<i32>() == 0)
 }

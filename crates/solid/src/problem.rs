@@ -1,5 +1,8 @@
+use crate::elastic::volume_hessian;
+use crate::load::is_closed;
+use crate::matrix::{cross_matrix, plus};
 use crate::vector::{Vec3, axpy, cross, scale, sub};
-use crate::{Body, Clamp, Load, LoadKind, ProblemError};
+use crate::{Body, Clamp, Load, LoadKind, ProblemError, Tet};
 
 /// A horizontal plane without friction that no vertex may pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +19,7 @@ pub struct Problem {
     loads: Vec<Load>,
     floor: Option<Floor>,
     held: Vec<[bool; 3]>,
+    conservative: bool,
 }
 
 impl Problem {
@@ -39,12 +43,17 @@ impl Problem {
         for load in &loads {
             check_load(load, count)?;
         }
+        let conservative = loads.iter().all(|load| match &load.kind {
+            LoadKind::Pressure { triangles, .. } => is_closed(triangles),
+            LoadKind::Gravity(_) | LoadKind::Forces { .. } => true,
+        });
         Ok(Self {
             body,
             clamps,
             loads,
             floor,
             held,
+            conservative,
         })
     }
 
@@ -85,9 +94,17 @@ impl Problem {
                 }
                 LoadKind::Pressure {
                     triangles,
+                    voids,
                     pressure,
                 } => {
-                    add_pressure(triangles, factor * pressure, positions, forces);
+                    let pressure = factor * pressure;
+                    add_pressure(triangles, pressure, positions, forces);
+                    for &(vertices, part) in voids {
+                        let gradients = unstiff(vertices).evaluate(positions).1;
+                        for (vertex, gradient) in vertices.into_iter().zip(gradients) {
+                            axpy(&mut forces[vertex as usize], part * pressure, gradient);
+                        }
+                    }
                 }
                 LoadKind::Forces {
                     vertices,
@@ -97,6 +114,53 @@ impl Problem {
                         axpy(&mut forces[vertex as usize], factor, *value);
                     }
                 }
+            }
+        }
+    }
+
+    /// Whether all loads come from a potential, so that the stiffness matrix is symmetric: a pressure
+    /// does if its surface is closed.
+    pub fn is_conservative(&self) -> bool {
+        self.conservative
+    }
+
+    /// Hands minus the derivative of the external forces by positions (N/m) to `visit` piece by
+    /// piece, as [`crate::elastic::visit_stiffness`] does.
+    ///
+    /// On a closed surface the forces are `p ∂V/∂x`, and a triangle's part of `V` is `−a·(b × c)/6`; an
+    /// open one loads each corner with a third of `−p A n`, whose derivative is not symmetric.
+    pub fn visit_load_stiffness(
+        &self,
+        positions: &[Vec3],
+        time: f64,
+        visit: &mut dyn FnMut(&[u32], &[f64]),
+    ) {
+        for load in &self.loads {
+            let LoadKind::Pressure {
+                triangles,
+                voids,
+                pressure,
+            } = &load.kind
+            else {
+                continue;
+            };
+            let pressure = load.history.at(time) * pressure;
+            let closed = is_closed(triangles);
+            for triangle in triangles {
+                let corners = triangle.map(|v| positions[v as usize]);
+                let matrix = if closed {
+                    closed_pressure_stiffness(pressure, corners)
+                } else {
+                    open_pressure_stiffness(pressure, corners)
+                };
+                visit(triangle, matrix.as_flattened());
+            }
+            for (vertices, part) in voids {
+                let mut matrix = volume_hessian(vertices.map(|v| positions[v as usize]));
+                for entry in matrix.as_flattened_mut() {
+                    *entry *= -part * pressure;
+                }
+                visit(vertices, matrix.as_flattened());
             }
         }
     }
@@ -129,6 +193,42 @@ fn add_pressure(triangles: &[[u32; 3]], pressure: f64, positions: &[Vec3], force
     }
 }
 
+/// A tetrahedron of which only the volume is asked.
+fn unstiff(vertices: [u32; 4]) -> Tet {
+    Tet {
+        vertices,
+        volume: 0.0,
+        stiffness: 0.0,
+    }
+}
+
+fn closed_pressure_stiffness(pressure: f64, corners: [Vec3; 3]) -> [[f64; 9]; 9] {
+    let mut matrix = [[0.0; 9]; 9];
+    for (row, column, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+        let block = cross_matrix(scale(-pressure / 6.0, corners[other]));
+        for i in 0..3 {
+            for j in 0..3 {
+                matrix[3 * row + i][3 * column + j] = block[i][j];
+                matrix[3 * column + j][3 * row + i] = block[i][j];
+            }
+        }
+    }
+    matrix
+}
+
+fn open_pressure_stiffness(pressure: f64, [a, b, c]: [Vec3; 3]) -> [[f64; 9]; 9] {
+    let u = cross_matrix(scale(pressure / 6.0, sub(b, a)));
+    let v = cross_matrix(scale(pressure / 6.0, sub(c, a)));
+    let blocks = [plus(&v, -1.0, &u), v.map(|row| row.map(|x| -x)), u];
+    let mut matrix = [[0.0; 9]; 9];
+    for (row, entries) in matrix.iter_mut().enumerate() {
+        for (column, entry) in entries.iter_mut().enumerate() {
+            *entry = blocks[column / 3][row % 3][column % 3];
+        }
+    }
+    matrix
+}
+
 fn check_load(load: &Load, count: usize) -> Result<(), ProblemError> {
     let finite = |values: &[f64]| {
         if values.iter().all(|value| value.is_finite()) {
@@ -141,9 +241,14 @@ fn check_load(load: &Load, count: usize) -> Result<(), ProblemError> {
         LoadKind::Gravity(acceleration) => finite(acceleration),
         LoadKind::Pressure {
             triangles,
+            voids,
             pressure,
         } => {
             finite(&[*pressure])?;
+            for (vertices, part) in voids {
+                finite(&[*part])?;
+                check_indices("vertex of a cut voxel", vertices, count)?;
+            }
             check_indices(
                 "vertex of a pressure triangle",
                 triangles.as_flattened(),
@@ -172,5 +277,72 @@ fn check_indices(what: &'static str, vertices: &[u32], count: usize) -> Result<(
             count,
         }),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{LatticeMaterial, Mesh};
+
+    /// A tetrahedron whose four faces, or three of them, feel a pressure from outside.
+    fn pressed(faces: usize, voids: Vec<([u32; 4], f64)>) -> Problem {
+        let mesh = Mesh {
+            vertices: vec![
+                [0.1, 0.2, 0.0],
+                [1.0, 0.0, 0.1],
+                [0.0, 1.2, 0.0],
+                [0.1, 0.0, 0.9],
+            ],
+            tets: vec![[0, 1, 2, 3]],
+            tet_part: vec![0],
+            tet_block: vec![0],
+            ..Mesh::default()
+        };
+        let material = LatticeMaterial::from_moduli(1.0, 1.0, 1.0).unwrap();
+        let body = Body::new(&mesh, &[material]).unwrap();
+        let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]][..faces].to_vec();
+        let load = Load::constant(LoadKind::Pressure {
+            triangles,
+            voids,
+            pressure: 2.0,
+        });
+        Problem::new(body, vec![], vec![load], None).unwrap()
+    }
+
+    #[test]
+    fn pressure_stiffness_is_the_derivative_of_the_forces() {
+        let step = 1e-6;
+        for (problem, conservative) in [
+            (pressed(4, vec![]), true),
+            (pressed(3, vec![]), false),
+            (pressed(4, vec![([0, 1, 2, 3], 0.4)]), true),
+        ] {
+            assert_eq!(problem.is_conservative(), conservative);
+            let positions = problem.body().rest().to_vec();
+            let mut dense = [[0.0; 12]; 12];
+            problem.visit_load_stiffness(&positions, 0.0, &mut |vertices, matrix| {
+                let size = 3 * vertices.len();
+                for (place, k) in matrix.iter().enumerate() {
+                    let (row, column) = (place / size, place % size);
+                    let index = |x: usize| 3 * vertices[x / 3] as usize + x % 3;
+                    dense[index(row)][index(column)] += k;
+                }
+            });
+            for column in 0..12 {
+                let forces = |t: f64| {
+                    let mut moved = positions.clone();
+                    moved[column / 3][column % 3] += t;
+                    let mut forces = vec![[0.0; 3]; 4];
+                    problem.add_loads(&moved, 0.0, &mut forces);
+                    forces
+                };
+                let (high, low) = (forces(step), forces(-step));
+                for row in 0..12 {
+                    let slope = (high[row / 3][row % 3] - low[row / 3][row % 3]) / (2.0 * step);
+                    assert!((slope + dense[row][column]).abs() < 1e-9, "{row} {column}");
+                }
+            }
+        }
     }
 }

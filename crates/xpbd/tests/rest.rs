@@ -212,6 +212,7 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
     let clamp = Clamp::fixed(where_(&mesh, |p| p[2] < 1e-9));
     let inflate = |pressure| {
         let load = LoadKind::Pressure {
+            voids: Vec::new(),
             triangles: triangles.clone(),
             pressure,
         };
