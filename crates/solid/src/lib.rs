@@ -63,5 +63,5 @@ pub use lattice::LatticeMaterial;
 pub use load::{Load, LoadKind};
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
-pub use problem::{Floor, Problem};
+pub use problem::{Floor, Problem, enclosed_volume};
 pub use state::State;

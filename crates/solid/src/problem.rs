@@ -1,7 +1,8 @@
+use crate::balance::cavity_volume;
 use crate::elastic::volume_hessian;
 use crate::load::is_closed;
 use crate::matrix::{cross_matrix, plus};
-use crate::vector::{Vec3, axpy, cross, scale, sub};
+use crate::vector::{Vec3, axpy, cross, dot, scale, sub};
 use crate::{Body, Clamp, Load, LoadKind, ProblemError, Tet};
 
 /// A horizontal plane without friction that no vertex may pass.
@@ -84,8 +85,18 @@ impl Problem {
 
     /// Adds the external forces (N) at `time` (s) on a body at `positions`.
     pub fn add_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
+        self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
+    }
+
+    /// Adds the external forces (N) with a factor of the caller's for each load.
+    pub fn add_scaled_loads(
+        &self,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+        forces: &mut [Vec3],
+    ) {
         for load in &self.loads {
-            let factor = load.history.at(time);
+            let factor = factor_of(load);
             match &load.kind {
                 LoadKind::Gravity(acceleration) => {
                     for (force, mass) in forces.iter_mut().zip(self.body.masses()) {
@@ -118,6 +129,33 @@ impl Problem {
         }
     }
 
+    /// The potential (J) of the loads with a factor for each, zero for a body that has not moved in
+    /// dead loads: its derivative is minus the force, if the loads are conservative.
+    pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
+        let mut work = 0.0;
+        for load in &self.loads {
+            let factor = factor_of(load);
+            let moved = |vertex: usize| sub(positions[vertex], self.body.rest()[vertex]);
+            work += factor
+                * match &load.kind {
+                    LoadKind::Gravity(acceleration) => (0..positions.len())
+                        .map(|v| self.body.masses()[v] * dot(*acceleration, moved(v)))
+                        .sum::<f64>(),
+                    LoadKind::Forces { vertices, forces } => vertices
+                        .iter()
+                        .zip(forces)
+                        .map(|(&v, force)| dot(*force, moved(v as usize)))
+                        .sum(),
+                    LoadKind::Pressure {
+                        triangles,
+                        voids,
+                        pressure,
+                    } => pressure * enclosed_volume(triangles, voids, positions),
+                };
+        }
+        -work
+    }
+
     /// Whether all loads come from a potential, so that the stiffness matrix is symmetric: a pressure
     /// does if its surface is closed.
     pub fn is_conservative(&self) -> bool {
@@ -132,7 +170,7 @@ impl Problem {
     pub fn visit_load_stiffness(
         &self,
         positions: &[Vec3],
-        time: f64,
+        factor_of: &dyn Fn(&Load) -> f64,
         visit: &mut dyn FnMut(&[u32], &[f64]),
     ) {
         for load in &self.loads {
@@ -144,7 +182,7 @@ impl Problem {
             else {
                 continue;
             };
-            let pressure = load.history.at(time) * pressure;
+            let pressure = factor_of(load) * pressure;
             let closed = is_closed(triangles);
             for triangle in triangles {
                 let corners = triangle.map(|v| positions[v as usize]);
@@ -191,6 +229,19 @@ fn add_pressure(triangles: &[[u32; 3]], pressure: f64, positions: &[Vec3], force
             axpy(&mut forces[vertex as usize], 1.0, force);
         }
     }
+}
+
+/// The volume in m³ enclosed by triangles whose normals point out of the solid, plus parts of tetrahedra.
+pub fn enclosed_volume(
+    triangles: &[[u32; 3]],
+    voids: &[([u32; 4], f64)],
+    positions: &[Vec3],
+) -> f64 {
+    let within: f64 = voids
+        .iter()
+        .map(|&(vertices, part)| part * unstiff(vertices).evaluate(positions).0)
+        .sum();
+    within + cavity_volume(triangles, positions)
 }
 
 /// A tetrahedron of which only the volume is asked.
@@ -321,7 +372,7 @@ mod tests {
             assert_eq!(problem.is_conservative(), conservative);
             let positions = problem.body().rest().to_vec();
             let mut dense = [[0.0; 12]; 12];
-            problem.visit_load_stiffness(&positions, 0.0, &mut |vertices, matrix| {
+            problem.visit_load_stiffness(&positions, &|_| 1.0, &mut |vertices, matrix| {
                 let size = 3 * vertices.len();
                 for (place, k) in matrix.iter().enumerate() {
                     let (row, column) = (place / size, place % size);

@@ -1,0 +1,77 @@
+//! Derivatives at an equilibrium, without solving for it again.
+//!
+//! At an equilibrium `r(x, p) = 0` with the tangent `K = −∂r/∂x`, a number `J(x)` changes with a
+//! parameter by `dJ/dp = (∂J/∂x)·K⁻¹ ∂r/∂p = μ·∂r/∂p` with the adjoint state `Kᵀ μ = ∂J/∂x`. The state `μ`
+//! serves for all parameters; `∂r/∂p` is a difference of forces at the same positions.
+
+use std::fmt;
+
+use voxsoft_solid::Problem;
+use voxsoft_solid::vector::Vec3;
+
+use crate::equilibrium::{Equilibrium, Point};
+use crate::system::FactorError;
+
+/// Why there is no derivative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AdjointError {
+    /// The tangent is singular there: the state is at a limit, or a part moves freely.
+    Singular,
+    /// The factor does not fit in memory.
+    OutOfMemory,
+}
+
+impl fmt::Display for AdjointError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Singular => "the tangent is singular at this state, so it has no derivative",
+            Self::OutOfMemory => "the factorised tangent does not fit in memory",
+        })
+    }
+}
+
+impl std::error::Error for AdjointError {}
+
+/// The adjoint states `Kᵀ μ = g` at an equilibrium under all loads, one for each gradient `g` (of a
+/// number by the positions of all vertices); zero on held coordinates.
+pub fn adjoint(
+    problem: &Problem,
+    positions: &[Vec3],
+    gradients: &[Vec<Vec3>],
+) -> Result<Vec<Vec<Vec3>>, AdjointError> {
+    let mut equilibrium = Equilibrium::new(problem)?;
+    let full = Point::all(1.0);
+    equilibrium.update_floor(positions, full)?;
+    let mut unused = vec![0.0; equilibrium.system.size()];
+    equilibrium.system.assemble(
+        problem,
+        positions,
+        &full.factor_of(),
+        None,
+        &mut unused,
+    );
+    let positive = problem.is_conservative();
+    let factor = match equilibrium.system.factor(0.0, positive) {
+        Ok(factor) => factor,
+        Err(_) => equilibrium.system.factor(0.0, false)?,
+    };
+    let solve = |gradient: &Vec<Vec3>| {
+        let mut side = equilibrium.system.gather(gradient);
+        equilibrium.system.solve(&factor, &mut side, true);
+        if side.iter().all(|x| x.is_finite()) {
+            Ok(equilibrium.system.spread(&side))
+        } else {
+            Err(AdjointError::Singular)
+        }
+    };
+    gradients.iter().map(solve).collect()
+}
+
+impl From<FactorError> for AdjointError {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::Memory => Self::OutOfMemory,
+            FactorError::NotPositive | FactorError::Singular => Self::Singular,
+        }
+    }
+}

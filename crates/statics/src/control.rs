@@ -1,0 +1,415 @@
+//! Paths on which the load is an unknown: arc length and volume control.
+//!
+//! Both solve the equilibrium `r(x, s) = 0` with one more equation `c(x, s) = 0`. A Newton step of the
+//! bordered system takes two solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`:
+//! `δx = a + b δs`, and the extra equation gives `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The
+//! tangent may be indefinite; it is singular only at single points of the path.
+
+use std::ops::ControlFlow;
+
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
+use voxsoft_solid::{LoadKind, enclosed_volume};
+
+use crate::equilibrium::{Failure, Point};
+use crate::path::{Path, status_of};
+use crate::settings::{Progress, Settings, Status};
+
+/// Steps of the look for a limit, and how long they are against the last step that converged.
+const LOOK_STEPS: u32 = 60;
+/// Iterations of one bordered step.
+const BORDERED_ITERATIONS: u32 = 12;
+/// How often an arc may be halved.
+const HALVINGS: u32 = 10;
+
+/// Which factor is the unknown.
+#[derive(Clone, Copy, PartialEq)]
+enum Unknown {
+    All,
+    Pressure,
+}
+
+impl Unknown {
+    fn read(self, point: Point) -> f64 {
+        match self {
+            Self::All | Self::Pressure => point.pressure,
+        }
+    }
+
+    fn with(self, point: Point, factor: f64) -> Point {
+        match self {
+            Self::All => Point::all(factor),
+            Self::Pressure => Point {
+                pressure: factor,
+                ..point
+            },
+        }
+    }
+}
+
+/// The derivative of the forces by the unknown factor, on free coordinates.
+fn load_direction(path: &Path<'_, '_>, positions: &[Vec3], unknown: Unknown) -> Vec<f64> {
+    let one = match unknown {
+        Unknown::All => Point::all(1.0),
+        Unknown::Pressure => Point {
+            dead: 0.0,
+            pressure: 1.0,
+        },
+    };
+    let mut forces = vec![[0.0; 3]; positions.len()];
+    path.equilibrium
+        .problem
+        .add_scaled_loads(positions, &one.factor_of(), &mut forces);
+    path.equilibrium.system.gather(&forces)
+}
+
+/// Solves `K a = r` and `K b = ∂r/∂s` at a state.
+fn two_solutions(
+    path: &mut Path<'_, '_>,
+    positions: &[Vec3],
+    point: Point,
+    unknown: Unknown,
+    residual: &[f64],
+) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    let mut a = residual.to_vec();
+    let equilibrium = &mut path.equilibrium;
+    equilibrium.iterations += 1;
+    equilibrium.system.assemble(
+        equilibrium.problem,
+        positions,
+        &point.factor_of(),
+        None,
+        &mut a,
+    );
+    let positive = equilibrium.problem.is_conservative();
+    let factor = match equilibrium.system.factor(0.0, positive) {
+        Ok(factor) => factor,
+        Err(_) => equilibrium.system.factor(0.0, false)?,
+    };
+    equilibrium.system.solve(&factor, &mut a, false);
+    let mut b = load_direction(path, positions, unknown);
+    path.equilibrium.system.solve(&factor, &mut b, false);
+    if a.iter().chain(&b).all(|x| x.is_finite()) {
+        Ok((a, b))
+    } else {
+        Err(Failure::Singular)
+    }
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// A direction along the path: displacement per arc, and change of the factor.
+#[derive(Clone)]
+struct Tangent {
+    moves: Vec<f64>,
+    factor: f64,
+}
+
+/// One step of the arc `length` along `tangent`; displacements count in units of `unit` (m).
+fn arc_step(
+    path: &mut Path<'_, '_>,
+    tangent: &Tangent,
+    length: f64,
+    unit: f64,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    let unknown = Unknown::All;
+    let mut positions = path.positions.clone();
+    let mut factor = unknown.read(path.point);
+    let shift = |positions: &mut Vec<Vec3>, moves: Vec<Vec3>, part: f64| {
+        for (x, m) in positions.iter_mut().zip(moves) {
+            *x = add(*x, scale(part, m));
+        }
+    };
+    let spread = path.equilibrium.system.spread(&tangent.moves);
+    shift(&mut positions, spread, length * unit);
+    factor += length * tangent.factor;
+    for iteration in 1..=BORDERED_ITERATIONS {
+        let point = unknown.with(path.point, factor);
+        path.equilibrium
+            .problem
+            .place_clamps(f64::INFINITY, factor, &mut positions);
+        let forces = path.equilibrium.forces(&positions, point);
+        let progress = Progress {
+            iterations: path.equilibrium.iterations,
+            factor,
+            residual: forces.relative(),
+            positions: &positions,
+            converged: false,
+        };
+        if let ControlFlow::Break(()) = (path.observer)(&progress) {
+            return Err(Failure::Cancelled);
+        }
+        if !forces.relative().is_finite() {
+            return Err(Failure::Lost);
+        }
+        if forces.relative() <= settings.tolerance {
+            path.accept(positions, point, iteration, forces.relative());
+            return Ok(());
+        }
+        let (a, b) = two_solutions(path, &positions, point, unknown, &forces.free)?;
+        // The correction stays in the plane across the tangent.
+        let across = product(&tangent.moves, &b) / unit + tangent.factor;
+        let change = -product(&tangent.moves, &a) / unit / across;
+        let moves: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();
+        let largest = moves.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+        // A correction longer than the step has lost the path.
+        if !(largest < 4.0 * length * unit + 1e-9 * unit) && iteration > 2 {
+            return Err(Failure::Lost);
+        }
+        let spread = path.equilibrium.system.spread(&moves);
+        shift(&mut positions, spread, 1.0);
+        factor += change;
+    }
+    Err(Failure::Lost)
+}
+
+/// The direction of the path at the present point, with the sign that goes on along `before`.
+fn tangent_at(
+    path: &mut Path<'_, '_>,
+    before: Option<&Tangent>,
+    unit: f64,
+) -> Result<Tangent, Failure> {
+    let positions = path.positions.clone();
+    let forces = path.equilibrium.forces(&positions, path.point);
+    let (_, b) = two_solutions(path, &positions, path.point, Unknown::All, &forces.free)?;
+    let length = (product(&b, &b) / (unit * unit) + 1.0).sqrt();
+    let mut tangent = Tangent {
+        moves: b.iter().map(|x| x / (unit * length)).collect(),
+        factor: 1.0 / length,
+    };
+    if let Some(before) = before {
+        let along = product(&tangent.moves, &before.moves) + tangent.factor * before.factor;
+        if along < 0.0 {
+            tangent.moves.iter_mut().for_each(|x| *x = -*x);
+            tangent.factor = -tangent.factor;
+        }
+    }
+    Ok(tangent)
+}
+
+/// Follows the path by arc length to the full load.
+pub(crate) fn follow_arc(
+    path: &mut Path<'_, '_>,
+    settings: &Settings,
+    steps: u32,
+) -> (Status, Option<f64>) {
+    let unit = path_unit(path);
+    match walk(path, settings, steps, settings.first_step.min(0.2), unit, 1.0) {
+        Ok(limit) if path.point.pressure >= 1.0 => {
+            let full = Point::all(1.0);
+            let start = path.positions.clone();
+            match path.settle(start, full, settings) {
+                Ok(_) => (Status::AtRest, limit),
+                Err(failure) => (status_of(failure), limit),
+            }
+        }
+        Ok(limit) => (
+            limit.map_or(Status::NotConverged, |_| Status::LimitReached),
+            limit,
+        ),
+        Err(failure) => (status_of(failure), None),
+    }
+}
+
+/// Displacements are measured against the diameter of the body, times the root of the number of
+/// coordinates: an arc of one is about a body length of motion.
+fn path_unit(path: &Path<'_, '_>) -> f64 {
+    0.05 * path.equilibrium.problem.body().size() * (path.equilibrium.system.size() as f64).sqrt()
+}
+
+/// Walks along the path until the factor passes `end`; the largest factor seen if it turned back.
+fn walk(
+    path: &mut Path<'_, '_>,
+    settings: &Settings,
+    steps: u32,
+    first: f64,
+    unit: f64,
+    end: f64,
+) -> Result<Option<f64>, Failure> {
+    let mut tangent = tangent_at(path, None, unit)?;
+    let mut length = first;
+    let (mut highest, mut limit) = (path.point.pressure, None);
+    let mut halvings = 0;
+    let mut taken = 0;
+    while taken < steps {
+        match arc_step(path, &tangent, length, unit, settings) {
+            Ok(()) => {
+                taken += 1;
+                halvings = 0;
+                let last = path.points.last().map_or(0, |p| p.iterations);
+                if last <= 4 {
+                    length *= 1.5;
+                }
+                let now = path.point.pressure;
+                let turned = now < highest - 1e-9;
+                if turned && limit.is_none() {
+                    limit = Some(highest);
+                }
+                if let Some(point) = path.points.last_mut() {
+                    point.stable = limit.is_none();
+                }
+                highest = highest.max(now);
+                if now >= end {
+                    return Ok(limit);
+                }
+                tangent = tangent_at(path, Some(&tangent), unit)?;
+            }
+            Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+            Err(failure) => {
+                halvings += 1;
+                path.equilibrium.back_offs += 1;
+                length /= 3.0;
+                if halvings > HALVINGS {
+                    return if limit.is_some() { Ok(limit) } else { Err(failure) };
+                }
+            }
+        }
+    }
+    Ok(limit)
+}
+
+/// From the last equilibrium of a load path that got stuck: is there a limit just ahead? The state
+/// stays at the last stable equilibrium.
+pub(crate) fn look_for_limit(path: &mut Path<'_, '_>, settings: &Settings) -> Option<f64> {
+    let kept = (path.positions.clone(), path.point, path.points.len());
+    let unit = path_unit(path);
+    let first = 0.02;
+    let mut highest: Option<f64> = None;
+    if let Ok(Some(limit)) = walk(path, settings, LOOK_STEPS, first, unit, 1.0) {
+        highest = Some(limit);
+    }
+    path.positions = kept.0;
+    path.point = kept.1;
+    path.points.truncate(kept.2);
+    highest
+}
+
+/// Grows the volume that pressures work on; see [`crate::Control::Volume`].
+pub(crate) fn follow_volume(
+    path: &mut Path<'_, '_>,
+    settings: &Settings,
+    ratio: f64,
+    steps: u32,
+) -> (Status, Option<f64>) {
+    let dead = Point {
+        dead: 1.0,
+        pressure: 0.0,
+    };
+    let start = path.positions.clone();
+    if let Err(failure) = path.settle(start, dead, settings) {
+        return (status_of(failure), None);
+    }
+    let first = volume(path, &path.positions);
+    let (mut highest, mut turned) = (0.0f64, None);
+    let mut part = 1.0 / f64::from(steps.max(1));
+    let least = part / 256.0;
+    let mut done = 0.0;
+    let mut before: Option<(Vec<Vec3>, f64, f64)> = None;
+    while done < 1.0 - 1e-12 {
+        let next = (done + part).min(1.0);
+        let target = first * (1.0 + (ratio - 1.0) * next);
+        let kept = (path.positions.clone(), path.point.pressure, done);
+        match volume_step(path, target, before.as_ref(), next, settings) {
+            Ok(()) => {
+                before = Some(kept);
+                done = next;
+                let now = path.point.pressure;
+                if now < highest - 1e-9 && turned.is_none() {
+                    turned = Some(highest);
+                }
+                highest = highest.max(now);
+                part = (1.5 * part).min(1.0 / f64::from(steps.max(1)));
+            }
+            Err(failure @ (Failure::Lost | Failure::Singular)) => {
+                path.equilibrium.back_offs += 1;
+                before = None;
+                part /= 3.0;
+                if part < least {
+                    return (status_of(failure), turned);
+                }
+            }
+            Err(failure) => return (status_of(failure), turned),
+        }
+    }
+    (Status::AtRest, turned)
+}
+
+/// The volume that the pressures work on, weighted with them.
+fn volume(path: &Path<'_, '_>, positions: &[Vec3]) -> f64 {
+    let mut sum = 0.0;
+    for load in path.equilibrium.problem.loads() {
+        if let LoadKind::Pressure {
+            triangles,
+            voids,
+            pressure,
+        } = &load.kind
+        {
+            let weight = pressure * load.history.at(f64::INFINITY);
+            sum += weight * enclosed_volume(triangles, voids, positions);
+        }
+    }
+    sum
+}
+
+fn volume_step(
+    path: &mut Path<'_, '_>,
+    target: f64,
+    before: Option<&(Vec<Vec3>, f64, f64)>,
+    next: f64,
+    settings: &Settings,
+) -> Result<(), Failure> {
+    let unknown = Unknown::Pressure;
+    let mut positions = path.positions.clone();
+    let mut factor = path.point.pressure;
+    if let Some((earlier, pressure, then)) = before {
+        // A straight look ahead, as far as the last step went.
+        let part = ((next - then) / (next - then).max(1e-300)).min(1.0);
+        for (x, e) in positions.iter_mut().zip(earlier) {
+            *x = add(*x, scale(part, sub(*x, *e)));
+        }
+        factor += part * (factor - pressure);
+    }
+    let size = path.equilibrium.problem.body().size();
+    for iteration in 1..=2 * BORDERED_ITERATIONS {
+        let point = unknown.with(path.point, factor);
+        let forces = path.equilibrium.forces(&positions, point);
+        let missing = target - volume(path, &positions);
+        let relative = forces.relative();
+        let progress = Progress {
+            iterations: path.equilibrium.iterations,
+            factor,
+            residual: relative,
+            positions: &positions,
+            converged: false,
+        };
+        if let ControlFlow::Break(()) = (path.observer)(&progress) {
+            return Err(Failure::Cancelled);
+        }
+        if !relative.is_finite() {
+            return Err(Failure::Lost);
+        }
+        if relative <= settings.tolerance && missing.abs() <= 1e-9 * target.abs() {
+            path.accept(positions, point, iteration, relative);
+            return Ok(());
+        }
+        let (a, b) = two_solutions(path, &positions, point, unknown, &forces.free)?;
+        // The gradient of the weighted volume is the load direction itself.
+        let gradient = load_direction(path, &positions, unknown);
+        let change = (missing - product(&gradient, &a)) / product(&gradient, &b);
+        let moves: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();
+        let spread = path.equilibrium.system.spread(&moves);
+        let largest = spread.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+        if !largest.is_finite() {
+            return Err(Failure::Singular);
+        }
+        // Far from the path a full step overshoots.
+        let part = (0.1 * size / largest).min(1.0);
+        for (x, m) in positions.iter_mut().zip(spread) {
+            *x = add(*x, scale(part, m));
+        }
+        factor += part * change;
+    }
+    Err(Failure::Lost)
+}

@@ -1,0 +1,363 @@
+//! Newton's method at one point of the load path.
+
+use std::ops::ControlFlow;
+
+use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
+use voxsoft_solid::{Load, LoadKind, Problem, elastic};
+
+use crate::settings::{Observer, Progress, Settings};
+use crate::system::{Factor, FactorError, System};
+
+/// Where on the path: factors on pressures and on everything else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Point {
+    pub dead: f64,
+    pub pressure: f64,
+}
+
+impl Point {
+    pub fn all(factor: f64) -> Self {
+        Self {
+            dead: factor,
+            pressure: factor,
+        }
+    }
+
+    pub fn factor_of(self) -> impl Fn(&Load) -> f64 {
+        move |load| {
+            let factor = match load.kind {
+                LoadKind::Pressure { .. } => self.pressure,
+                LoadKind::Gravity(_) | LoadKind::Forces { .. } => self.dead,
+            };
+            factor * load.history.at(f64::INFINITY)
+        }
+    }
+}
+
+/// Why Newton's method stopped without an equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Failure {
+    /// It went nowhere, or too slowly.
+    Lost,
+    /// The tangent stays singular.
+    Singular,
+    /// Out of memory.
+    Memory,
+    /// The observer asked to stop.
+    Cancelled,
+}
+
+impl From<FactorError> for Failure {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::Memory => Self::Memory,
+            FactorError::NotPositive | FactorError::Singular => Self::Singular,
+        }
+    }
+}
+
+/// An equilibrium.
+pub(crate) struct Found {
+    pub iterations: u32,
+    pub residual: f64,
+}
+
+/// The forces at some positions.
+pub(crate) struct Forces {
+    /// On free coordinates.
+    pub free: Vec<f64>,
+    /// Their norm.
+    pub residual: f64,
+    /// The norm against which it counts.
+    pub scale: f64,
+}
+
+impl Forces {
+    pub fn relative(&self) -> f64 {
+        self.residual / self.scale
+    }
+}
+
+/// A problem with its tangent, and the vertices that rest on the floor for now.
+pub(crate) struct Equilibrium<'a> {
+    pub problem: &'a Problem,
+    pub system: System,
+    /// Held by clamps or carried by the floor.
+    pub held: Vec<[bool; 3]>,
+    pub iterations: u32,
+    pub back_offs: u32,
+}
+
+/// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
+const LARGEST_SHIFT: f64 = 10.0;
+/// Armijo's condition: the part of the predicted gain that a step must bring.
+const SUFFICIENT: f64 = 1e-4;
+/// How often a step may be halved.
+const HALVINGS: u32 = 12;
+/// Potentials are sums of many terms and known to about this part of their size.
+const ROUNDING: f64 = 1e-12;
+/// A Newton step this small against the body is rounding; the residual cannot fall any more.
+const STANDSTILL: f64 = 1e-13;
+/// What a residual may be at a standstill: rounding of stiff parts, over the load.
+const STANDSTILL_RESIDUAL: f64 = 1e-5;
+
+impl<'a> Equilibrium<'a> {
+    pub fn new(problem: &'a Problem) -> Result<Self, FactorError> {
+        let mut held = problem.held().to_vec();
+        if let Some(floor) = problem.floor() {
+            for (held, point) in held.iter_mut().zip(problem.body().rest()) {
+                held[2] |= point[2] <= floor.z;
+            }
+        }
+        Ok(Self {
+            system: System::new(problem, &held)?,
+            problem,
+            held,
+            iterations: 0,
+            back_offs: 0,
+        })
+    }
+
+    /// Net forces at `positions`.
+    pub fn forces(&self, positions: &[Vec3], point: Point) -> Forces {
+        let mut external = vec![[0.0; 3]; positions.len()];
+        self.problem
+            .add_scaled_loads(positions, &point.factor_of(), &mut external);
+        let square = |forces: &[Vec3]| forces.as_flattened().iter().map(|f| f * f).sum::<f64>();
+        let applied = square(&external);
+        let mut net = external;
+        elastic::add_forces(self.problem.body(), positions, &mut net);
+        let free = self.system.gather(&net);
+        let residual: f64 = free.iter().map(|f| f * f).sum();
+        let supported = square(&net) - residual;
+        let negligible = NEGLIGIBLE_STRAIN * self.problem.body().unit_strain_force();
+        let scale = if applied > 0.0 { applied } else { supported };
+        Forces {
+            free,
+            residual: residual.sqrt(),
+            scale: scale.sqrt().max(negligible),
+        }
+    }
+
+    fn potential(&self, positions: &[Vec3], point: Point) -> (f64, f64) {
+        let elastic = elastic::energy(self.problem.body(), positions);
+        let loads = self.problem.load_potential(positions, &point.factor_of());
+        (elastic + loads, elastic.abs() + loads.abs())
+    }
+
+    /// How far held coordinates still are from where they belong.
+    fn jump(&self, positions: &[Vec3], point: Point) -> Option<Vec<Vec3>> {
+        let mut target = positions.to_vec();
+        self.problem
+            .place_clamps(f64::INFINITY, point.dead, &mut target);
+        if let Some(floor) = self.problem.floor() {
+            for vertex in 0..target.len() {
+                if self.held[vertex][2] && !self.problem.held()[vertex][2] {
+                    target[vertex][2] = floor.z;
+                }
+            }
+        }
+        let jump: Vec<Vec3> = target.iter().zip(positions).map(|(t, x)| sub(*t, *x)).collect();
+        jump.iter().flatten().any(|x| *x != 0.0).then_some(jump)
+    }
+
+    /// Finds the equilibrium at `point` from `positions`, which it changes.
+    pub fn newton(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let size = self.problem.body().size();
+        let limit = 20.0 * size;
+        let mut shift = 0.0f64;
+        for iteration in 0..=settings.max_iterations {
+            let jump = self.jump(positions, point);
+            let mut forces = self.forces(positions, point);
+            let relative = forces.relative();
+            if !relative.is_finite() {
+                return Err(Failure::Lost);
+            }
+            let progress = Progress {
+                iterations: self.iterations,
+                factor: point.pressure,
+                residual: relative,
+                positions,
+                converged: false,
+            };
+            if let ControlFlow::Break(()) = observer(&progress) {
+                return Err(Failure::Cancelled);
+            }
+            if jump.is_none() && relative <= settings.tolerance {
+                return Ok(Found {
+                    iterations: iteration,
+                    residual: relative,
+                });
+            }
+            if iteration == settings.max_iterations {
+                return Err(Failure::Lost);
+            }
+            self.iterations += 1;
+            self.system.assemble(
+                self.problem,
+                positions,
+                &point.factor_of(),
+                jump.as_deref(),
+                &mut forces.free,
+            );
+            let mut step = forces.free.clone();
+            let factor = self.descending(&mut shift)?;
+            self.system.solve(&factor, &mut step, false);
+            if !step.iter().all(|x| x.is_finite()) {
+                return Err(Failure::Singular);
+            }
+            let mut moves = self.system.spread(&step);
+            if let Some(jump) = &jump {
+                moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
+            }
+            let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+            if largest < STANDSTILL * size && relative <= STANDSTILL_RESIDUAL {
+                return Ok(Found {
+                    iterations: iteration,
+                    residual: relative,
+                });
+            }
+            let gain: f64 = step.iter().zip(&forces.free).map(|(s, f)| s * f).sum();
+            self.advance(positions, &moves, point, gain, &forces, jump.is_some())?;
+            let gone = positions
+                .iter()
+                .zip(self.problem.body().rest())
+                .any(|(x, rest)| !(norm(sub(*x, *rest)) < limit + largest_motion(self.problem)));
+            if gone {
+                return Err(Failure::Lost);
+            }
+        }
+        Err(Failure::Lost)
+    }
+
+    /// A factor whose step goes downhill: where loads have a potential, the diagonal is lifted until
+    /// the tangent is positive definite.
+    fn descending(&self, shift: &mut f64) -> Result<Factor, Failure> {
+        if !self.problem.is_conservative() {
+            return Ok(self.system.factor(0.0, false)?);
+        }
+        let mut trial = if *shift > 1e-6 { *shift / 10.0 } else { 0.0 };
+        loop {
+            match self.system.factor(trial, true) {
+                Ok(factor) => {
+                    *shift = trial;
+                    return Ok(factor);
+                }
+                Err(FactorError::NotPositive) if trial < LARGEST_SHIFT => {
+                    trial = (10.0 * trial).max(1e-6);
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// Goes along `moves`, halving the way until the potential falls (or, without a potential, the
+    /// residual does). Steps that carry clamps along may raise it and need only be sound.
+    fn advance(
+        &self,
+        positions: &mut Vec<Vec3>,
+        moves: &[Vec3],
+        point: Point,
+        gain: f64,
+        forces: &Forces,
+        clamps_move: bool,
+    ) -> Result<(), Failure> {
+        let conservative = self.problem.is_conservative();
+        let (start, size) = self.potential(positions, point);
+        let mut part = 1.0;
+        for _ in 0..HALVINGS {
+            let trial: Vec<Vec3> = positions
+                .iter()
+                .zip(moves)
+                .map(|(x, m)| add(*x, scale(part, *m)))
+                .collect();
+            let good = if clamps_move {
+                self.is_sound(&trial)
+            } else if conservative {
+                let (end, end_size) = self.potential(&trial, point);
+                let rounding = ROUNDING * size.max(end_size);
+                end <= start - SUFFICIENT * part * gain + rounding
+            } else {
+                self.forces(&trial, point).residual <= forces.residual * (1.0 - SUFFICIENT * part)
+                    && self.is_sound(&trial)
+            };
+            if good {
+                *positions = trial;
+                return Ok(());
+            }
+            part /= 2.0;
+        }
+        Err(Failure::Lost)
+    }
+
+    /// No voxel is inside out or nearly so.
+    fn is_sound(&self, positions: &[Vec3]) -> bool {
+        self.problem.body().bricks().iter().all(|brick| {
+            voxsoft_solid::matrix::determinant(&brick.deformation(positions)) > 0.1
+        }) && positions.iter().flatten().all(|x| x.is_finite())
+    }
+
+    /// Whether the equilibrium at the assembled state is stable.
+    pub fn is_stable(&mut self, positions: &[Vec3], point: Point) -> bool {
+        let mut unused = vec![0.0; self.system.size()];
+        self.system.assemble(
+            self.problem,
+            positions,
+            &point.factor_of(),
+            None,
+            &mut unused,
+        );
+        !self.problem.is_conservative() || self.system.factor(0.0, true).is_ok()
+    }
+
+    /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.
+    pub fn update_floor(&mut self, positions: &[Vec3], point: Point) -> Result<bool, FactorError> {
+        let Some(floor) = self.problem.floor() else {
+            return Ok(false);
+        };
+        let mut net = vec![[0.0; 3]; positions.len()];
+        self.problem
+            .add_scaled_loads(positions, &point.factor_of(), &mut net);
+        elastic::add_forces(self.problem.body(), positions, &mut net);
+        let slack = 1e-9 * self.problem.body().size();
+        let mut changed = false;
+        for vertex in 0..positions.len() {
+            if self.problem.held()[vertex][2] {
+                continue;
+            }
+            let carried = self.held[vertex][2];
+            let keep = if carried {
+                net[vertex][2] <= 0.0
+            } else {
+                positions[vertex][2] < floor.z - slack
+            };
+            changed |= keep != carried;
+            self.held[vertex][2] = keep;
+        }
+        if changed {
+            self.system = System::new(self.problem, &self.held)?;
+        }
+        Ok(changed)
+    }
+}
+
+/// The farthest that a clamp carries a vertex.
+fn largest_motion(problem: &Problem) -> f64 {
+    let rest = problem.body().rest();
+    let far = |vertex: u32, clamp: &voxsoft_solid::Clamp| {
+        let at = rest[vertex as usize];
+        norm(sub(clamp.target(at, f64::INFINITY, 1.0), at))
+    };
+    problem
+        .clamps()
+        .iter()
+        .flat_map(|clamp| clamp.vertices.iter().map(move |&v| far(v, clamp)))
+        .fold(0.0, f64::max)
+}

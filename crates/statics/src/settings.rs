@@ -1,0 +1,123 @@
+use std::ops::ControlFlow;
+
+use voxsoft_solid::vector::Vec3;
+
+/// How a load path is followed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Control {
+    /// All loads and motions grow together to their full values.
+    Load,
+    /// The same, but steps are measured along the path in displacements and loads, so that it is
+    /// followed through snaps, where the load falls. Ends at the full load, or after `steps`.
+    ArcLength {
+        /// The most steps to take.
+        steps: u32,
+    },
+    /// Dead loads first, then the volume that pressures work on grows to `ratio` times what it is
+    /// without pressure, and the pressure is an unknown: balloons are followed past their limit.
+    Volume {
+        /// The volume at the end over that at the start.
+        ratio: f64,
+        /// The number of steps.
+        steps: u32,
+    },
+}
+
+/// Settings of [`crate::solve`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Equilibrium is where the residual force over the loads (or, without loads, over the reactions)
+    /// is below this.
+    pub tolerance: f64,
+    /// Newton iterations for one step of the path; more than this and the step is cut.
+    pub max_iterations: u32,
+    /// The first step, as a part of the full load. One tries all of it at once.
+    pub first_step: f64,
+    /// Steps below this part of the full load are not tried.
+    pub least_step: f64,
+    /// How the path is followed.
+    pub control: Control,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-8,
+            max_iterations: 30,
+            first_step: 1.0,
+            least_step: 1e-3,
+            control: Control::Load,
+        }
+    }
+}
+
+/// How a solution ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Equilibrium under all that was asked.
+    AtRest,
+    /// The path has a limit: no equilibrium near it carries more than [`Answer::limit`].
+    LimitReached,
+    /// Newton's method found no equilibrium for the smallest step, and no limit explains it.
+    NotConverged,
+    /// The tangent stays singular: a part of the body moves freely.
+    Mechanism,
+    /// The factorised tangent does not fit in memory.
+    OutOfMemory,
+    /// The observer asked to stop.
+    Cancelled,
+}
+
+/// A converged point of the load path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathPoint {
+    /// The factor on loads and motions (on pressures only, for [`Control::Volume`]).
+    pub factor: f64,
+    /// Newton iterations it took.
+    pub iterations: u32,
+    /// The relative residual.
+    pub residual: f64,
+    /// Whether the equilibrium is stable: its tangent is positive definite.
+    pub stable: bool,
+}
+
+/// The equilibrium, or the last one that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Positions in m.
+    pub positions: Vec<Vec3>,
+    /// How it ended.
+    pub status: Status,
+    /// The factor on loads at `positions`: one if all of the load is carried.
+    pub factor: f64,
+    /// The relative residual.
+    pub residual: f64,
+    /// Newton iterations in all.
+    pub iterations: u32,
+    /// Steps of the path that were cut.
+    pub back_offs: u32,
+    /// All converged points.
+    pub path: Vec<PathPoint>,
+    /// The largest load factor of a path that turned back, if it did.
+    pub limit: Option<f64>,
+    /// Whether the equilibrium at `positions` is stable.
+    pub stable: bool,
+}
+
+/// What an observer is told.
+#[derive(Debug)]
+pub struct Progress<'a> {
+    /// Newton iterations so far.
+    pub iterations: u32,
+    /// The load factor.
+    pub factor: f64,
+    /// The relative residual.
+    pub residual: f64,
+    /// The current positions in m.
+    pub positions: &'a [Vec3],
+    /// Whether this is a converged point of the path.
+    pub converged: bool,
+}
+
+/// Called at each iteration; `Break` cancels.
+pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
