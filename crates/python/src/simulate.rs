@@ -3,25 +3,29 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyValueError;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyReadonlyArray3,
+};
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voxsoft_solid::balance::{balance, total_load};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Floor, History, LatticeMaterial, Load, LoadKind, Mesh, Motion, Problem,
-    ProblemError, State, elastic,
+    Body, Clamp, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial, Mesh, Motion,
+    Problem, ProblemError, State, elastic,
 };
+use voxsoft_statics::{Control, Settings};
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Progress, Relaxation, Status, relax, simulate};
 
 use crate::gate;
+use crate::materials::{MaterialArgument, material};
 
 /// How often a Python progress callback is called at most.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
 
 /// The Python class for each error; every variant is bad input to a constructor.
-fn to_python(error: ProblemError) -> PyErr {
+pub(crate) fn to_python(error: ProblemError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -62,6 +66,8 @@ pub struct PyProblemParts {
     clamps: Vec<Clamp>,
     loads: Vec<Load>,
     floor: Option<Floor>,
+    membranes: Vec<(Vec<[u32; 3]>, MembraneMaterial)>,
+    block_fraction: Vec<f64>,
 }
 
 #[pymethods]
@@ -113,18 +119,21 @@ impl PyProblemParts {
         self.load(LoadKind::Gravity(acceleration), history)
     }
 
-    #[pyo3(signature = (triangles, pressure, history=None))]
+    /// A pressure on triangles, and on the given parts of cut tetrahedra.
+    #[pyo3(signature = (triangles, pressure, history=None, voids=None))]
     fn pressure(
         &mut self,
         triangles: PyReadonlyArray2<'_, u32>,
         pressure: f64,
         history: HistoryArgument,
+        voids: VoidsArgument<'_>,
     ) -> PyResult<()> {
         let triangles = rows("triangles", &triangles)?;
+        let voids = self::voids(voids)?;
         self.load(
             LoadKind::Pressure {
                 triangles,
-                voids: Vec::new(),
+                voids,
                 pressure,
             },
             history,
@@ -146,6 +155,46 @@ impl PyProblemParts {
     fn floor(&mut self, z: f64) {
         self.floor = Some(Floor { z });
     }
+
+    /// A membrane on triangles.
+    fn membrane(
+        &mut self,
+        triangles: PyReadonlyArray2<'_, u32>,
+        young: f64,
+        poisson: f64,
+        thickness: f64,
+        density: f64,
+    ) -> PyResult<()> {
+        let material = MembraneMaterial {
+            young,
+            poisson,
+            thickness,
+            density,
+        };
+        self.membranes.push((rows("triangles", &triangles)?, material));
+        Ok(())
+    }
+
+    /// The filled part of each block.
+    fn fractions(&mut self, fractions: PyReadonlyArray1<'_, f64>) {
+        self.block_fraction = fractions.as_array().to_vec();
+    }
+}
+
+/// Tetrahedra and the part of each that is void.
+type VoidsArgument<'py> = Option<(PyReadonlyArray2<'py, u32>, PyReadonlyArray1<'py, f64>)>;
+
+fn voids(argument: VoidsArgument<'_>) -> PyResult<Vec<([u32; 4], f64)>> {
+    let Some((tets, parts)) = argument else {
+        return Ok(Vec::new());
+    };
+    let tets: Vec<[u32; 4]> = rows("voids", &tets)?;
+    let parts = parts.as_array().to_vec();
+    if tets.len() != parts.len() {
+        let message = format!("voids: {} tets and {} parts", tets.len(), parts.len());
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(tets.into_iter().zip(parts).collect())
 }
 
 impl PyProblemParts {
@@ -154,26 +203,6 @@ impl PyProblemParts {
         self.loads.push(Load { kind, history });
         Ok(())
     }
-}
-
-/// Two numbers and the density: moduli in Pa, or raw compliances where `raw`.
-type MaterialArgument = (bool, f64, f64, f64);
-
-fn material(
-    (raw, edge, volume, density): MaterialArgument,
-) -> Result<LatticeMaterial, ProblemError> {
-    if raw {
-        LatticeMaterial::from_compliances(edge, volume, density)
-    } else {
-        LatticeMaterial::from_moduli(edge, volume, density)
-    }
-}
-
-/// Young's modulus (Pa) and Poisson's ratio of a lattice material at a voxel size (m).
-#[pyfunction]
-pub fn lattice_constants(argument: MaterialArgument, voxel_size: f64) -> PyResult<(f64, f64)> {
-    let material = material(argument).map_err(to_python)?;
-    Ok((material.young(voxel_size), material.poisson(voxel_size)))
 }
 
 #[pymethods]
@@ -187,13 +216,27 @@ impl PyProblem {
         materials: Vec<MaterialArgument>,
         parts: PyRef<'_, PyProblemParts>,
     ) -> PyResult<Self> {
-        let mesh = Mesh {
+        let mut mesh = Mesh {
             vertices: rows("vertices", &vertices)?,
             tets: rows("tets", &tets)?,
             tet_part: tet_part.as_array().to_vec(),
             tet_block: tet_block.as_array().to_vec(),
-            ..Mesh::default()
+            block_fraction: parts.block_fraction.clone(),
+            membranes: Vec::new(),
         };
+        let count = mesh.vertices.len();
+        for (triangles, material) in &parts.membranes {
+            for triangle in triangles {
+                if let Some(&index) = triangle.iter().find(|&&v| v as usize >= count) {
+                    let what = "vertex of a membrane";
+                    let index = index as usize;
+                    return Err(to_python(ProblemError::Index { what, index, count }));
+                }
+                let corners = triangle.map(|v| mesh.vertices[v as usize]);
+                let membrane = Membrane::new(*triangle, corners, *material).map_err(to_python)?;
+                mesh.membranes.push(membrane);
+            }
+        }
         let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
         Ok(Self { mesh, problem })
     }
@@ -204,12 +247,12 @@ impl PyProblem {
             clamps: self.problem.clamps().to_vec(),
             loads: self.problem.loads().to_vec(),
             floor: self.problem.floor(),
+            membranes: Vec::new(),
+            block_fraction: Vec::new(),
         };
-        let problem = assemble(&self.mesh, materials, &parts).map_err(to_python)?;
-        Ok(Self {
-            mesh: self.mesh.clone(),
-            problem,
-        })
+        let mesh = self.mesh.clone();
+        let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
+        Ok(Self { mesh, problem })
     }
 
     #[getter]
@@ -255,6 +298,121 @@ impl PyProblem {
             elastic::energy(self.problem.body(), &positions),
             from_rows(py, &forces),
         ))
+    }
+
+    /// Elastic plus external force (N) on every vertex under the final values of all loads.
+    fn net_forces<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = self.positions(&positions)?;
+        let mut forces = vec![[0.0; 3]; positions.len()];
+        self.problem.add_loads(&positions, f64::INFINITY, &mut forces);
+        elastic::add_forces(self.problem.body(), &positions, &mut forces);
+        Ok(from_rows(py, &forces))
+    }
+
+    /// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium.
+    fn adjoint<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+        gradients: PyReadonlyArray3<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let positions = self.positions(&positions)?;
+        let view = gradients.as_array();
+        let count = positions.len();
+        if view.shape()[1..] != [count, 3] {
+            let message = format!("gradients: shape {:?}, expected (k, {count}, 3)", view.shape());
+            return Err(PyValueError::new_err(message));
+        }
+        let each = |gradient: numpy::ndarray::ArrayView2<'_, f64>| {
+            let row = |r: numpy::ndarray::ArrayView1<'_, f64>| [r[0], r[1], r[2]];
+            gradient.rows().into_iter().map(row).collect()
+        };
+        let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
+        let states = gate::run(py, |_| {
+            voxsoft_statics::adjoint(&self.problem, &positions, &gradients)
+        })?
+        .map_err(|error| PyArithmeticError::new_err(error.to_string()))?;
+        let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
+        PyArray1::from_vec(py, flat).reshape([gradients.len(), count, 3])
+    }
+
+    /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`).
+    #[pyo3(signature = (*, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, start=None, sensors=vec![], progress=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn equilibrium<'py>(
+        &self,
+        py: Python<'py>,
+        tolerance: f64,
+        first_step: f64,
+        control: &str,
+        steps: u32,
+        ratio: f64,
+        start: Option<PyReadonlyArray2<'_, f64>>,
+        sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let control = match control {
+            "load" => Control::Load,
+            "arc-length" => Control::ArcLength { steps },
+            "volume" => Control::Volume { ratio, steps },
+            other => {
+                let message = format!("control: \"{other}\" is not load, arc-length or volume");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        let settings = Settings {
+            tolerance,
+            first_step,
+            control,
+            ..Settings::default()
+        };
+        let start = start.map(|start| self.positions(&start)).transpose()?;
+        let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
+        let answer = gate::run(py, |cancel| {
+            voxsoft_statics::solve(&self.problem, start.as_deref(), &settings, &mut |now| {
+                watch.see_equilibrium(now, cancel)
+            })
+        })?;
+        let stable = answer.stable;
+        let (factor, limit) = (answer.factor, answer.limit);
+        let path: Vec<[f64; 4]> = answer
+            .path
+            .iter()
+            .map(|p| [p.factor, f64::from(p.iterations), p.residual, f64::from(u8::from(p.stable))])
+            .collect();
+        let status = match answer.status {
+            voxsoft_statics::Status::AtRest => "at-rest",
+            voxsoft_statics::Status::LimitReached => "limit-reached",
+            voxsoft_statics::Status::NotConverged => "not-converged",
+            voxsoft_statics::Status::Mechanism => "mechanism",
+            voxsoft_statics::Status::OutOfMemory => "out-of-memory",
+            voxsoft_statics::Status::Cancelled => "cancelled",
+        };
+        let mut state = State::at_rest(self.problem.body());
+        state.positions = answer.positions;
+        let common = Answer {
+            state,
+            status: Status::AtRest,
+            residual: answer.residual,
+            steps: u64::from(answer.iterations),
+            back_offs: answer.back_offs,
+            substep: 0.0,
+            breakdown: None,
+        };
+        let report = self.report(py, common, watch, f64::INFINITY)?;
+        report.set_item("status", status)?;
+        report.set_item("factor", factor)?;
+        report.set_item("limit", limit)?;
+        report.set_item("stable", stable)?;
+        report.set_item("path", from_rows(py, &path))?;
+        Ok(report)
     }
 
     #[pyo3(signature = (*, tolerance, max_steps, start=None, progress=None))]
@@ -318,14 +476,7 @@ impl PyProblem {
             record_interval,
         };
         let state = State::at_rest(self.problem.body());
-        let sensors = sensors
-            .iter()
-            .map(|(vertices, weights)| Sensor {
-                vertices: vertices.as_array().to_vec(),
-                weights: weights.as_array().to_vec(),
-            })
-            .collect();
-        let mut watch = Watch::new(progress, sensors, frames);
+        let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
         let answer = gate::run(py, |cancel| {
             simulate(&self.problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
@@ -341,7 +492,7 @@ fn assemble(
     materials: Vec<MaterialArgument>,
     parts: &PyProblemParts,
 ) -> Result<Problem, ProblemError> {
-    let materials: Result<Vec<_>, _> = materials.into_iter().map(material).collect();
+    let materials: Result<Vec<Material>, _> = materials.into_iter().map(material).collect();
     let body = Body::new(mesh, &materials?)?;
     Problem::new(body, parts.clamps.clone(), parts.loads.clone(), parts.floor)
 }
@@ -412,6 +563,18 @@ impl PyProblem {
         report.set_item("frames", frames)?;
         Ok(report)
     }
+}
+
+fn collect_sensors(
+    sensors: &[(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)],
+) -> Vec<Sensor> {
+    sensors
+        .iter()
+        .map(|(vertices, weights)| Sensor {
+            vertices: vertices.as_array().to_vec(),
+            weights: weights.as_array().to_vec(),
+        })
+        .collect()
 }
 
 /// A weighted mean of vertices whose position is recorded.
