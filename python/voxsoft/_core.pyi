@@ -148,7 +148,10 @@ class Shape:
         self, origin: _Point, voxel_size: float, shape: _Cells, memory_limit: int
     ) -> NDArray[np.uint8]: ...
 
-_Material = tuple[bool, float, float, float] | tuple[str, list[float], float, float]
+_Fibers = list[tuple[tuple[float, float, float], float, bool]]
+_Material = (
+    tuple[str, list[float], float, float] | tuple[str, list[float], float, float, _Fibers]
+)
 _History = tuple[Sequence[float], Sequence[float]] | None
 
 def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...
@@ -167,7 +170,11 @@ class ProblemParts:
     ) -> None: ...
     def gravity(self, acceleration: Sequence[float], history: _History = None) -> None: ...
     def pressure(
-        self, triangles: NDArray[np.uint32], pressure: float, history: _History = None
+        self,
+        triangles: NDArray[np.uint32],
+        pressure: float,
+        history: _History = None,
+        voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
     ) -> None: ...
     def forces(
         self,
@@ -176,6 +183,31 @@ class ProblemParts:
         history: _History = None,
     ) -> None: ...
     def floor(self, z: float) -> None: ...
+    def membrane(
+        self,
+        triangles: NDArray[np.uint32],
+        young: float,
+        poisson: float,
+        thickness: float,
+        density: float,
+    ) -> None: ...
+    def fractions(self, fractions: NDArray[np.float64]) -> None: ...
+
+def equilibrium(
+    problem: Problem,
+    *,
+    tolerance: float,
+    first_step: float = 1.0,
+    control: str = "load",
+    steps: int = 20,
+    ratio: float = 1.0,
+    start: NDArray[np.float64] | None = None,
+    sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
+    progress: Callable[[int, float, float], None] | None = None,
+) -> dict[str, Any]: ...
+def adjoint(
+    problem: Problem, positions: NDArray[np.float64], gradients: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
 
 class Problem:
     def __init__(
@@ -194,6 +226,7 @@ class Problem:
     def masses(self) -> NDArray[np.float64]: ...
     def edges(self) -> tuple[NDArray[np.uint32], NDArray[np.float64], NDArray[np.float64]]: ...
     def elastic(self, positions: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]: ...
+    def net_forces(self, positions: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def relax(
         self,
         *,

@@ -1,12 +1,15 @@
 //! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
 use pyo3::prelude::*;
 
+mod equilibrium;
 mod errors;
 mod gate;
+mod materials;
 mod mesh;
 mod shapes;
 mod simulate;
 mod voxels;
+mod watch;
 
 /// The private Rust module `voxsoft._core`; the public package wraps it.
 #[pymodule]
@@ -14,7 +17,9 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
-    module.add_function(wrap_pyfunction!(simulate::lattice_constants, module)?)?;
+    module.add_function(wrap_pyfunction!(materials::lattice_constants, module)?)?;
+    module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
+    module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
     module.add_class::<shapes::PyShape>()?;
     module.add_class::<voxels::PyGrid>()?;
     module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;

@@ -1,28 +1,19 @@
 //! `_core.Problem` and its two ways to an answer.
-use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
-
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyReadonlyArray3,
-};
-use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voxsoft_solid::balance::{balance, total_load};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial, Mesh, Motion,
-    Problem, ProblemError, State, elastic,
+    Body, Clamp, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial, Mesh,
+    Motion, Problem, ProblemError, State, elastic,
 };
-use voxsoft_statics::{Control, Settings};
-use voxsoft_xpbd::{Answer, Damping, Dynamics, Progress, Relaxation, Status, relax, simulate};
+use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, relax, simulate};
 
 use crate::gate;
 use crate::materials::{MaterialArgument, material};
-
-/// How often a Python progress callback is called at most.
-const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
+use crate::watch::{Watch, collect_sensors};
 
 /// The Python class for each error; every variant is bad input to a constructor.
 pub(crate) fn to_python(error: ProblemError) -> PyErr {
@@ -56,7 +47,7 @@ fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
     mesh: Mesh,
-    problem: Problem,
+    pub(crate) problem: Problem,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -171,7 +162,8 @@ impl PyProblemParts {
             thickness,
             density,
         };
-        self.membranes.push((rows("triangles", &triangles)?, material));
+        self.membranes
+            .push((rows("triangles", &triangles)?, material));
         Ok(())
     }
 
@@ -237,7 +229,7 @@ impl PyProblem {
                 mesh.membranes.push(membrane);
             }
         }
-        let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
+        let problem = assemble(&mesh, materials, &parts)?;
         Ok(Self { mesh, problem })
     }
 
@@ -251,7 +243,7 @@ impl PyProblem {
             block_fraction: Vec::new(),
         };
         let mesh = self.mesh.clone();
-        let problem = assemble(&mesh, materials, &parts).map_err(to_python)?;
+        let problem = assemble(&mesh, materials, &parts)?;
         Ok(Self { mesh, problem })
     }
 
@@ -308,111 +300,10 @@ impl PyProblem {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        self.problem.add_loads(&positions, f64::INFINITY, &mut forces);
+        self.problem
+            .add_loads(&positions, f64::INFINITY, &mut forces);
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
         Ok(from_rows(py, &forces))
-    }
-
-    /// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium.
-    fn adjoint<'py>(
-        &self,
-        py: Python<'py>,
-        positions: PyReadonlyArray2<'_, f64>,
-        gradients: PyReadonlyArray3<'_, f64>,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let positions = self.positions(&positions)?;
-        let view = gradients.as_array();
-        let count = positions.len();
-        if view.shape()[1..] != [count, 3] {
-            let message = format!("gradients: shape {:?}, expected (k, {count}, 3)", view.shape());
-            return Err(PyValueError::new_err(message));
-        }
-        let each = |gradient: numpy::ndarray::ArrayView2<'_, f64>| {
-            let row = |r: numpy::ndarray::ArrayView1<'_, f64>| [r[0], r[1], r[2]];
-            gradient.rows().into_iter().map(row).collect()
-        };
-        let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
-        let states = gate::run(py, |_| {
-            voxsoft_statics::adjoint(&self.problem, &positions, &gradients)
-        })?
-        .map_err(|error| PyArithmeticError::new_err(error.to_string()))?;
-        let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
-        PyArray1::from_vec(py, flat).reshape([gradients.len(), count, 3])
-    }
-
-    /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`).
-    #[pyo3(signature = (*, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, start=None, sensors=vec![], progress=None))]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keyword arguments of one Python call"
-    )]
-    fn equilibrium<'py>(
-        &self,
-        py: Python<'py>,
-        tolerance: f64,
-        first_step: f64,
-        control: &str,
-        steps: u32,
-        ratio: f64,
-        start: Option<PyReadonlyArray2<'_, f64>>,
-        sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
-        let control = match control {
-            "load" => Control::Load,
-            "arc-length" => Control::ArcLength { steps },
-            "volume" => Control::Volume { ratio, steps },
-            other => {
-                let message = format!("control: \"{other}\" is not load, arc-length or volume");
-                return Err(PyValueError::new_err(message));
-            }
-        };
-        let settings = Settings {
-            tolerance,
-            first_step,
-            control,
-            ..Settings::default()
-        };
-        let start = start.map(|start| self.positions(&start)).transpose()?;
-        let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
-        let answer = gate::run(py, |cancel| {
-            voxsoft_statics::solve(&self.problem, start.as_deref(), &settings, &mut |now| {
-                watch.see_equilibrium(now, cancel)
-            })
-        })?;
-        let stable = answer.stable;
-        let (factor, limit) = (answer.factor, answer.limit);
-        let path: Vec<[f64; 4]> = answer
-            .path
-            .iter()
-            .map(|p| [p.factor, f64::from(p.iterations), p.residual, f64::from(u8::from(p.stable))])
-            .collect();
-        let status = match answer.status {
-            voxsoft_statics::Status::AtRest => "at-rest",
-            voxsoft_statics::Status::LimitReached => "limit-reached",
-            voxsoft_statics::Status::NotConverged => "not-converged",
-            voxsoft_statics::Status::Mechanism => "mechanism",
-            voxsoft_statics::Status::OutOfMemory => "out-of-memory",
-            voxsoft_statics::Status::Cancelled => "cancelled",
-        };
-        let mut state = State::at_rest(self.problem.body());
-        state.positions = answer.positions;
-        let common = Answer {
-            state,
-            status: Status::AtRest,
-            residual: answer.residual,
-            steps: u64::from(answer.iterations),
-            back_offs: answer.back_offs,
-            substep: 0.0,
-            breakdown: None,
-        };
-        let report = self.report(py, common, watch, f64::INFINITY)?;
-        report.set_item("status", status)?;
-        report.set_item("factor", factor)?;
-        report.set_item("limit", limit)?;
-        report.set_item("stable", stable)?;
-        report.set_item("path", from_rows(py, &path))?;
-        Ok(report)
     }
 
     #[pyo3(signature = (*, tolerance, max_steps, start=None, progress=None))]
@@ -491,14 +382,15 @@ fn assemble(
     mesh: &Mesh,
     materials: Vec<MaterialArgument>,
     parts: &PyProblemParts,
-) -> Result<Problem, ProblemError> {
-    let materials: Result<Vec<Material>, _> = materials.into_iter().map(material).collect();
-    let body = Body::new(mesh, &materials?)?;
-    Problem::new(body, parts.clamps.clone(), parts.loads.clone(), parts.floor)
+) -> PyResult<Problem> {
+    let materials: PyResult<Vec<Material>> = materials.into_iter().map(material).collect();
+    let body = Body::new(mesh, &materials?).map_err(to_python)?;
+    let (clamps, loads) = (parts.clamps.clone(), parts.loads.clone());
+    Problem::new(body, clamps, loads, parts.floor).map_err(to_python)
 }
 
 impl PyProblem {
-    fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
+    pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
         let positions = rows("positions", array)?;
         let expected = self.problem.body().rest().len();
         if positions.len() != expected {
@@ -508,7 +400,7 @@ impl PyProblem {
         Ok(positions)
     }
 
-    fn report<'py>(
+    pub(crate) fn report<'py>(
         &self,
         py: Python<'py>,
         answer: Answer,
@@ -565,92 +457,7 @@ impl PyProblem {
     }
 }
 
-fn collect_sensors(
-    sensors: &[(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)],
-) -> Vec<Sensor> {
-    sensors
-        .iter()
-        .map(|(vertices, weights)| Sensor {
-            vertices: vertices.as_array().to_vec(),
-            weights: weights.as_array().to_vec(),
-        })
-        .collect()
-}
-
-/// A weighted mean of vertices whose position is recorded.
-struct Sensor {
-    vertices: Vec<u32>,
-    weights: Vec<f64>,
-}
-
-/// Watches a run: records, reports progress to Python and passes on Ctrl-C.
-struct Watch {
-    progress: Option<Py<PyAny>>,
-    last_call: Instant,
-    sensors: Vec<Sensor>,
-    keep_frames: bool,
-    recorded: usize,
-    times: Vec<f64>,
-    records: Vec<f64>,
-    frames: Vec<f64>,
-    raised: Option<PyErr>,
-}
-
-impl Watch {
-    fn new(progress: Option<Py<PyAny>>, sensors: Vec<Sensor>, keep_frames: bool) -> Self {
-        Self {
-            progress,
-            last_call: Instant::now(),
-            sensors,
-            keep_frames,
-            recorded: 0,
-            times: Vec::new(),
-            records: Vec::new(),
-            frames: Vec::new(),
-            raised: None,
-        }
-    }
-
-    fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
-        if now.record {
-            self.record(&now.state.positions, now.state.time);
-        }
-        if let Some(progress) = &self.progress
-            && self.last_call.elapsed() >= PROGRESS_PERIOD
-        {
-            self.last_call = Instant::now();
-            let arguments = (now.steps, now.state.time, now.residual);
-            if let Err(raised) = Python::attach(|py| progress.call1(py, arguments)) {
-                self.raised = Some(raised);
-                return ControlFlow::Break(());
-            }
-        }
-        if cancel.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    }
-
-    fn record(&mut self, positions: &[Vec3], time: f64) {
-        self.recorded += 1;
-        self.times.push(time);
-        for sensor in &self.sensors {
-            let mut mean = [0.0; 3];
-            for (&vertex, weight) in sensor.vertices.iter().zip(&sensor.weights) {
-                for axis in 0..3 {
-                    mean[axis] += weight * positions[vertex as usize][axis];
-                }
-            }
-            self.records.extend(mean);
-        }
-        if self.keep_frames {
-            self.frames.extend(positions.as_flattened());
-        }
-    }
-}
-
-fn from_rows<'py, const N: usize, T: numpy::Element + Copy>(
+pub(crate) fn from_rows<'py, const N: usize, T: numpy::Element + Copy>(
     py: Python<'py>,
     rows: &[[T; N]],
 ) -> Bound<'py, PyArray2<T>> {

@@ -88,8 +88,9 @@ struct Rotated {
     bilinear: Vec3,
 }
 
-/// Gradient of the energy by the generalised coordinates.
-struct Gradient {
+/// The stress of a voxel in its rotated frame: the gradient of the energy by the generalised coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrickStress {
     stress: Sym,
     hourglass: [Vec3; 3],
 }
@@ -138,9 +139,9 @@ impl Rotated {
         value
     }
 
-    fn gradient(&self, material: &HyperelasticMaterial) -> Gradient {
+    fn gradient(&self, material: &HyperelasticMaterial) -> BrickStress {
         let thinning = material.thinning();
-        let mut gradient = Gradient {
+        let mut gradient = BrickStress {
             stress: volumetric_stress(material, &self.stretch).1,
             hourglass: [[0.0; 3]; 3],
         };
@@ -344,9 +345,17 @@ impl Brick {
     /// In the rotated frame a change of `F₀` by `B` and of `pₘ` by `bₘ` turns `R` by `w`, `Ω = [w]×`, and
     /// changes `S` by `B − ΩS`, `p̂ₘ` by `bₘ − Ωp̂ₘ`. The gradients `T − [y]×` and `sₘ` change by
     /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
-    pub fn stiffness(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> BrickMatrix {
+    ///
+    /// With a `stress` of the caller's, that one takes the place of the stress at `positions` in all
+    /// terms that come from the change of frame; see [`crate::mixed`].
+    pub fn stiffness(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        stress: Option<&BrickStress>,
+    ) -> BrickMatrix {
         let state = Rotated::of(&self.modes(positions));
-        let gradient = state.gradient(material);
+        let gradient = stress.copied().unwrap_or_else(|| state.gradient(material));
         let hessian = state.hessian(material);
         let stress = to_matrix(&gradient.stress);
         let stretch = to_matrix(&state.stretch);
@@ -414,6 +423,44 @@ impl Brick {
             }
         }
         self.expand(&rotated, &state.rotation, material.young() / 9.0)
+    }
+
+    /// The stress at `positions`, and how it would change along `moves` to first order.
+    pub fn predict_stress(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        moves: &[Vec3],
+    ) -> BrickStress {
+        let state = Rotated::of(&self.modes(positions));
+        let mut gradient = state.gradient(material);
+        let hessian = state.hessian(material);
+        let stretch = to_matrix(&state.stretch);
+        let direction = self.modes(moves);
+        let b: Mat3 = std::array::from_fn(|i| {
+            std::array::from_fn(|k| apply_transposed(&state.rotation, direction[k])[i])
+        });
+        let omega = cross_matrix(solve_spd(&spin_matrix(&stretch), axial(&b)));
+        let mut change = [0.0; SHAPE];
+        change[..6].copy_from_slice(&to_sym(&plus(&b, -1.0, &multiply(&omega, &stretch))));
+        for m in 0..3 {
+            let own = apply_transposed(&state.rotation, direction[3 + m]);
+            let turned = apply(&omega, state.hourglass[m]);
+            for k in 0..3 {
+                change[6 + 3 * m + k] = own[k] - turned[k];
+            }
+        }
+        let response =
+            |row: usize| -> f64 { hessian[row].iter().zip(&change).map(|(h, c)| h * c).sum() };
+        for k in 0..6 {
+            gradient.stress[k] += response(k);
+        }
+        for m in 0..3 {
+            for k in 0..3 {
+                gradient.hourglass[m][k] += response(6 + 3 * m + k);
+            }
+        }
+        gradient
     }
 
     /// Turns the blocks back and spreads modes over corners.

@@ -16,10 +16,12 @@ impl Edge {
         (length - self.length, scale(inverse, along))
     }
 
-    /// The Hessian of `k C²/2`: `k (n nᵀ + (C/L)(1 − n nᵀ))` between a vertex and itself.
-    fn hessian(&self, positions: &[Vec3]) -> [[f64; 6]; 6] {
+    /// The Hessian of `k C²/2`: `k (n nᵀ + (C/L)(1 − n nᵀ))` between a vertex and itself. A `change` of
+    /// the caller's takes the place of `C`.
+    pub(crate) fn hessian(&self, positions: &[Vec3], change: Option<f64>) -> [[f64; 6]; 6] {
         let (stretch, n) = self.evaluate(positions);
         let length = stretch + self.length;
+        let stretch = change.unwrap_or(stretch);
         let across = if length > 0.0 { stretch / length } else { 0.0 };
         let mut matrix = [[0.0; 6]; 6];
         for i in 0..3 {
@@ -55,9 +57,10 @@ impl Tet {
         (dot(u, gb) - self.volume, [ga, gb, gc, gd])
     }
 
-    /// The Hessian of `k C²/2`: `k (∇C ∇Cᵀ + C ∇²V)`.
-    fn hessian(&self, positions: &[Vec3]) -> [[f64; 12]; 12] {
-        let (change, gradients) = self.evaluate(positions);
+    /// The Hessian of `k C²/2`: `k (∇C ∇Cᵀ + C ∇²V)`. A `change` of the caller's takes the place of `C`.
+    pub(crate) fn hessian(&self, positions: &[Vec3], change: Option<f64>) -> [[f64; 12]; 12] {
+        let (own, gradients) = self.evaluate(positions);
+        let change = change.unwrap_or(own);
         let mut matrix = volume_hessian(self.vertices.map(|v| positions[v as usize]));
         for (row, entries) in matrix.iter_mut().enumerate() {
             for (column, entry) in entries.iter_mut().enumerate() {
@@ -148,10 +151,10 @@ pub fn add_element_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) 
 /// vertices of a piece, and its dense row-major matrix with rows and columns `3 place + axis`.
 pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[u32], &[f64])) {
     for edge in body.edges() {
-        visit(&edge.vertices, edge.hessian(positions).as_flattened());
+        visit(&edge.vertices, edge.hessian(positions, None).as_flattened());
     }
     for tet in body.tets() {
-        visit(&tet.vertices, tet.hessian(positions).as_flattened());
+        visit(&tet.vertices, tet.hessian(positions, None).as_flattened());
     }
     visit_element_stiffness(body, positions, visit);
 }
@@ -163,13 +166,13 @@ pub fn visit_element_stiffness(
     visit: &mut dyn FnMut(&[u32], &[f64]),
 ) {
     for brick in body.bricks() {
-        let stiffness = brick.stiffness(body.material_of(brick), positions);
+        let stiffness = brick.stiffness(body.material_of(brick), positions, None);
         visit(&brick.vertices, stiffness.as_flattened());
     }
     for membrane in body.membranes() {
         visit(
             &membrane.vertices(),
-            membrane.stiffness(positions).as_flattened(),
+            membrane.stiffness(positions, None).as_flattened(),
         );
     }
 }
@@ -283,7 +286,7 @@ mod tests {
             };
             for row in 0..12 {
                 let slope = (tet_force(step, row) - tet_force(-step, row)) / (2.0 * step);
-                assert!((slope - tet.hessian(&positions)[row][column]).abs() < 1e-8);
+                assert!((slope - tet.hessian(&positions, None)[row][column]).abs() < 1e-8);
             }
             let place = [0, 6]
                 .iter()
@@ -291,7 +294,7 @@ mod tests {
             let Some(place) = place else { continue };
             for axis in 0..3 {
                 let slope = (edge_force(step, axis) - edge_force(-step, axis)) / (2.0 * step);
-                let got = edge.hessian(&positions)[axis][3 * place + column % 3];
+                let got = edge.hessian(&positions, None)[axis][3 * place + column % 3];
                 assert!((slope - got).abs() < 1e-8);
             }
         }

@@ -49,6 +49,7 @@ mod load;
 mod material;
 pub mod matrix;
 mod membrane;
+pub mod mixed;
 mod problem;
 mod state;
 pub mod vector;

@@ -30,8 +30,8 @@ pub struct Membrane {
     material: MembraneMaterial,
 }
 
-/// Strain in the plane: 11, 22 and twice 12.
-type Plane = [f64; 3];
+/// Strain in the plane (11, 22, twice 12), or the stress conjugate to it times the volume.
+pub type Plane = [f64; 3];
 
 impl Membrane {
     /// A membrane on three vertices with the rest positions `corners`.
@@ -117,6 +117,18 @@ impl Membrane {
         ]
     }
 
+    /// The stress at `positions`, and how it would change along `moves` to first order.
+    pub fn predict_stress(&self, positions: &[Vec3], moves: &[Vec3]) -> Plane {
+        let (tangents, mut strain) = self.strain(positions);
+        for corner in 0..3 {
+            let along = moves[self.vertices[corner] as usize];
+            for (e, slope) in strain.iter_mut().zip(self.slopes(tangents, corner)) {
+                *e += dot(slope, along);
+            }
+        }
+        self.stress(strain)
+    }
+
     /// The energy in J.
     pub fn energy(&self, positions: &[Vec3]) -> f64 {
         let (_, strain) = self.strain(positions);
@@ -136,9 +148,11 @@ impl Membrane {
     }
 
     /// The Hessian of the energy in N/m, row and column `3 corner + axis`.
-    pub fn stiffness(&self, positions: &[Vec3]) -> [[f64; 9]; 9] {
+    ///
+    /// A `stress` of the caller's takes the place of the present one in the geometric part.
+    pub fn stiffness(&self, positions: &[Vec3], stress: Option<Plane>) -> [[f64; 9]; 9] {
         let (tangents, strain) = self.strain(positions);
-        let stress = self.stress(strain);
+        let stress = stress.unwrap_or_else(|| self.stress(strain));
         let slopes: [_; 3] = std::array::from_fn(|corner| self.slopes(tangents, corner));
         let mut matrix = [[0.0; 9]; 9];
         for c in 0..3 {
@@ -177,7 +191,7 @@ mod tests {
         let at = [[0.1, 0.0, 1.2], [2.3, 0.2, 0.9], [0.4, 1.2, 1.5]];
         let mut forces = vec![[0.0; 3]; 3];
         membrane.add_forces(&at, &mut forces);
-        let stiffness = membrane.stiffness(&at);
+        let stiffness = membrane.stiffness(&at, None);
         let step = 1e-6;
         for column in 0..9 {
             let moved = |t: f64| {

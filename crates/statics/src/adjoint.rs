@@ -48,6 +48,7 @@ pub fn adjoint(
         positions,
         &full.factor_of(),
         None,
+        None,
         &mut unused,
     );
     let positive = problem.is_conservative();

@@ -78,6 +78,7 @@ fn two_solutions(
         positions,
         &point.factor_of(),
         None,
+        None,
         &mut a,
     );
     let positive = equilibrium.problem.is_conservative();
@@ -196,7 +197,14 @@ pub(crate) fn follow_arc(
     steps: u32,
 ) -> (Status, Option<f64>) {
     let unit = path_unit(path);
-    match walk(path, settings, steps, settings.first_step.min(0.2), unit, 1.0) {
+    match walk(
+        path,
+        settings,
+        steps,
+        settings.first_step.min(0.2),
+        unit,
+        1.0,
+    ) {
         Ok(limit) if path.point.pressure >= 1.0 => {
             let full = Point::all(1.0);
             let start = path.positions.clone();
@@ -262,7 +270,11 @@ fn walk(
                 path.equilibrium.back_offs += 1;
                 length /= 3.0;
                 if halvings > HALVINGS {
-                    return if limit.is_some() { Ok(limit) } else { Err(failure) };
+                    return if limit.is_some() {
+                        Ok(limit)
+                    } else {
+                        Err(failure)
+                    };
                 }
             }
         }

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
+use voxsoft_solid::mixed::Stresses;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Load, LoadKind, Problem, elastic};
 
@@ -89,6 +90,10 @@ pub(crate) struct Equilibrium<'a> {
     pub back_offs: u32,
 }
 
+/// Iterations with stresses carried along: most steps take less than ten.
+const MIXED_ITERATIONS: u32 = 25;
+/// Such iterations without the residual halving, after which they count as lost.
+const PATIENCE: u32 = 8;
 /// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
 const LARGEST_SHIFT: f64 = 10.0;
 /// Armijo's condition: the part of the predicted gain that a step must bring.
@@ -158,12 +163,122 @@ impl<'a> Equilibrium<'a> {
                 }
             }
         }
-        let jump: Vec<Vec3> = target.iter().zip(positions).map(|(t, x)| sub(*t, *x)).collect();
+        let jump: Vec<Vec3> = target
+            .iter()
+            .zip(positions)
+            .map(|(t, x)| sub(*t, *x))
+            .collect();
         jump.iter().flatten().any(|x| *x != 0.0).then_some(jump)
     }
 
-    /// Finds the equilibrium at `point` from `positions`, which it changes.
+    /// Finds the equilibrium at `point` from `positions`, which it changes: first with stresses that
+    /// are carried along ([`voxsoft_solid::mixed`]), which is quick, then with a line search, which is safe.
     pub fn newton(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let mut trial = positions.clone();
+        match self.newton_mixed(&mut trial, point, settings, observer) {
+            Ok(found) => {
+                *positions = trial;
+                Ok(found)
+            }
+            Err(Failure::Lost | Failure::Singular) => {
+                self.newton_searched(positions, point, settings, observer)
+            }
+            Err(failure) => Err(failure),
+        }
+    }
+
+    fn newton_mixed(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let body = self.problem.body();
+        let mut stresses: Option<Stresses> = None;
+        let mut lowest = f64::INFINITY;
+        let mut since_lowest = 0;
+        for iteration in 0..=MIXED_ITERATIONS {
+            let jump = self.jump(positions, point);
+            let mut forces = self.forces(positions, point);
+            let relative = forces.relative();
+            if !relative.is_finite() {
+                return Err(Failure::Lost);
+            }
+            self.tell(positions, point, relative, observer)?;
+            if jump.is_none() && relative <= settings.tolerance {
+                return Ok(Found {
+                    iterations: iteration,
+                    residual: relative,
+                });
+            }
+            since_lowest += 1;
+            if relative < 0.5 * lowest {
+                (lowest, since_lowest) = (relative, 0);
+            }
+            if since_lowest > PATIENCE {
+                return Err(Failure::Lost);
+            }
+            self.iterations += 1;
+            self.system.assemble(
+                self.problem,
+                positions,
+                &point.factor_of(),
+                stresses.as_ref(),
+                jump.as_deref(),
+                &mut forces.free,
+            );
+            let factor = self.system.factor(0.0, self.problem.is_conservative())?;
+            self.system.solve(&factor, &mut forces.free, false);
+            let mut moves = self.system.spread(&forces.free);
+            if let Some(jump) = &jump {
+                moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
+            }
+            let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+            if !(largest < 20.0 * body.size() + largest_motion(self.problem)) {
+                return Err(Failure::Lost);
+            }
+            if largest < STANDSTILL * body.size() && relative <= STANDSTILL_RESIDUAL {
+                return Ok(Found {
+                    iterations: iteration,
+                    residual: relative,
+                });
+            }
+            stresses = Some(Stresses::predict(body, positions, &moves));
+            for (x, m) in positions.iter_mut().zip(&moves) {
+                *x = add(*x, *m);
+            }
+        }
+        Err(Failure::Lost)
+    }
+
+    fn tell(
+        &self,
+        positions: &[Vec3],
+        point: Point,
+        residual: f64,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), Failure> {
+        let progress = Progress {
+            iterations: self.iterations,
+            factor: point.pressure,
+            residual,
+            positions,
+            converged: false,
+        };
+        match observer(&progress) {
+            ControlFlow::Break(()) => Err(Failure::Cancelled),
+            ControlFlow::Continue(()) => Ok(()),
+        }
+    }
+
+    fn newton_searched(
         &mut self,
         positions: &mut Vec<Vec3>,
         point: Point,
@@ -180,16 +295,7 @@ impl<'a> Equilibrium<'a> {
             if !relative.is_finite() {
                 return Err(Failure::Lost);
             }
-            let progress = Progress {
-                iterations: self.iterations,
-                factor: point.pressure,
-                residual: relative,
-                positions,
-                converged: false,
-            };
-            if let ControlFlow::Break(()) = observer(&progress) {
-                return Err(Failure::Cancelled);
-            }
+            self.tell(positions, point, relative, observer)?;
             if jump.is_none() && relative <= settings.tolerance {
                 return Ok(Found {
                     iterations: iteration,
@@ -204,6 +310,7 @@ impl<'a> Equilibrium<'a> {
                 self.problem,
                 positions,
                 &point.factor_of(),
+                None,
                 jump.as_deref(),
                 &mut forces.free,
             );
@@ -299,9 +406,12 @@ impl<'a> Equilibrium<'a> {
 
     /// No voxel is inside out or nearly so.
     fn is_sound(&self, positions: &[Vec3]) -> bool {
-        self.problem.body().bricks().iter().all(|brick| {
-            voxsoft_solid::matrix::determinant(&brick.deformation(positions)) > 0.1
-        }) && positions.iter().flatten().all(|x| x.is_finite())
+        self.problem
+            .body()
+            .bricks()
+            .iter()
+            .all(|brick| voxsoft_solid::matrix::determinant(&brick.deformation(positions)) > 0.1)
+            && positions.iter().flatten().all(|x| x.is_finite())
     }
 
     /// Whether the equilibrium at the assembled state is stable.
@@ -311,6 +421,7 @@ impl<'a> Equilibrium<'a> {
             self.problem,
             positions,
             &point.factor_of(),
+            None,
             None,
             &mut unused,
         );

@@ -64,7 +64,9 @@ fn longest_axis(part: &[u32], points: &[Vec3]) -> usize {
         values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
     };
     let spans = [span(0), span(1), span(2)];
-    (0..3).max_by(|&a, &b| spans[a].total_cmp(&spans[b])).unwrap_or(0)
+    (0..3)
+        .max_by(|&a, &b| spans[a].total_cmp(&spans[b]))
+        .unwrap_or(0)
 }
 
 #[cfg(test)]

@@ -82,7 +82,10 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 impl Path<'_, '_> {
     fn answer(mut self, status: Status, limit: Option<f64>) -> Answer {
         let stable = self.equilibrium.is_stable(&self.positions, self.point);
-        let residual = self.equilibrium.forces(&self.positions, self.point).relative();
+        let residual = self
+            .equilibrium
+            .forces(&self.positions, self.point)
+            .relative();
         Answer {
             status,
             factor: self.point.pressure,
@@ -97,7 +100,12 @@ impl Path<'_, '_> {
     }
 
     /// Newton at a point, with the floor settled; on failure nothing has moved.
-    pub fn settle(&mut self, trial: Vec<Vec3>, point: Point, settings: &Settings) -> Result<Found, Failure> {
+    pub fn settle(
+        &mut self,
+        trial: Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+    ) -> Result<Found, Failure> {
         let mut positions = trial;
         let mut iterations = 0;
         for _ in 0..FLOOR_ROUNDS {
@@ -137,7 +145,11 @@ impl Path<'_, '_> {
 
     /// Load control. From a given start the full load is tried first.
     fn follow_load(&mut self, settings: &Settings, warm: bool) -> (Status, Option<f64>) {
-        let mut step = if warm { 1.0 } else { settings.first_step.clamp(settings.least_step, 1.0) };
+        let mut step = if warm {
+            1.0
+        } else {
+            settings.first_step.clamp(settings.least_step, 1.0)
+        };
         let mut before: Option<(Vec<Vec3>, f64)> = None;
         let cold = self.equilibrium.problem.body().rest().to_vec();
         loop {
@@ -181,7 +193,12 @@ impl From<FactorError> for Status {
 }
 
 /// The next state if the path were straight.
-fn predict(positions: &[Vec3], before: &Option<(Vec<Vec3>, f64)>, now: f64, next: f64) -> Vec<Vec3> {
+fn predict(
+    positions: &[Vec3],
+    before: &Option<(Vec<Vec3>, f64)>,
+    now: f64,
+    next: f64,
+) -> Vec<Vec3> {
     let Some((earlier, then)) = before else {
         return positions.to_vec();
     };

@@ -2,14 +2,15 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
 use faer::prelude::*;
 use faer::sparse::linalg::cholesky::{
     LdltRef, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
-use faer::perm::PermRef;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
+use voxsoft_solid::mixed::Stresses;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, LoadKind, Problem, elastic};
 
@@ -77,7 +78,10 @@ impl System {
         let size = size as usize;
         let free = |vertex: u32| {
             let first = 3 * vertex as usize;
-            rows[first..first + 3].iter().copied().filter(|&row| row != HELD)
+            rows[first..first + 3]
+                .iter()
+                .copied()
+                .filter(|&row| row != HELD)
         };
         // Neighbours in the order of elimination, so that rows rise within a column.
         let mut place = vec![0u32; count];
@@ -105,7 +109,8 @@ impl System {
         }
         // Look up by number from here on.
         for (list, offsets) in neighbors.iter_mut().zip(&mut offsets) {
-            let mut both: Vec<(u32, u32)> = list.iter().copied().zip(offsets.iter().copied()).collect();
+            let mut both: Vec<(u32, u32)> =
+                list.iter().copied().zip(offsets.iter().copied()).collect();
             both.sort_unstable();
             *list = both.iter().map(|&(vertex, _)| vertex).collect();
             *offsets = both.iter().map(|&(_, offset)| offset).collect();
@@ -147,11 +152,6 @@ impl System {
         self.size
     }
 
-    /// Entries of the Cholesky factor: the cost of the direct path.
-    pub fn fill(&self) -> usize {
-        self.symbolic.as_ref().map_or(0, SymbolicCholesky::len_val)
-    }
-
     fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
         SymbolicSparseColMatRef::new_checked(
             self.size,
@@ -166,13 +166,15 @@ impl System {
         SparseColMatRef::new(self.pattern(), values)
     }
 
-    /// Assembles the tangent at `positions` with a factor for each load; where the held coordinates
+    /// Assembles the tangent at `positions` with a factor for each load, and with `stresses` in place of
+    /// those at `positions` where they are given; where the held coordinates
     /// are about to move by `jump`, subtracts the force of that from `residual`.
     pub fn assemble(
         &mut self,
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
+        stresses: Option<&Stresses>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
@@ -223,7 +225,10 @@ impl System {
                 }
             }
         };
-        elastic::visit_stiffness(problem.body(), positions, &mut add);
+        match stresses {
+            Some(stresses) => stresses.visit_stiffness(problem.body(), positions, &mut add),
+            None => elastic::visit_stiffness(problem.body(), positions, &mut add),
+        }
         problem.visit_load_stiffness(positions, factor_of, &mut add);
     }
 
@@ -242,8 +247,8 @@ impl System {
         let matrix = self.matrix(values);
         let Some(symbolic) = &self.symbolic else {
             let symbolic = self.symbolic_lu.clone().ok_or(FactorError::Singular)?;
-            let lu = Lu::try_new_with_symbolic(symbolic, matrix)
-                .map_err(|_| FactorError::Singular)?;
+            let lu =
+                Lu::try_new_with_symbolic(symbolic, matrix).map_err(|_| FactorError::Singular)?;
             return Ok(Factor::General(Box::new(lu)));
         };
         let mut entries = vec![0.0; symbolic.len_val()];

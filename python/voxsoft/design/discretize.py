@@ -50,13 +50,24 @@ def voxels_of(design: Design) -> Voxels:
     return Voxels.from_array(cells, size, tuple((low * size).tolist()))
 
 
-def mesh_of(design: Design) -> Mesh:
+def mesh_of(design: Design, refine: int = 1) -> Mesh:
     """Mesh a design: five tetrahedra for each voxel, stitched.
+
+    Parameters
+    ----------
+    design
+        The design.
+    refine
+        Cut every voxel into this many along each axis first. The body stays the same, stairs
+        and all.
 
     Examples
     --------
     >>> from voxsoft.design import families
     >>> len(mesh_of(families.beam()).tets)
     400
+    >>> len(mesh_of(families.beam(), refine=2).tets)
+    3200
     """
-    return voxels_of(design).mesh()
+    voxels = voxels_of(design)
+    return (voxels.refine(refine) if refine > 1 else voxels).mesh()

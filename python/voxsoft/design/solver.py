@@ -20,7 +20,12 @@ class Solver(Record):
     Parameters
     ----------
     method
-        ``"xpbd"`` (default): dynamics, run to rest; ``"statics"``: the equilibrium.
+        ``"xpbd"``: dynamics, run to rest; ``"statics"``: the equilibrium by Newton's method;
+        ``"auto"`` (default): statics if every part is hyperelastic and nothing asks for
+        motion over time, else xpbd.
+    refine
+        Solve on every voxel cut into this many along each axis: the same body, smaller
+        elements. Default 1.
     time_step
         Length of one step in seconds; smaller is more accurate in motion, and no
         different at rest.
@@ -39,6 +44,17 @@ class Solver(Record):
         Simulated time after which a run that is not at rest stops.
     end_time
         Run to this time exactly, at rest or not: for motion over time.
+    control
+        Statics only. ``"load"`` (default): all loads grow together; ``"arc-length"``: the
+        same, followed through snaps; ``"volume"``: the pressurised volume grows to
+        ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
+    steps
+        Statics only: steps of arc-length or volume control; default 20.
+    volume_ratio
+        The pressurised volume at the end of volume control over that without pressure;
+        default 1.5.
+    first_step
+        Statics only: the first step of the load path, as a part of the full load; default 1.
 
     Examples
     --------
@@ -46,7 +62,8 @@ class Solver(Record):
     5.0
     """
 
-    method: Literal["xpbd", "statics"] = "xpbd"
+    method: Literal["auto", "xpbd", "statics"] = "auto"
+    refine: int = Field(1, ge=1, le=16)
     time_step: PositiveTime | None = None
     substeps: int | None = Field(None, ge=1, le=100_000)
     iterations: int | None = Field(None, ge=1, le=100_000)
@@ -62,3 +79,7 @@ class Solver(Record):
     tolerance: float | None = Field(None, gt=0, lt=1)
     max_time: PositiveTime | None = None
     end_time: PositiveTime | None = None
+    control: Literal["load", "arc-length", "volume"] | None = None
+    steps: int | None = Field(None, ge=1, le=100_000)
+    volume_ratio: float | None = Field(None, gt=0)
+    first_step: float | None = Field(None, gt=0, le=1)

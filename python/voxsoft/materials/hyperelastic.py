@@ -90,8 +90,8 @@ class Hyperelastic(Record):
     density
         Default 1070 kg/m³, a platinum-cure silicone.
     prony
-        Branches that relax; the constants are then those of an instantaneous load. Their ``g``
-        add up to less than 1. Default: none, a purely elastic material.
+        Branches that relax. The constants are those at rest, when all branches have relaxed; a
+        sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1. Default: none, a purely elastic material.
     """
 
     error_type: ClassVar[type[VoxSoftError]] = MaterialError

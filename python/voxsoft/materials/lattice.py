@@ -66,9 +66,9 @@ class Lattice(Record):
         return _core.lattice_constants(self.core, voxel_size)[1]
 
     @property
-    def core(self) -> tuple[bool, float, float, float]:
-        """What the Rust core takes: raw or not, two constants, density."""
-        return (False, self.edge, self.bulk, self.density)
+    def core(self) -> tuple[str, list[float], float, float]:
+        """What the Rust core takes: model, constants, bulk modulus, density."""
+        return (self.model, [self.edge], self.bulk, self.density)
 
 
 class CompliantLattice(Record):
@@ -140,6 +140,6 @@ class CompliantLattice(Record):
         return Lattice(edge=edge, bulk=bulk, density=self.density)
 
     @property
-    def core(self) -> tuple[bool, float, float, float]:
-        """What the Rust core takes: raw or not, two constants, density."""
-        return (True, self.edge_compliance, self.volume_compliance, self.density)
+    def core(self) -> tuple[str, list[float], float, float]:
+        """What the Rust core takes: model, constants, bulk modulus (none here), density."""
+        return (self.model, [self.edge_compliance, self.volume_compliance], 0.0, self.density)

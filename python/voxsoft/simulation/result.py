@@ -72,7 +72,16 @@ class Result:
     seconds
         Wall-clock time of the solution.
     history
-        What was recorded, for runs over time.
+        What was recorded, for runs over time; for statics one entry for each point of the load
+        path, with the load factor as time.
+    load_factor
+        The part of the loads that ``positions`` carry; 1 unless statics met a limit (or, in
+        volume control, what the pressure came to).
+    limit_factor
+        The largest load factor of a path that turned back, if it did: 0.8 means that a
+        pressure of 5 kPa has its limit at 4 kPa.
+    stable
+        Whether the equilibrium is stable; None where the solver does not tell.
     """
 
     design: Design
@@ -96,6 +105,9 @@ class Result:
     time: float
     seconds: float
     history: History = field(repr=False)
+    load_factor: float = 1.0
+    limit_factor: float | None = None
+    stable: bool | None = None
 
     @property
     def displacements(self) -> NDArray[np.float64]:
@@ -210,7 +222,9 @@ class Result:
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
-        pressures = _pressures(self.design, len(self.mesh.cavities))
+        pressures = [
+            self.load_factor * value for value in _pressures(self.design, len(self.mesh.cavities))
+        ]
         return {
             "status": self.status,
             "message": self.message,
@@ -230,6 +244,9 @@ class Result:
             "reaction": list(self.reaction),
             "load": list(self.load),
             "voxels": len(self.mesh.tets) // 5 if self.mesh.voxel_size else None,
+            "load_factor": self.load_factor,
+            "limit_factor": self.limit_factor,
+            "stable": self.stable,
             "steps": self.steps,
             "time": self.time,
             "seconds": self.seconds,

@@ -10,7 +10,8 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design, Solver
-from voxsoft.errors import SimulationError
+from voxsoft.materials import Hyperelastic
+from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
 
@@ -34,8 +35,8 @@ def simulate(
 ) -> Result:
     """Simulate a design until it comes to rest, or to an end time.
 
-    Without time settings the state at rest is found by dynamic relaxation, which is quick and
-    knows no time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or
+    Designs of hyperelastic parts are solved by statics, Newton's method on the equilibrium. Others
+    are brought to rest by dynamic relaxation, which is quick and knows no time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or
     a `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
     dynamics); both come to rest in the same state. Real time is damped critically on the way to
     rest and not at all on the way to an end time, unless `damping` says otherwise.
@@ -67,7 +68,7 @@ def simulate(
     NoCavityError, DisconnectedError
         Special cases of that, which a study counts apart.
     SimulationError
-        The chosen method does not exist.
+        Settings that contradict each other, or a tangent too large for the memory.
 
     Examples
     --------
@@ -78,14 +79,15 @@ def simulate(
     """
     given = design.design if isinstance(design, Setup) else design
     solver = _settings(given.solver, settings)
-    if solver.method != "xpbd":
-        raise SimulationError("solver.method", f'"{solver.method}" is not there yet', 'use "xpbd"')
+    check_solver(solver)
     if isinstance(design, Setup):
         setup = design
     else:
-        setup = Setup.of(design, may_fly=solver.end_time is not None)
+        setup = Setup.of(design, may_fly=solver.end_time is not None, refine=solver.refine)
     started = time.perf_counter()
-    if _wants_time(solver):
+    if wants_statics(setup.design, solver):
+        used, report = find_equilibrium(setup, solver, progress)
+    elif _wants_time(solver):
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
     else:
         used, report = _relaxation(setup.problem, solver, progress)
@@ -114,6 +116,18 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
 
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
     return own if not changes else Solver(**{**own.model_dump(), **changes})
+
+
+def wants_statics(design: Design, solver: Solver) -> bool:
+    """Whether a solver's settings mean the statics solver for a design."""
+    if solver.method != "auto":
+        return solver.method == "statics"
+    hyperelastic = all(
+        isinstance(design.material_of(part), Hyperelastic) for part in design.parts
+    )
+    path = (solver.control, solver.steps, solver.volume_ratio, solver.first_step)
+    asked = any(value is not None for value in path)
+    return asked or (hyperelastic and not _wants_time(solver) and solver.damping is None)
 
 
 def _wants_time(solver: Solver) -> bool:
@@ -180,6 +194,9 @@ _STATUSES: dict[str, Status] = {
     "end-time": "ok",
     "not-at-rest": "not-at-rest",
     "diverged": "diverged",
+    "limit-reached": "not-at-rest",
+    "not-converged": "not-at-rest",
+    "mechanism": "not-at-rest",
 }
 
 
@@ -201,7 +218,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], second
         mesh=setup.mesh,
         places=setup.places,
         status=_STATUSES[report["status"]],
-        message=_sentence(report),
+        message=sentence(report) if used["method"] == "statics" else _sentence(report),
         positions=report["positions"],
         velocities=report["velocities"],
         residual=report["residual"],
@@ -218,6 +235,9 @@ def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], second
         time=report["time"],
         seconds=seconds,
         history=history,
+        load_factor=report.get("factor", 1.0),
+        limit_factor=report.get("limit"),
+        stable=report.get("stable"),
     )
 
 

@@ -52,7 +52,7 @@ class Setup:
     mesh: Mesh
 
     @classmethod
-    def of(cls, design: Design, *, may_fly: bool | None = None) -> Setup:
+    def of(cls, design: Design, *, may_fly: bool | None = None, refine: int | None = None) -> Setup:
         """Voxelise and mesh a design and check that it can be loaded.
 
         Parameters
@@ -62,6 +62,8 @@ class Setup:
         may_fly
             Whether nothing needs to hold the body; default: if the design's solver has an end
             time, because a run over time need not come to rest.
+        refine
+            Cut every voxel into this many along each axis; default: as the design's solver says.
 
         Raises
         ------
@@ -72,7 +74,7 @@ class Setup:
         NoCavityError
             A pressure is asked for and there is no such cavity.
         """
-        setup = cls(design, mesh_of(design))
+        setup = cls(design, mesh_of(design, refine or design.solver.refine))
         setup.check(may_fly=may_fly)
         return setup
 

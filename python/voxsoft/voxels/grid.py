@@ -427,6 +427,32 @@ class Voxels:
         """
         return Voxels(self._grid.cropped())
 
+    def refine(self, times: int) -> Voxels:
+        """Return the same body with every cell cut into ``times`` cells along each axis.
+
+        Raises
+        ------
+        VoxelError
+            If ``times`` is not a whole number from 1, or the grid would not fit in memory.
+
+        Examples
+        --------
+        >>> fine = Voxels.from_array([[[1, 0]]], voxel_size=0.01).refine(2)
+        >>> fine.shape, fine.voxel_size, fine.count
+        ((2, 2, 4), 0.005, 8)
+        """
+        if times < 1 or times != int(times):
+            raise VoxelError("times", f"{times} is not a whole number from 1", "use 2 or 3")
+        needed = self.array.size * int(times) ** 3
+        if needed > memory_limit():
+            raise VoxelError(
+                "times", f"{times} would need {needed:.3g} bytes of memory", "use a smaller number"
+            )
+        cells = self.array
+        for axis in range(3):
+            cells = np.repeat(cells, times, axis=axis)
+        return Voxels.from_array(cells, self.voxel_size / times, self.origin)
+
     def components(self, contact: Contact = "face") -> tuple[Region, ...]:
         """Return the connected pieces of the filled cells, largest first.
 

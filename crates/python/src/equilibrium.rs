@@ -1,0 +1,131 @@
+//! `_core.equilibrium` and `_core.adjoint`: the statics solver on a `_core.Problem`.
+use numpy::{
+    PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+};
+use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voxsoft_solid::State;
+use voxsoft_solid::vector::Vec3;
+use voxsoft_statics::{Control, Settings};
+use voxsoft_xpbd::{Answer, Status};
+
+use crate::gate;
+use crate::simulate::{PyProblem, from_rows};
+use crate::watch::{Watch, collect_sensors};
+
+/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium.
+#[pyfunction]
+pub fn adjoint<'py>(
+    problem: PyRef<'py, PyProblem>,
+    py: Python<'py>,
+    positions: PyReadonlyArray2<'_, f64>,
+    gradients: PyReadonlyArray3<'_, f64>,
+) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    let inner = &problem.problem;
+    let positions = problem.positions(&positions)?;
+    let view = gradients.as_array();
+    let count = positions.len();
+    if view.shape()[1..] != [count, 3] {
+        let message = format!(
+            "gradients: shape {:?}, expected (k, {count}, 3)",
+            view.shape()
+        );
+        return Err(PyValueError::new_err(message));
+    }
+    let each = |gradient: numpy::ndarray::ArrayView2<'_, f64>| {
+        let row = |r: numpy::ndarray::ArrayView1<'_, f64>| [r[0], r[1], r[2]];
+        gradient.rows().into_iter().map(row).collect()
+    };
+    let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
+    let states = gate::run(py, |_| {
+        voxsoft_statics::adjoint(inner, &positions, &gradients)
+    })?
+    .map_err(|error| PyArithmeticError::new_err(error.to_string()))?;
+    let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
+    PyArray1::from_vec(py, flat).reshape([gradients.len(), count, 3])
+}
+
+/// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`).
+#[pyfunction]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, start=None, sensors=vec![], progress=None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keyword arguments of one Python call"
+)]
+pub fn equilibrium<'py>(
+    problem: PyRef<'py, PyProblem>,
+    py: Python<'py>,
+    tolerance: f64,
+    first_step: f64,
+    control: &str,
+    steps: u32,
+    ratio: f64,
+    start: Option<PyReadonlyArray2<'_, f64>>,
+    sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let inner = &problem.problem;
+    let control = match control {
+        "load" => Control::Load,
+        "arc-length" => Control::ArcLength { steps },
+        "volume" => Control::Volume { ratio, steps },
+        other => {
+            let message = format!("control: \"{other}\" is not load, arc-length or volume");
+            return Err(PyValueError::new_err(message));
+        }
+    };
+    let settings = Settings {
+        tolerance,
+        first_step,
+        control,
+        ..Settings::default()
+    };
+    let start = start.map(|start| problem.positions(&start)).transpose()?;
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
+    let answer = gate::run(py, |cancel| {
+        voxsoft_statics::solve(inner, start.as_deref(), &settings, &mut |now| {
+            watch.see_equilibrium(now, cancel)
+        })
+    })?;
+    let stable = answer.stable;
+    let (factor, limit) = (answer.factor, answer.limit);
+    let path: Vec<[f64; 4]> = answer
+        .path
+        .iter()
+        .map(|p| {
+            [
+                p.factor,
+                f64::from(p.iterations),
+                p.residual,
+                f64::from(u8::from(p.stable)),
+            ]
+        })
+        .collect();
+    let status = match answer.status {
+        voxsoft_statics::Status::AtRest => "at-rest",
+        voxsoft_statics::Status::LimitReached => "limit-reached",
+        voxsoft_statics::Status::NotConverged => "not-converged",
+        voxsoft_statics::Status::Mechanism => "mechanism",
+        voxsoft_statics::Status::OutOfMemory => "out-of-memory",
+        voxsoft_statics::Status::Cancelled => "cancelled",
+    };
+    let mut state = State::at_rest(inner.body());
+    state.positions = answer.positions;
+    let common = Answer {
+        state,
+        status: Status::AtRest,
+        residual: answer.residual,
+        steps: u64::from(answer.iterations),
+        back_offs: answer.back_offs,
+        substep: 0.0,
+        breakdown: None,
+    };
+    let report = problem.report(py, common, watch, f64::INFINITY)?;
+    report.set_item("status", status)?;
+    report.set_item("factor", factor)?;
+    report.set_item("limit", limit)?;
+    report.set_item("stable", stable)?;
+    report.set_item("path", from_rows(py, &path))?;
+    Ok(report)
+}

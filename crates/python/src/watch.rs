@@ -1,0 +1,120 @@
+//! Watching a run: records, progress reports to Python and Ctrl-C.
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use voxsoft_solid::vector::Vec3;
+use voxsoft_xpbd::Progress;
+
+/// How often a Python progress callback is called at most.
+const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
+
+pub(crate) fn collect_sensors(
+    sensors: &[(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)],
+) -> Vec<Sensor> {
+    sensors
+        .iter()
+        .map(|(vertices, weights)| Sensor {
+            vertices: vertices.as_array().to_vec(),
+            weights: weights.as_array().to_vec(),
+        })
+        .collect()
+}
+
+/// A weighted mean of vertices whose position is recorded.
+pub(crate) struct Sensor {
+    vertices: Vec<u32>,
+    weights: Vec<f64>,
+}
+
+/// Watches a run: records, reports progress to Python and passes on Ctrl-C.
+pub(crate) struct Watch {
+    progress: Option<Py<PyAny>>,
+    last_call: Instant,
+    pub(crate) sensors: Vec<Sensor>,
+    pub(crate) keep_frames: bool,
+    pub(crate) recorded: usize,
+    pub(crate) times: Vec<f64>,
+    pub(crate) records: Vec<f64>,
+    pub(crate) frames: Vec<f64>,
+    pub(crate) raised: Option<PyErr>,
+}
+
+impl Watch {
+    pub(crate) fn new(
+        progress: Option<Py<PyAny>>,
+        sensors: Vec<Sensor>,
+        keep_frames: bool,
+    ) -> Self {
+        Self {
+            progress,
+            last_call: Instant::now(),
+            sensors,
+            keep_frames,
+            recorded: 0,
+            times: Vec::new(),
+            records: Vec::new(),
+            frames: Vec::new(),
+            raised: None,
+        }
+    }
+
+    pub(crate) fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
+        if now.record {
+            self.record(&now.state.positions, now.state.time);
+        }
+        self.tell((now.steps, now.state.time, now.residual), cancel)
+    }
+
+    /// The same for statics, where the load factor takes the place of time and every converged point of
+    /// the path is recorded.
+    pub(crate) fn see_equilibrium(
+        &mut self,
+        now: &voxsoft_statics::Progress<'_>,
+        cancel: &AtomicBool,
+    ) -> ControlFlow<()> {
+        if now.converged {
+            self.record(now.positions, now.factor);
+        }
+        self.tell(
+            (u64::from(now.iterations), now.factor, now.residual),
+            cancel,
+        )
+    }
+
+    fn tell(&mut self, arguments: (u64, f64, f64), cancel: &AtomicBool) -> ControlFlow<()> {
+        if let Some(progress) = &self.progress
+            && self.last_call.elapsed() >= PROGRESS_PERIOD
+        {
+            self.last_call = Instant::now();
+            if let Err(raised) = Python::attach(|py| progress.call1(py, arguments)) {
+                self.raised = Some(raised);
+                return ControlFlow::Break(());
+            }
+        }
+        if cancel.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn record(&mut self, positions: &[Vec3], time: f64) {
+        self.recorded += 1;
+        self.times.push(time);
+        for sensor in &self.sensors {
+            let mut mean = [0.0; 3];
+            for (&vertex, weight) in sensor.vertices.iter().zip(&sensor.weights) {
+                for axis in 0..3 {
+                    mean[axis] += weight * positions[vertex as usize][axis];
+                }
+            }
+            self.records.extend(mean);
+        }
+        if self.keep_frames {
+            self.frames.extend(positions.as_flattened());
+        }
+    }
+}
