@@ -93,9 +93,13 @@ def test_a_body_thinner_than_a_voxel():
     assert "no cell of 5 mm has its center inside" in text
 
 
-def test_a_solver_that_does_not_exist_yet():
-    with pytest.raises(SimulationError, match="statics"):
-        simulate(design(), method="statics")
+def test_a_setting_of_the_other_solver():
+    with pytest.raises(SimulationError, match="setting of xpbd"):
+        simulate(families.beam(), method="statics", substeps=4)
+    with pytest.raises(SimulationError, match="setting of statics"):
+        simulate(families.beam(), method="xpbd", control="volume")
+    with pytest.raises(SimulationError, match="no pressure load"):
+        simulate(families.beam(), control="volume")
 
 
 def test_a_load_past_what_the_material_carries_diverges_and_says_where():

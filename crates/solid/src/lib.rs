@@ -37,6 +37,7 @@
 pub mod balance;
 pub mod body;
 pub mod brick;
+mod brick_energy;
 mod clamp;
 mod color;
 mod cube;

@@ -91,7 +91,8 @@ class Hyperelastic(Record):
         Default 1070 kg/m³, a platinum-cure silicone.
     prony
         Branches that relax. The constants are those at rest, when all branches have relaxed; a
-        sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1. Default: none, a purely elastic material.
+        sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1.
+        Default: none, a purely elastic material.
     """
 
     error_type: ClassVar[type[VoxSoftError]] = MaterialError

@@ -111,16 +111,17 @@ def sentence(report: dict[str, Any]) -> str:
         case "limit-reached":
             return (
                 f"no equilibrium past {100 * report['limit']:.4g} % of the load, the limit of this "
-                f"path; kept is the last stable state, at {carried}. Lower the load, or follow the "
-                'path with control = "volume" or "arc-length"'
+                f"path; kept is the last stable state, at {carried}. Lower the load, or follow "
+                'the path with control = "volume" or "arc-length"'
             )
         case "mechanism":
             return (
-                f"a part of the body moves freely (the tangent is singular) at {carried}; clamp it, "
-                "or join voxels that meet only along edges or corners: `voxsoft check` shows hinges"
+                f"a part of the body moves freely (the tangent is singular) at {carried}; clamp "
+                "it, or join voxels that meet only along edges or corners (`voxsoft check` shows "
+                "such hinges)"
             )
         case _:
             return (
-                f"no equilibrium found past {carried} after {iterations}; kept is the last one. Try "
-                'control = "arc-length", smaller voxels, or method = "xpbd", which needs no path'
+                f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
+                'Try control = "arc-length", smaller voxels, or method = "xpbd"'
             )

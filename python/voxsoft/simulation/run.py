@@ -36,10 +36,11 @@ def simulate(
     """Simulate a design until it comes to rest, or to an end time.
 
     Designs of hyperelastic parts are solved by statics, Newton's method on the equilibrium. Others
-    are brought to rest by dynamic relaxation, which is quick and knows no time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or
-    a `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
-    dynamics); both come to rest in the same state. Real time is damped critically on the way to
-    rest and not at all on the way to an end time, unless `damping` says otherwise.
+    are brought to rest by dynamic relaxation, which is quick and knows no time. With any of
+    `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a `damping` rate, real
+    time is simulated (Algorithm 3 of the paper, extended position-based dynamics); all come to
+    rest in the same state. Real time is damped critically on the way to rest and not at all on
+    the way to an end time, unless `damping` says otherwise.
 
     Parameters
     ----------
@@ -122,9 +123,7 @@ def wants_statics(design: Design, solver: Solver) -> bool:
     """Whether a solver's settings mean the statics solver for a design."""
     if solver.method != "auto":
         return solver.method == "statics"
-    hyperelastic = all(
-        isinstance(design.material_of(part), Hyperelastic) for part in design.parts
-    )
+    hyperelastic = all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
     path = (solver.control, solver.steps, solver.volume_ratio, solver.first_step)
     asked = any(value is not None for value in path)
     return asked or (hyperelastic and not _wants_time(solver) and solver.damping is None)
