@@ -21,8 +21,8 @@ def test_three_sizes_give_order_and_limit_exactly(order, sizes):
     assert found.error == pytest.approx(2.0 * 0.3, rel=1e-8)
 
 
-def test_two_sizes_hold_every_order_from_one_on():
-    for order in np.linspace(1.0, 4.0, 13):
+def test_two_sizes_hold_every_order_from_five_sixths_on():
+    for order in np.linspace(0.85, 4.0, 13):
         values = sequence(1.0, 0.2, order, (2.0, 1.0))
         assert discretization_error((2.0, 1.0), values).error >= 0.2 * (1 - 1e-12)
 
@@ -40,7 +40,7 @@ def test_oscillating_values_are_not_extrapolated():
     found = discretization_error((4.0, 2.0, 1.0), [1.0, 2.0, 1.5])
     assert found.basis == "oscillating"
     assert found.limit == 1.5
-    assert found.error == pytest.approx(1.0)
+    assert found.error == pytest.approx(1.25)
 
 
 def test_equal_values_have_no_error():

@@ -124,7 +124,7 @@ def _show(found: Comparison, target: Path) -> None:
     for run in found.runs:
         if not run.ok:
             say(f"[red]{plain(run.label)}:[/red] {plain(run.message)}")
-    good = [run for run in found.runs if run.ok]
+    good = found.side_by_side
     head = ["quantity", *(run.label for run in good), "error"]
     rows = []
     for name in found.quantities:

@@ -21,6 +21,8 @@ Floats = NDArray[np.float64]
 #: Components below this share of the largest of their kind are zero by symmetry, and left out.
 NEGLIGIBLE = 1e-3
 
+_SPLIT = "split voxels"
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -152,6 +154,20 @@ class Comparison:
         found = [run for run in self.runs if run.code == self.outside and run.ok]
         return max(found, key=lambda run: run.split, default=None)
 
+    @property
+    def side_by_side(self) -> tuple[Run, ...]:
+        """Runs on the design's own voxels, the outside code's on its finest split."""
+        best = self.yardstick
+        whole = [
+            run
+            for run in self.runs
+            if run.ok
+            and run.code != self.outside
+            and run.split == 1
+            and run.voxel_size == self.design.voxel_size
+        ]
+        return (*whole, *([best] if best else []))
+
     @cached_property
     def quantities(self) -> tuple[str, ...]:
         """Names of the quantities that are not negligible in every run."""
@@ -181,7 +197,7 @@ class Comparison:
         here = [run for run in own if run.voxel_size == self.design.voxel_size]
         outside = [run for run in good if run.code == self.outside]
         whole = [run for run in own if run.split == 1]
-        found = {"split voxels": here, "voxel sizes": whole, "outside, split voxels": outside}
+        found = {_SPLIT: here, "voxel sizes": whole, "outside, split voxels": outside}
         return {
             name: tuple(sorted(runs, key=lambda run: -run.edge))
             for name, runs in found.items()
@@ -203,6 +219,16 @@ class Comparison:
             for series, runs in self.series.items()
             for name in self.quantities
             if all(name in run.quantities for run in runs)
+        )
+
+    @property
+    def told_apart(self) -> tuple[SeriesEstimate, ...]:
+        """The estimates without those of voxel sizes whose voxels are the split ones."""
+        split = {e.quantity: e.estimate.values for e in self.estimates if e.series == _SPLIT}
+        return tuple(
+            each
+            for each in self.estimates
+            if each.series == _SPLIT or each.estimate.values != split.get(each.quantity)
         )
 
     def estimate(self, quantity: str, series: str) -> Estimate | None:
@@ -233,7 +259,7 @@ class Comparison:
         The solver's error is that of its split voxels, as the outside code sees the same body.
         """
         best = self.yardstick
-        own = self.base_error(quantity, "split voxels")
+        own = self.base_error(quantity, _SPLIT)
         if best is None or own is None or not self.base.ok:
             return None
         outer = self.estimate(quantity, "outside, split voxels")

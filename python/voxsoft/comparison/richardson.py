@@ -8,15 +8,16 @@ give its limit and the error of the finer one, with ``r = h₁/h₂``::
 Three sizes give the order too, from ``(v₁ - v₂)/(v₂ - v₃) = (h₁^p - h₂^p)/(h₂^p - h₃^p)``, whose
 right side rises with ``p`` from ``ln(h₁/h₂)/ln(h₂/h₃)``.
 
+The elements are of second order where the field is smooth. Edges of clamps and re-entrant edges,
+of which voxels have many, lower the order to about 1: on ten varied bodies 0.9 to 1.6 was measured
+(`tests/crosscheck/test_discretization_estimates.py`). So two sizes assume the order 1, and three
+keep what they see between 0.5 and 2.
+
 An estimate is not a bound. It is multiplied by a safety factor, as in Roache's grid convergence
-index (doi 10.1115/1.2910291): 3 where the order had to be assumed, as there, and 2 where three
-sizes show it. Roache takes 1.25 for three sizes; where a second term of the error is as large as
-the first at the coarsest, that holds three cases of four, and 2 holds 96 of 100 (the test of this
-module draws a thousand).
-The elements are of second order; re-entrant edges and corners, of which voxels have many, lower
-the order (a right-angled edge of an incompressible body to 2·0.54, the exponent being that of
-Williams' singularity). So orders are kept between 0.5 and 2. Two sizes assume 2; with the factor 3
-and half the size, this covers every order from 1 on: ``3/(2² - 1) = 1/(2¹ - 1)``.
+index (doi 10.1115/1.2910291): 1.25 on the order 1 that two sizes assume, which covers orders from
+0.85 on when the size is halved; 2 where three sizes show the order. Roache takes 1.25 there; where
+a second term of the error is as large as the first at the coarsest, that holds three cases of
+four, and 2 holds 96 of 100 (the unit test of this module draws a thousand).
 """
 
 from __future__ import annotations
@@ -32,9 +33,11 @@ from voxsoft.errors import SimulationError
 
 #: Orders of convergence that are believed.
 LOWEST_ORDER, HIGHEST_ORDER = 0.5, 2.0
+#: Order where two sizes cannot show it.
+USUAL_ORDER: Final = 1.0
 #: Safety factors where the order was seen, and where it was assumed.
 SEEN: Final = 2.0
-ASSUMED: Final = 3.0
+ASSUMED: Final = 1.25
 
 #: How an estimate came about.
 Basis = Literal["three sizes", "two sizes", "oscillating"]
@@ -95,7 +98,7 @@ def discretization_error(sizes: Sequence[float], values: Sequence[float]) -> Est
     >>> exact.order, exact.limit, exact.error
     (2.0, 1.0, 2.0)
     >>> discretization_error([2.0, 1.0], [1 + 2, 1 + 1]).error
-    1.0
+    1.25
     """
     sizes, values = tuple(map(float, sizes)), tuple(map(float, values))
     if len(sizes) < 2 or len(values) != len(sizes):
@@ -104,7 +107,7 @@ def discretization_error(sizes: Sequence[float], values: Sequence[float]) -> Est
         )
     if any(fine >= coarse for coarse, fine in pairwise(sizes)) or sizes[-1] <= 0:
         raise SimulationError("voxel_sizes", "do not fall", "name the coarsest first, each once")
-    order = HIGHEST_ORDER
+    order = USUAL_ORDER
     basis: Basis = "two sizes"
     if len(sizes) > 2:
         before, after = values[-3] - values[-2], values[-2] - values[-1]
@@ -117,8 +120,8 @@ def discretization_error(sizes: Sequence[float], values: Sequence[float]) -> Est
 
 
 def _oscillating(sizes: tuple[float, ...], values: tuple[float, ...], largest: float) -> Estimate:
-    error = ASSUMED * largest / ((sizes[-2] / sizes[-1]) ** HIGHEST_ORDER - 1.0)
-    return Estimate(sizes, values, HIGHEST_ORDER, values[-1], error, "oscillating")
+    error = ASSUMED * largest / ((sizes[-2] / sizes[-1]) ** USUAL_ORDER - 1.0)
+    return Estimate(sizes, values, USUAL_ORDER, values[-1], error, "oscillating")
 
 
 def _order(sizes: tuple[float, ...], before: float, after: float) -> float:

@@ -21,7 +21,6 @@ from voxsoft.plot.comparison import (
     plot_errors,
     plot_shapes,
     plot_times,
-    shown_runs,
 )
 from voxsoft.units import format_quantity
 
@@ -163,7 +162,7 @@ def _shown(value: float, kind: str) -> str:
 
 
 def _answers(comparison: Comparison) -> Iterator[str]:
-    runs: tuple[Run, ...] = shown_runs(comparison)
+    runs: tuple[Run, ...] = comparison.side_by_side
     if not runs:
         yield "<p>No run came to rest.</p>"
         return
@@ -198,13 +197,14 @@ def _estimates(comparison: Comparison) -> Iterator[str]:
         return
     head = ["quantity", "series", "finest", "limit", "error of the finest", "order", "from"]
     rows = []
-    for each in comparison.estimates:
+    for each in comparison.told_apart:
         estimate = each.estimate
         kind = comparison.known(each.quantity).kind
-        numbers = (estimate.values[-1], estimate.limit, estimate.error)
+        small = estimate.error < 1e-4 * comparison.known(each.quantity).scale
         rows.append(
             [escape(each.quantity), escape(each.series)]
-            + [_shown(number, kind) for number in numbers]
+            + [_shown(number, kind) for number in (estimate.values[-1], estimate.limit)]
+            + ["below 0.01 %" if small else _shown(estimate.error, kind)]
             + [f"{estimate.order:.2g}", escape(estimate.basis)]
         )
     yield _table(head, rows)

@@ -33,14 +33,8 @@ _MOST = 14
 _ORDER = {"length": 0, "angle": 1, "volume": 2, "force": 3}
 # Axes span at least this share of their largest number, so that noise does not look like much.
 _NARROWEST = 0.02
-
-
-def shown_runs(comparison: Comparison) -> tuple[Run, ...]:
-    """Runs on the design's own voxels, the outside code's on its finest split."""
-    best = comparison.yardstick
-    own = [run for run in comparison.runs if run.ok and run.code != comparison.outside]
-    whole = [r for r in own if r.split == 1 and r.voxel_size == comparison.design.voxel_size]
-    return (*whole, *([best] if best else []))
+# A number that changes by less than this share from size to size has nothing to show.
+_LEVEL = 1e-4
 
 
 def plot_agreement(comparison: Comparison) -> Figure:
@@ -57,7 +51,7 @@ def plot_agreement(comparison: Comparison) -> Figure:
         A panel for each kind of quantity. Bars are the estimated discretization errors of the
         solver (on split voxels) and of the outside code.
     """
-    runs = shown_runs(comparison)
+    runs = comparison.side_by_side
     kinds: dict[str, list[str]] = {}
     sizes = {
         name: max(abs(run.quantities[name].value) for run in runs)
@@ -142,7 +136,7 @@ def plot_shapes(comparison: Comparison) -> Figure | None:
     rest = np.array(
         [place.weights @ base.mesh.vertices[place.vertices] for place in base.places.values()]
     )
-    moved = {run.label: rest + _moved(run, list(base.places)) for run in shown_runs(comparison)}
+    moved = {run.label: rest + _moved(run, list(base.places)) for run in comparison.side_by_side}
     if not moved:
         return None
     everything = np.concatenate([rest, *moved.values()])
@@ -186,7 +180,9 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
     """
     names: dict[str, str] = {}
     for each in comparison.estimates:
-        value, kind, _ = comparison.known(each.quantity)
+        value, kind, scale = comparison.known(each.quantity)
+        if np.ptp(each.estimate.values) < _LEVEL * scale:
+            continue
         if kind not in names or abs(value) > abs(comparison.known(names[kind]).value):
             names[kind] = each.quantity
     if not names:
@@ -194,20 +190,20 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
     figure = empty_figure(4.2 * len(names), 3.9)
     panels = figure.subplots(1, len(names), squeeze=False)[0]
     for axes, (kind, name) in zip(panels, names.items(), strict=True):
-        scale = scale_for([comparison.known(name).value], kind)
-        chosen = [each for each in comparison.estimates if each.quantity == name]
+        unit = scale_for([comparison.known(name).value], kind)
+        chosen = [each for each in comparison.told_apart if each.quantity == name]
         for index, each in enumerate(chosen):
             estimate, color = each.estimate, SERIES[index % len(SERIES)]
             edges = np.array(estimate.sizes) * 1e3
-            values = np.array(estimate.values) * scale.factor
+            values = np.array(estimate.values) * unit.factor
             axes.plot(
                 edges, values, marker=_MARKERS[index], color=color, label=each.series, linewidth=1.2
             )
             finest = [edges[-1]], [values[-1]]
-            bar = estimate.error * scale.factor
+            bar = estimate.error * unit.factor
             axes.errorbar(*finest, yerr=bar, color=color, capsize=4, linewidth=1.2)
         axes.set_xlim(left=0.0)
-        plain_axes(axes, x="edge of voxels or bricks (mm)", y=scale.label(name))
+        plain_axes(axes, x="edge of voxels or bricks (mm)", y=unit.label(name))
     plain_legend(panels[0], loc="best")
     return figure
 
@@ -248,7 +244,7 @@ def plot_errors(comparison: Comparison, index: int = 0) -> Figure | None:
         None where no run has an answer at the stations.
     """
     judged = comparison.measured[index]
-    errors = {run.label: comparison.errors(run, index) for run in shown_runs(comparison)}
+    errors = {run.label: comparison.errors(run, index) for run in comparison.side_by_side}
     known = {label: values for label, values in errors.items() if values is not None}
     if not known:
         return None
