@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Literal
 
-import numpy as np
-
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.comparison import Comparison, Judged, Run
@@ -20,7 +18,6 @@ from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.units import format_quantity
-from voxsoft.voxels import Voxels
 
 #: An outside code: the first that is installed, one by name, or none.
 Outside = Literal["auto", "calculix", "scikit-fem", "none"]
@@ -57,7 +54,7 @@ def compare(
     Parameters
     ----------
     design
-        What to compare, as it comes to rest: choices of its own about the solver do not count.
+        What to compare, as it comes to rest: of its own choices about the solver, `refine` counts.
     solvers
         Of our own, ``"xpbd"`` and ``"statics"``; the estimates are for the last.
     outside
@@ -105,10 +102,13 @@ def compare(
         raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
     code = _outside(outside)
     plain = design.model_copy(update={"solver": Solver()})
-    base = Setup.of(plain, may_fly=False)
+    refine = design.solver.refine
+    base = Setup.of(plain, may_fly=False, refine=refine)
     experiments = [Experiment(plain, measurement) for measurement in measured]
     sizes = [design.voxel_size / 2] if voxel_sizes is None else list(voxel_sizes)
-    tasks = list(_tasks(plain, base, tuple(solvers), code, sizes, tuple(splits), time_limit))
+    tasks = list(
+        _tasks(plain, base, tuple(solvers), code, sizes, tuple(splits), time_limit, refine)
+    )
     runs: list[Run] = []
     for index, task in enumerate(tasks):
         if progress is not None:
@@ -173,6 +173,7 @@ def _tasks(
     sizes: list[float],
     splits: tuple[int, ...],
     time_limit: float,
+    refine: int,
 ) -> Iterator[_Task]:
     own = _length(design.voxel_size)
     last = solvers[-1]
@@ -187,12 +188,12 @@ def _tasks(
     for split in splits:
         if split > 1:
             finer = f"{last}, {own} split {split}"
-            setup = partial(split_setup, base, split)
+            setup = partial(Setup.of, design, may_fly=False, refine=split * refine)
             yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
     for size in sizes:
         if size != design.voxel_size:
             other = design.model_copy(update={"voxel_size": size})
-            setup = partial(Setup.of, other, may_fly=False)
+            setup = partial(Setup.of, other, may_fly=False, refine=refine)
             yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
     for split in splits if code else ():
         whole = "" if split == 1 else f" split {split}"
@@ -203,35 +204,6 @@ def _tasks(
 
 def _length(size: float) -> str:
     return format_quantity(float(f"{size:.6g}"), "length")
-
-
-def split_setup(setup: Setup, split: int) -> Setup:
-    """The same body on voxels split along each axis: no corner of a voxel moves.
-
-    Parameters
-    ----------
-    setup
-        A design made ready.
-    split
-        New voxels along the edge of an old one.
-
-    Examples
-    --------
-    >>> from voxsoft.design import families
-    >>> fine = split_setup(Setup.of(families.beam()), 2)
-    >>> len(fine.mesh.tets) // 5, fine.mesh.voxel_size
-    (640, 0.0025)
-    """
-    from voxsoft.design.discretize import voxels_of
-
-    voxels = voxels_of(setup.design)
-    cells = voxels.array
-    for axis in range(3):
-        cells = np.repeat(cells, split, axis=axis)
-    finer = Voxels.from_array(cells, voxels.voxel_size / split, voxels.origin)
-    found = Setup(setup.design, finer.mesh())
-    found.check(may_fly=False)
-    return found
 
 
 def _solve(
