@@ -26,8 +26,8 @@
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::add_stiffness`].
 
-pub use crate::brick_energy::BrickStress;
-use crate::brick_energy::{Modes, Rotated, SHAPE};
+pub use crate::brick_energy::BrickStrain;
+use crate::brick_energy::{BrickStress, Modes, Rotated, SHAPE};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
 use crate::matrix::{
@@ -133,7 +133,37 @@ impl Brick {
         forces: &mut [Vec3],
     ) {
         let state = Rotated::of(&self.modes(positions));
-        let gradient = state.gradient(material);
+        let stress = state.gradient(material);
+        self.spread_stress(&state, &stress, material, forces);
+    }
+
+    /// Adds the forces of the stress that `strain` predicts for `positions`:
+    /// `Φ'(ê) + Φ''(ê)(e − ê)`; see [`crate::mixed`].
+    pub fn add_predicted_forces(
+        &self,
+        material: &HyperelasticMaterial,
+        strain: &BrickStrain,
+        positions: &[Vec3],
+        forces: &mut [Vec3],
+    ) {
+        let state = Rotated::of(&self.modes(positions));
+        let other = state.with_strain(strain);
+        let (now, then) = (state.strain().row(), strain.row());
+        let change = times(
+            &other.hessian(material),
+            &std::array::from_fn(|k| now[k] - then[k]),
+        );
+        let stress = other.gradient(material).plus(&change);
+        self.spread_stress(&state, &stress, material, forces);
+    }
+
+    fn spread_stress(
+        &self,
+        state: &Rotated,
+        gradient: &BrickStress,
+        material: &HyperelasticMaterial,
+        forces: &mut [Vec3],
+    ) {
         let stress = to_matrix(&gradient.stress);
         let stretch = to_matrix(&state.stretch);
         let mut couple = multiply(&stress, &stretch);
@@ -163,17 +193,21 @@ impl Brick {
     /// changes `S` by `B − ΩS`, `p̂ₘ` by `bₘ − Ωp̂ₘ`. The gradients `T − [y]×` and `sₘ` change by
     /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
     ///
-    /// With a `stress` of the caller's, that one takes the place of the stress at `positions` in all
-    /// terms that come from the change of frame; see [`crate::mixed`].
+    /// With a `strain` of the caller's, stress and moduli are those of that strain, and only the frame
+    /// is that of `positions`; see [`crate::mixed`].
     pub fn stiffness(
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-        stress: Option<&BrickStress>,
+        strain: Option<&BrickStrain>,
     ) -> BrickMatrix {
         let state = Rotated::of(&self.modes(positions));
-        let gradient = stress.copied().unwrap_or_else(|| state.gradient(material));
-        let hessian = state.hessian(material);
+        let other = strain.map_or_else(
+            || state.with_strain(&state.strain()),
+            |s| state.with_strain(s),
+        );
+        let gradient = other.gradient(material);
+        let hessian = other.hessian(material);
         let stress = to_matrix(&gradient.stress);
         let stretch = to_matrix(&state.stretch);
         let spin = spin_matrix(&stretch);
@@ -206,10 +240,7 @@ impl Brick {
             } else {
                 change[6 + 3 * (mode - 3) + axis] = 1.0;
             }
-            let mut response = [0.0; SHAPE];
-            for (row, entries) in response.iter_mut().zip(&hessian) {
-                *row = entries.iter().zip(&change).map(|(h, c)| h * c).sum();
-            }
+            let response = times(&hessian, &change);
             let stress_change = to_matrix(&std::array::from_fn(|k| response[k]));
             let part = |values: &[f64; SHAPE], m: usize| {
                 std::array::from_fn::<f64, 3, _>(|k| values[6 + 3 * m + k])
@@ -242,42 +273,26 @@ impl Brick {
         self.expand(&rotated, &state.rotation, material.young() / 9.0)
     }
 
-    /// The stress at `positions`, and how it would change along `moves` to first order.
-    pub fn predict_stress(
-        &self,
-        material: &HyperelasticMaterial,
-        positions: &[Vec3],
-        moves: &[Vec3],
-    ) -> BrickStress {
+    /// The strain at `positions`, and how it changes along `moves` to first order.
+    pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> BrickStrain {
         let state = Rotated::of(&self.modes(positions));
-        let mut gradient = state.gradient(material);
-        let hessian = state.hessian(material);
         let stretch = to_matrix(&state.stretch);
         let direction = self.modes(moves);
         let b: Mat3 = std::array::from_fn(|i| {
             std::array::from_fn(|k| apply_transposed(&state.rotation, direction[k])[i])
         });
         let omega = cross_matrix(solve_spd(&spin_matrix(&stretch), axial(&b)));
-        let mut change = [0.0; SHAPE];
-        change[..6].copy_from_slice(&to_sym(&plus(&b, -1.0, &multiply(&omega, &stretch))));
+        let change = to_sym(&plus(&b, -1.0, &multiply(&omega, &stretch)));
+        let mut strain = state.strain();
+        for k in 0..6 {
+            strain.stretch[k] += change[k];
+        }
         for m in 0..3 {
             let own = apply_transposed(&state.rotation, direction[3 + m]);
             let turned = apply(&omega, state.hourglass[m]);
-            for k in 0..3 {
-                change[6 + 3 * m + k] = own[k] - turned[k];
-            }
+            strain.hourglass[m] = add(strain.hourglass[m], sub(own, turned));
         }
-        let response =
-            |row: usize| -> f64 { hessian[row].iter().zip(&change).map(|(h, c)| h * c).sum() };
-        for k in 0..6 {
-            gradient.stress[k] += response(k);
-        }
-        for m in 0..3 {
-            for k in 0..3 {
-                gradient.hourglass[m][k] += response(6 + 3 * m + k);
-            }
-        }
-        gradient
+        strain
     }
 
     /// Turns the blocks back and spreads modes over corners.
@@ -317,6 +332,11 @@ impl Brick {
         }
         matrix
     }
+}
+
+/// A matrix times a row of coordinates.
+fn times(matrix: &[[f64; SHAPE]; SHAPE], row: &[f64; SHAPE]) -> [f64; SHAPE] {
+    std::array::from_fn(|k| matrix[k].iter().zip(row).map(|(h, c)| h * c).sum())
 }
 
 fn scaled_identity(s: f64) -> Mat3 {

@@ -37,7 +37,54 @@ pub struct BrickStress {
     pub(crate) hourglass: [Vec3; 3],
 }
 
+/// The strain of a voxel in its rotated frame: the generalised coordinates themselves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrickStrain {
+    pub(crate) stretch: Sym,
+    pub(crate) hourglass: [Vec3; 3],
+}
+
+impl BrickStrain {
+    /// All coordinates in one row.
+    pub(crate) fn row(&self) -> [f64; SHAPE] {
+        let mut row = [0.0; SHAPE];
+        row[..6].copy_from_slice(&self.stretch);
+        row[6..].copy_from_slice(self.hourglass.as_flattened());
+        row
+    }
+}
+
+impl BrickStress {
+    /// Adds a row of changes.
+    pub(crate) fn plus(mut self, row: &[f64; SHAPE]) -> Self {
+        for k in 0..6 {
+            self.stress[k] += row[k];
+        }
+        for (value, change) in self.hourglass.as_flattened_mut().iter_mut().zip(&row[6..]) {
+            *value += change;
+        }
+        self
+    }
+}
+
 impl Rotated {
+    pub fn strain(&self) -> BrickStrain {
+        BrickStrain {
+            stretch: self.stretch,
+            hourglass: self.hourglass,
+        }
+    }
+
+    /// The same frame with another strain.
+    pub fn with_strain(&self, strain: &BrickStrain) -> Self {
+        Self {
+            rotation: self.rotation,
+            stretch: strain.stretch,
+            hourglass: strain.hourglass,
+            bilinear: self.bilinear,
+        }
+    }
+
     pub fn of(modes: &Modes) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);

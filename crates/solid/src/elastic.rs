@@ -120,6 +120,12 @@ pub fn energy(body: &Body, positions: &[Vec3]) -> f64 {
 
 /// Adds the elastic forces in N, minus the gradient of [`energy`].
 pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
+    add_constraint_forces(body, positions, forces);
+    add_element_forces(body, positions, forces);
+}
+
+/// Adds the forces of the edge and volume constraints alone.
+pub fn add_constraint_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
     for edge in body.edges() {
         let (stretch, gradient) = edge.evaluate(positions);
         let tension = edge.stiffness * stretch;
@@ -134,7 +140,6 @@ pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
             axpy(&mut forces[vertex as usize], -pressure, gradient);
         }
     }
-    add_element_forces(body, positions, forces);
 }
 
 /// Adds the forces of hyperelastic voxels and membranes alone, which are not constraints.

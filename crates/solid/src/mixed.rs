@@ -1,29 +1,32 @@
-//! Stresses that Newton's method carries along by itself.
+//! Strains that Newton's method carries along by itself.
 //!
 //! A long Newton step of a slender body turns its elements far, which the linear step mistakes for
 //! stretch. The stress at the end of the step is then spurious, its geometric stiffness ruins the
-//! next tangent, and dozens of iterations go into undoing it. Treating the stress as an unknown of
-//! its own (as mixed elements do) avoids this: the tangent uses the stress that the *linear* step
-//! predicted, `σ + C B δ`, which is moderate, while the forces are those of the positions. The
-//! equilibrium is the same; the way there is several times shorter (Magisano, Leonetti and Garcea
+//! next tangent, and dozens of iterations go into undoing it. Treating the strain `ê` as an unknown of
+//! its own (as mixed elements do) avoids this: stress and moduli are those of `ê`, which the *linear*
+//! step predicts, `ê = e(x) + B δ`, and which is moderate. Newton's method on both unknowns is
+//!
+//! `(Bᵀ C B + G(σ)) δ = f − Bᵀ (σ + C (e(x) − ê))`, `σ = Φ'(ê)`, `C = Φ''(ê)`.
+//!
+//! The equilibrium is the same; the way there is several times shorter (Magisano, Leonetti and Garcea
 //! 2017, doi 10.1016/j.cma.2016.09.044).
 
-use crate::Body;
-use crate::brick::BrickStress;
+use crate::brick::BrickStrain;
 use crate::membrane::Plane;
 use crate::vector::{Vec3, dot, sub};
+use crate::{Body, elastic};
 
-/// The stress of every piece of a body.
+/// The strain of every piece of a body.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Stresses {
+pub struct Strains {
     edges: Vec<f64>,
     tets: Vec<f64>,
-    bricks: Vec<BrickStress>,
+    bricks: Vec<BrickStrain>,
     membranes: Vec<Plane>,
 }
 
-impl Stresses {
-    /// The stresses that a step `moves` from `positions` leads to, to first order.
+impl Strains {
+    /// The strains that a step `moves` from `positions` leads to, to first order.
     pub fn predict(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
         let edges = body.edges().iter().map(|edge| {
             let (change, gradient) = edge.evaluate(positions);
@@ -38,7 +41,7 @@ impl Stresses {
         let bricks = body
             .bricks()
             .iter()
-            .map(|brick| brick.predict_stress(body.material_of(brick), positions, moves));
+            .map(|brick| brick.predict_strain(positions, moves));
         let membranes = body
             .membranes()
             .iter()
@@ -51,7 +54,19 @@ impl Stresses {
         }
     }
 
-    /// The tangent with these stresses in its geometric part, piece by piece as in
+    /// Adds the forces at `positions` of the stress that these strains predict, in N. Constraints and
+    /// membranes are linear in their strains, so theirs are the true ones.
+    pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
+        elastic::add_constraint_forces(body, positions, forces);
+        for (brick, strain) in body.bricks().iter().zip(&self.bricks) {
+            brick.add_predicted_forces(body.material_of(brick), strain, positions, forces);
+        }
+        for membrane in body.membranes() {
+            membrane.add_forces(positions, forces);
+        }
+    }
+
+    /// The tangent at `positions` with the stress of these strains, piece by piece as in
     /// [`crate::elastic::visit_stiffness`].
     pub fn visit_stiffness(
         &self,
@@ -67,8 +82,8 @@ impl Stresses {
             let matrix = tet.hessian(positions, Some(*change));
             visit(&tet.vertices, matrix.as_flattened());
         }
-        for (brick, stress) in body.bricks().iter().zip(&self.bricks) {
-            let matrix = brick.stiffness(body.material_of(brick), positions, Some(stress));
+        for (brick, strain) in body.bricks().iter().zip(&self.bricks) {
+            let matrix = brick.stiffness(body.material_of(brick), positions, Some(strain));
             visit(&brick.vertices, matrix.as_flattened());
         }
         for (membrane, stress) in body.membranes().iter().zip(&self.membranes) {

@@ -208,7 +208,7 @@ pub(crate) fn follow_arc(
         Ok(limit) if path.point.pressure >= 1.0 => {
             let full = Point::all(1.0);
             let start = path.positions.clone();
-            match path.settle(start, full, settings) {
+            match path.settle(start, full, settings, true) {
                 Ok(_) => (Status::AtRest, limit),
                 Err(failure) => (status_of(failure), limit),
             }
@@ -310,7 +310,7 @@ pub(crate) fn follow_volume(
         pressure: 0.0,
     };
     let start = path.positions.clone();
-    if let Err(failure) = path.settle(start, dead, settings) {
+    if let Err(failure) = path.settle(start, dead, settings, true) {
         return (status_of(failure), None);
     }
     let first = volume(path, &path.positions);

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
-use voxsoft_solid::mixed::Stresses;
+use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Load, LoadKind, Problem, elastic};
 
@@ -90,7 +90,7 @@ pub(crate) struct Equilibrium<'a> {
     pub back_offs: u32,
 }
 
-/// Iterations with stresses carried along: most steps take less than ten.
+/// Iterations with strains carried along: most steps take less than ten.
 const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
 const PATIENCE: u32 = 8;
@@ -145,6 +145,15 @@ impl<'a> Equilibrium<'a> {
         }
     }
 
+    /// Net forces on free coordinates with the elastic ones that `strains` predict.
+    fn predicted_forces(&self, strains: &Strains, positions: &[Vec3], point: Point) -> Vec<f64> {
+        let mut net = vec![[0.0; 3]; positions.len()];
+        self.problem
+            .add_scaled_loads(positions, &point.factor_of(), &mut net);
+        strains.add_forces(self.problem.body(), positions, &mut net);
+        self.system.gather(&net)
+    }
+
     fn potential(&self, positions: &[Vec3], point: Point) -> (f64, f64) {
         let elastic = elastic::energy(self.problem.body(), positions);
         let loads = self.problem.load_potential(positions, &point.factor_of());
@@ -171,13 +180,14 @@ impl<'a> Equilibrium<'a> {
         jump.iter().flatten().any(|x| *x != 0.0).then_some(jump)
     }
 
-    /// Finds the equilibrium at `point` from `positions`, which it changes: first with stresses that
-    /// are carried along ([`voxsoft_solid::mixed`]), which is quick, then with a line search, which is safe.
+    /// Finds the equilibrium at `point` from `positions`, which it changes: first with strains that
+    /// are carried along ([`voxsoft_solid::mixed`]), which is quick, then, if `safe`, with a line search.
     pub fn newton(
         &mut self,
         positions: &mut Vec<Vec3>,
         point: Point,
         settings: &Settings,
+        safe: bool,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let mut trial = positions.clone();
@@ -186,7 +196,7 @@ impl<'a> Equilibrium<'a> {
                 *positions = trial;
                 Ok(found)
             }
-            Err(Failure::Lost | Failure::Singular) => {
+            Err(Failure::Lost | Failure::Singular) if safe => {
                 self.newton_searched(positions, point, settings, observer)
             }
             Err(failure) => Err(failure),
@@ -201,7 +211,7 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let body = self.problem.body();
-        let mut stresses: Option<Stresses> = None;
+        let mut strains: Option<Strains> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         for iteration in 0..=MIXED_ITERATIONS {
@@ -218,6 +228,9 @@ impl<'a> Equilibrium<'a> {
                     residual: relative,
                 });
             }
+            if let Some(strains) = &strains {
+                forces.free = self.predicted_forces(strains, positions, point);
+            }
             since_lowest += 1;
             if relative < 0.5 * lowest {
                 (lowest, since_lowest) = (relative, 0);
@@ -230,11 +243,15 @@ impl<'a> Equilibrium<'a> {
                 self.problem,
                 positions,
                 &point.factor_of(),
-                stresses.as_ref(),
+                strains.as_ref(),
                 jump.as_deref(),
                 &mut forces.free,
             );
-            let factor = self.system.factor(0.0, self.problem.is_conservative())?;
+            // Far from equilibrium the tangent may be indefinite; this way does not go downhill anyway.
+            let factor = match self.system.factor(0.0, self.problem.is_conservative()) {
+                Err(FactorError::NotPositive) => self.system.factor(0.0, false)?,
+                other => other?,
+            };
             self.system.solve(&factor, &mut forces.free, false);
             let mut moves = self.system.spread(&forces.free);
             if let Some(jump) = &jump {
@@ -250,7 +267,7 @@ impl<'a> Equilibrium<'a> {
                     residual: relative,
                 });
             }
-            stresses = Some(Stresses::predict(body, positions, &moves));
+            strains = Some(Strains::predict(body, positions, &moves));
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);
             }

@@ -1,7 +1,7 @@
 //! The load path: steps that grow and back off, and what to say when there is no way on.
 
 use voxsoft_solid::Problem;
-use voxsoft_solid::vector::{Vec3, add, scale, sub};
+use voxsoft_solid::vector::Vec3;
 
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure, Found, Point};
@@ -10,6 +10,9 @@ use crate::system::FactorError;
 
 /// A step that took no more iterations than this lets the next one grow.
 const EASY: u32 = 6;
+/// Steps up to this part of the load are tried again with a line search before they are cut: a quick
+/// way that fails is mostly helped by a shorter step.
+const SAFE_STEP: f64 = 0.05;
 /// How often the floor may change its mind at one point.
 const FLOOR_ROUNDS: usize = 40;
 
@@ -105,13 +108,14 @@ impl Path<'_, '_> {
         trial: Vec<Vec3>,
         point: Point,
         settings: &Settings,
+        safe: bool,
     ) -> Result<Found, Failure> {
         let mut positions = trial;
         let mut iterations = 0;
         for _ in 0..FLOOR_ROUNDS {
-            let found = self
-                .equilibrium
-                .newton(&mut positions, point, settings, self.observer)?;
+            let found =
+                self.equilibrium
+                    .newton(&mut positions, point, settings, safe, self.observer)?;
             iterations += found.iterations;
             if !self.equilibrium.update_floor(&positions, point)? {
                 self.accept(positions, point, iterations, found.residual);
@@ -150,16 +154,13 @@ impl Path<'_, '_> {
         } else {
             settings.first_step.clamp(settings.least_step, 1.0)
         };
-        let mut before: Option<(Vec<Vec3>, f64)> = None;
         let cold = self.equilibrium.problem.body().rest().to_vec();
         loop {
             let now = self.point.pressure;
             let next = (now + step).min(1.0);
-            let trial = predict(&self.positions, &before, now, next);
-            let kept = (self.positions.clone(), now);
-            match self.settle(trial, Point::all(next), settings) {
+            let trial = self.positions.clone();
+            match self.settle(trial, Point::all(next), settings, step <= SAFE_STEP) {
                 Ok(found) => {
-                    before = Some(kept);
                     if next == 1.0 {
                         return (Status::AtRest, None);
                     }
@@ -172,7 +173,6 @@ impl Path<'_, '_> {
                     if self.points.is_empty() && warm {
                         self.positions.clone_from(&cold);
                     }
-                    before = None;
                     step = (next - now) / 4.0;
                     if step < settings.least_step {
                         let limit = control::look_for_limit(self, settings);
@@ -190,24 +190,4 @@ impl From<FactorError> for Status {
     fn from(error: FactorError) -> Self {
         status_of(error.into())
     }
-}
-
-/// The next state if the path were straight.
-fn predict(
-    positions: &[Vec3],
-    before: &Option<(Vec<Vec3>, f64)>,
-    now: f64,
-    next: f64,
-) -> Vec<Vec3> {
-    let Some((earlier, then)) = before else {
-        return positions.to_vec();
-    };
-    let part = (next - now) / (now - then);
-    // A long look ahead is worse than none.
-    let part = part.min(2.0);
-    positions
-        .iter()
-        .zip(earlier)
-        .map(|(x, e)| add(*x, scale(part, sub(*x, *e))))
-        .collect()
 }

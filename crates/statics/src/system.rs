@@ -10,7 +10,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
-use voxsoft_solid::mixed::Stresses;
+use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, LoadKind, Problem, elastic};
 
@@ -166,7 +166,7 @@ impl System {
         SparseColMatRef::new(self.pattern(), values)
     }
 
-    /// Assembles the tangent at `positions` with a factor for each load, and with `stresses` in place of
+    /// Assembles the tangent at `positions` with a factor for each load, and with `strains` in place of
     /// those at `positions` where they are given; where the held coordinates
     /// are about to move by `jump`, subtracts the force of that from `residual`.
     pub fn assemble(
@@ -174,7 +174,7 @@ impl System {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        stresses: Option<&Stresses>,
+        strains: Option<&Strains>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
@@ -225,8 +225,8 @@ impl System {
                 }
             }
         };
-        match stresses {
-            Some(stresses) => stresses.visit_stiffness(problem.body(), positions, &mut add),
+        match strains {
+            Some(strains) => strains.visit_stiffness(problem.body(), positions, &mut add),
             None => elastic::visit_stiffness(problem.body(), positions, &mut add),
         }
         problem.visit_load_stiffness(positions, factor_of, &mut add);
