@@ -218,3 +218,20 @@ def test_the_command_line_answers_with_one_object(tmp_path):
     assert report.exists()
     refused = CliRunner().invoke(app, [*call, "--splits", "one"])
     assert refused.exit_code == 3
+
+
+def test_what_cancels_is_left_out():
+    outer = vs.Box(size=(15 * mm, 15 * mm, 15 * mm))
+    hole = vs.Box(size=(5 * mm, 5 * mm, 5 * mm), corner=(5 * mm, 5 * mm, 5 * mm))
+    design = BAR.model_copy(
+        update={
+            "shapes": {},
+            "parts": (vs.Part(shape=outer - hole, material=BAR.parts[0].material),),
+            "clamps": (vs.Clamp(region=vs.Region(z=(0, 0))),),
+            "loads": (vs.Pressure(value=1 * kPa),),
+            "probes": {"top": vs.Probe(z=(15 * mm, 15 * mm))},
+        }
+    )
+    found = compare(design, solvers=["xpbd"], outside="none", voxel_sizes=[], splits=[1])
+    # Nothing weighs on the supports, and the top rises without turning.
+    assert set(found.quantities) == {"top z", "growth of cavity 0"}

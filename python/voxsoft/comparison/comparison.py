@@ -175,6 +175,8 @@ class Comparison:
         largest: dict[str, float] = {}
         for run in self.runs:
             for name, quantity in run.quantities.items() if run.ok else ():
+                if abs(quantity.value) <= quantity.floor:
+                    continue
                 sizes[name] = max(sizes.get(name, 0.0), abs(quantity.value))
                 kind = quantity.kind
                 largest[kind] = max(largest.get(kind, 0.0), abs(quantity.value))

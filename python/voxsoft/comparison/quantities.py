@@ -29,12 +29,18 @@ class Quantity(NamedTuple):
     scale
         What a difference is measured against: the length of the vector that the number is a
         component of, or the size of the number.
+    floor
+        Below this the number is what remains of things that cancel, and says nothing.
     """
 
     value: float
     kind: str
     scale: float
+    floor: float = 0.0
 
+
+# Radians; and the share of the forces of a clamp, one by one.
+_LEAST_TURN, _LEAST_SHARE = 1e-4, 1e-3
 
 Quantities = Mapping[str, Quantity]
 
@@ -54,7 +60,7 @@ def in_words(value: float, kind: str) -> str:
 
 def of_result(setup: Setup, result: Result) -> Quantities:
     """Displacements of probes, reactions of clamps, volumes of cavities of a run of our own."""
-    held = [result.reactions[vertices].sum(axis=0) for vertices in setup.clamped]
+    held = [result.reactions[vertices] for vertices in setup.clamped]
     return _quantities(setup, result.positions, held)
 
 
@@ -62,7 +68,7 @@ def of_answer(setup: Setup, model: BrickModel, answer: OutsideAnswer) -> Quantit
     """The same of an answer of an outside code."""
     forces = np.zeros_like(model.nodes)
     forces[answer.held] = answer.reactions
-    held = [forces[nodes].sum(axis=0) for nodes in model.clamp_nodes]
+    held = [forces[nodes] for nodes in model.clamp_nodes]
     return _quantities(setup, setup.mesh.vertices + answer.displacements, held)
 
 
@@ -75,10 +81,12 @@ def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantiti
         flat = np.ptp(rest[place.vertices], axis=0)
         if np.count_nonzero(flat > 0) > 1 and setup.design.probes[name].point is None:
             turned = metrics.mean_rotation(rest, positions, place.vertices)
-            found[f"{name} rotation"] = Quantity(turned, "angle", abs(turned))
-    for index, force in enumerate(held):
+            found[f"{name} rotation"] = Quantity(turned, "angle", abs(turned), _LEAST_TURN)
+    for index, forces in enumerate(held):
         name = "reaction" if len(held) == 1 else f"reaction of clamp {index}"
-        found |= _components(name, force, "force")
+        # Supports of a closed cavity under pressure push and pull: their sum is rounding.
+        floor = _LEAST_SHARE * float(np.linalg.norm(forces, axis=1).sum())
+        found |= _components(name, forces.sum(axis=0), "force", floor)
     for index, cavity in enumerate(setup.mesh.cavities):
         volume = metrics.enclosed_volume(cavity.triangles, positions)
         grown = volume - cavity.volume
@@ -86,9 +94,9 @@ def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantiti
     return found
 
 
-def _components(name: str, vector: Floats, kind: str) -> dict[str, Quantity]:
+def _components(name: str, vector: Floats, kind: str, floor: float = 0.0) -> dict[str, Quantity]:
     size = float(np.linalg.norm(vector))
     return {
-        f"{name} {axis}": Quantity(float(value), kind, size)
+        f"{name} {axis}": Quantity(float(value), kind, size, floor)
         for axis, value in zip("xyz", vector, strict=True)
     }

@@ -180,7 +180,7 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
     """
     names: dict[str, str] = {}
     for each in comparison.estimates:
-        value, kind, scale = comparison.known(each.quantity)
+        value, kind, scale, _ = comparison.known(each.quantity)
         if np.ptp(each.estimate.values) < _LEVEL * scale:
             continue
         if kind not in names or abs(value) > abs(comparison.known(names[kind]).value):
