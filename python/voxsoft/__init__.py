@@ -65,7 +65,7 @@ if TYPE_CHECKING:
     )
     from voxsoft.mesh import Mesh
     from voxsoft.shapes import *
-    from voxsoft.simulation import Result, check, simulate
+    from voxsoft.simulation import Result, check, gradient, simulate
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
@@ -106,7 +106,7 @@ _HOMES: Final = {
         "load_card",
     ),
     "voxsoft.mesh": ("Mesh",),
-    "voxsoft.simulation": ("Result", "check", "simulate"),
+    "voxsoft.simulation": ("Result", "check", "gradient", "simulate"),
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),
 }

@@ -1,6 +1,7 @@
 """From a design to its state at rest or its motion over time."""
 
 from voxsoft.simulation.check import CheckReport, Finding, check
+from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, relax, simulate
@@ -18,6 +19,7 @@ __all__ = [
     "Status",
     "check",
     "check_targets",
+    "gradient",
     "named_regions",
     "pieces",
     "relax",

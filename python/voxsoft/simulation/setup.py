@@ -143,12 +143,7 @@ class Setup:
     def _add_traction(
         self, parts: _core.ProblemParts, load: Traction, where: str, history: _CoreHistory
     ) -> None:
-        region = vertices_in(load.region, self.mesh, self.design.shapes, where)
-        inside = np.zeros(len(self.mesh.vertices), dtype=bool)
-        inside[region] = True
-        triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
-        if len(triangles) == 0:
-            raise DesignError(where, "the region holds no triangle of the surface")
+        triangles = self.loaded_triangles(load, where)
         if isinstance(load.value, float):
             parts.pressure(triangles.astype(np.uint32), load.value, history)
             return
@@ -159,6 +154,22 @@ class Setup:
             np.add.at(forces, triangles[:, corner], np.outer(areas / 3.0, load.value))
         loaded = np.unique(triangles).astype(np.uint32)
         parts.forces(loaded, forces[loaded], history)
+
+    def loaded_triangles(self, load: Traction, where: str) -> Triangles:
+        """Triangles of the surface that a traction acts on, (t, 3).
+
+        Raises
+        ------
+        DesignError
+            There are none.
+        """
+        region = vertices_in(load.region, self.mesh, self.design.shapes, where)
+        inside = np.zeros(len(self.mesh.vertices), dtype=bool)
+        inside[region] = True
+        triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
+        if len(triangles) == 0:
+            raise DesignError(where, "the region holds no triangle of the surface")
+        return triangles
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:

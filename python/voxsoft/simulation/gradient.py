@@ -1,0 +1,302 @@
+"""Derivatives of metrics at an equilibrium, by the adjoint of the converged state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import Design, Objective
+from voxsoft.design.variation import number_of, with_number
+from voxsoft.errors import DesignError, SimulationError, VoxSoftError
+from voxsoft.metrics import METRICS
+from voxsoft.records import closest
+from voxsoft.simulation.motion import held_axes, held_positions
+from voxsoft.simulation.result import Result
+from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.slopes import Target, metric_at, metric_slope
+
+Floats = NDArray[np.float64]
+
+#: Part of a number by which it is varied, once and twice to either side. What is differenced are
+#: forces, at positions that do not change. Rounding leaves 1e-16/5e-6 of the largest force, and
+#: the curvature of the steepest law, the bulk modulus at ν = 0.4999, 4 (ν/(0.5 - ν) 5e-6)⁴ = 2e-6.
+STEP: Final = 5e-6
+
+#: Central differences of fourth order: multiples of the step, and their weights over it.
+_STENCIL: Final = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
+
+#: Largest relative residual of a state that counts as an equilibrium. What is left over of the
+#: forces enters a derivative with that part of its size, times the condition of the body.
+LARGEST_RESIDUAL: Final = 1e-5
+
+#: Clamped vertices may be this part of a voxel away from where the design wants them.
+_MISPLACED: Final = 1e-6
+
+
+def gradient(
+    result: Result,
+    targets: str | Sequence[str] | Mapping[str, Target],
+    parameters: str | Sequence[str],
+) -> dict[str, dict[str, float]]:
+    r"""Derivatives of metrics with respect to numbers of the design.
+
+    At an equilibrium :math:`r(x, p) = 0` a metric :math:`J(x, p)` changes with a number
+    :math:`p` by
+
+    .. math:: dJ/dp = \partial J/\partial p + \mu \cdot \partial r/\partial p,
+              \qquad K^T \mu = \partial J/\partial x, \quad K = -\partial r/\partial x.
+
+    One factorisation of the tangent :math:`K` serves all metrics and all numbers; nothing is
+    solved again.
+
+    Parameters
+    ----------
+    result
+        A stable equilibrium under the full loads, of ``simulate(design, method="statics")``. The
+        tighter its tolerance, the more digits are right.
+    targets
+        Names of objectives or constraints of the design, or of metrics that need no choice; or a
+        mapping from names of your own to objectives or constraints.
+    parameters
+        Parameters of the design, or paths of numbers as ``--set`` writes them:
+        ``parts.0.material.young``, ``parts.0.material.mu.1``, ``loads.0.value``,
+        ``clamps.1.motion.displacement.2``.
+
+    Returns
+    -------
+    dict of dict
+        By target, then by parameter, in SI units.
+
+    Raises
+    ------
+    SimulationError
+        A result that is no such equilibrium, or a tangent that is singular there.
+    DesignError
+        An unknown target or parameter; a whole number; a shape whose voxels are either full or
+        empty, so that the derivative is zero or does not exist.
+
+    Notes
+    -----
+    :math:`\partial r/\partial p` and :math:`\partial J/\partial p` are differences of forces and
+    metrics at the same positions, with clamped vertices where the varied design wants them. Kinks
+    have one-sided slopes: the largest displacement, vertices that just touch the floor.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> from voxsoft.simulation import simulate
+    >>> soft = '{model="neo-hookean", young="60 kPa"}'
+    >>> beam = families.beam(length="40 mm").with_values(f"parts.0.material={soft}")
+    >>> result = simulate(beam)
+    >>> slopes = gradient(result, "sag", ["parts.0.material.young", "loads.0.value"])["sag"]
+    >>> slopes["parts.0.material.young"] < 0 < slopes["loads.0.value"]
+    True
+    """
+    _check_state(result)
+    chosen = _targets(result.design, targets)
+    names = [parameters] if isinstance(parameters, str) else list(parameters)
+    setup = Setup(result.design, result.mesh)
+    base = _State(setup, result.positions)
+    _check_positions(base)
+    varied = [_variation(base, name) for name in names]
+    slopes = np.array([metric_slope(setup, target, base.positions) for target in chosen.values()])
+    adjoints = adjoint_states(setup.problem, base.positions, slopes)
+    return {
+        target_name: {
+            name: variation.explicit(target) + float(np.vdot(adjoint, variation.forces))
+            for name, variation in zip(names, varied, strict=True)
+        }
+        for (target_name, target), adjoint in zip(chosen.items(), adjoints, strict=True)
+    }
+
+
+def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) -> Floats:
+    """Solve ``Kᵀ μ = ∂J/∂x`` for several metrics with one factorisation, (k, n, 3) → (k, n, 3).
+
+    Parameters
+    ----------
+    problem
+        The problem with its tangent ``K``.
+    positions
+        Its equilibrium, (n, 3), m.
+    slopes
+        Derivatives of the metrics by the positions.
+
+    Raises
+    ------
+    SimulationError
+        The tangent is singular.
+    """
+    try:
+        return _core.adjoint(problem, positions, slopes)
+    except ArithmeticError as error:
+        raise SimulationError(
+            "gradient", str(error), "hold the body better, or go a little back from the limit"
+        ) from None
+
+
+@dataclass(frozen=True)
+class _State:
+    """A setup and positions at which its forces and metrics are looked at."""
+
+    setup: Setup
+    positions: Floats
+
+
+@dataclass(frozen=True)
+class _Variation:
+    """A number a little lower and a little higher, the free vertices where they are."""
+
+    states: tuple[_State, ...]
+    weights: tuple[float, ...]
+
+    @cached_property
+    def forces(self) -> Floats:
+        """``∂r/∂p``, clamped vertices going along, (n, 3)."""
+        change: Floats = np.sum(
+            [
+                weight * state.setup.problem.net_forces(state.positions)
+                for state, weight in zip(self.states, self.weights, strict=True)
+            ],
+            axis=0,
+        )
+        return change
+
+    def explicit(self, target: Target) -> float:
+        """``∂J/∂p``, clamped vertices going along."""
+        return sum(
+            weight * metric_at(state.setup, target, state.positions)
+            for state, weight in zip(self.states, self.weights, strict=True)
+        )
+
+
+def _variation(base: _State, name: str) -> _Variation:
+    design = base.setup.design
+    value = number_of(design, name)
+    step = STEP * _scale(design, name, value)
+    try:
+        _check_source(design, with_number(design, name, value), name)
+        states = [
+            _state_with(base, with_number(design, name, value + multiple * step), name)
+            for multiple, _ in _STENCIL
+        ]
+    except VoxSoftError as error:
+        if "cannot be varied" in error.what:
+            raise
+        raise DesignError(
+            name,
+            f"cannot be varied by a little: {error}",
+            "name a number that the design takes at any value, and no count",
+        ) from None
+    return _Variation(tuple(states), tuple(weight / step for _, weight in _STENCIL))
+
+
+def _state_with(base: _State, design: Design, name: str) -> _State:
+    before = base.setup
+    if _shapes(design) != _shapes(before.design):
+        raise DesignError(
+            name,
+            "cannot be varied: it changes the shape, and voxels are either full or empty, so that "
+            "the derivative is zero or does not exist",
+            'use fill = "fraction", where cut voxels hold their share of material',
+        )
+    if design.floor != before.design.floor:
+        raise DesignError(name, "cannot be varied: it moves the floor", "name another number")
+    setup = Setup(design, before.mesh)
+    held = held_axes(before)
+    if (held_axes(setup) != held).any():
+        raise DesignError(
+            name,
+            "cannot be varied: a clamp then catches other vertices",
+            "move the ends of the clamp's region away from half a voxel",
+        )
+    shift = held_positions(setup) - held_positions(before)
+    return _State(setup, base.positions + np.where(held, shift, 0.0))
+
+
+def _shapes(design: Design) -> tuple[object, ...]:
+    return design.voxel_size, design.shapes, tuple(part.shape for part in design.parts)
+
+
+def _scale(design: Design, name: str, value: float) -> float:
+    """How large a number is, for its step; one that is zero takes its range, or one unit."""
+    if value != 0.0:
+        return abs(value)
+    parameter = design.parameters.get(name)
+    if parameter is not None and parameter.min is not None and parameter.max is not None:
+        return parameter.max - parameter.min
+    lengths = name.startswith(("clamps", "probes", "shapes")) or (
+        parameter is not None and parameter.kind == "length"
+    )
+    return design.voxel_size if lengths else 1.0
+
+
+def _targets(
+    design: Design, asked: str | Sequence[str] | Mapping[str, Target]
+) -> dict[str, Target]:
+    if isinstance(asked, Mapping):
+        return dict(asked)
+    own: dict[str, Target] = {**design.objectives, **design.constraints}
+    found: dict[str, Target] = {}
+    for name in [asked] if isinstance(asked, str) else asked:
+        if name not in own and name not in METRICS:
+            what = "is neither an objective, nor a constraint, nor a metric"
+            raise DesignError(name, what, closest(name, [*own, *METRICS]))
+        found[name] = own.get(name) or Objective(maximize=name)
+    return found
+
+
+def _check_state(result: Result) -> None:
+    if result.solver["method"] != "statics":
+        raise SimulationError(
+            "gradient",
+            f"the result comes from {result.solver['method']}, whose state is no equilibrium to "
+            "the last digits",
+            'use simulate(design, method="statics")',
+        )
+    if result.status != "ok" or abs(result.load_factor - 1.0) > 1e-12:
+        raise SimulationError(
+            "gradient",
+            f"the result is no equilibrium under the full loads: {result.message}",
+            'lower the loads, and leave control = "volume" out',
+        )
+    if result.stable is False:
+        raise SimulationError(
+            "gradient",
+            "the equilibrium is not stable: a real body would leave it",
+            "lower the loads to before the limit",
+        )
+    if not result.residual <= LARGEST_RESIDUAL:
+        raise SimulationError(
+            "gradient",
+            f"the residual is {result.residual:.1e} of the load, too much for a derivative",
+            f"solve with a tolerance of {LARGEST_RESIDUAL:g} or less; 1e-10 costs one step more",
+        )
+
+
+def _check_positions(state: _State) -> None:
+    """The result must be of its own design: other materials would leave other forces."""
+    setup = state.setup
+    held = held_axes(setup)
+    off = np.abs(np.where(held, state.positions - held_positions(setup), 0.0)).max()
+    if off > _MISPLACED * setup.design.voxel_size:
+        raise SimulationError(
+            "gradient", "clamped vertices are not where the design wants them", "solve it again"
+        )
+
+
+def _check_source(design: Design, rebuilt: Design, name: str) -> None:
+    """A design that was changed in Python behind the back of its parameters cannot be varied."""
+    for field in ("voxel_size", "shapes", "materials", "parts", "clamps", "loads", "probes"):
+        if getattr(design, field) != getattr(rebuilt, field):
+            raise DesignError(
+                name,
+                f"cannot be varied: {field} of this design are not what its formulas give",
+                "make the change with with_parameters or with_values",
+            )

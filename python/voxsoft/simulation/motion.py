@@ -1,0 +1,61 @@
+"""Where clamps put the vertices that they hold."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Clamp
+from voxsoft.simulation.setup import Setup
+
+
+def held_axes(setup: Setup) -> NDArray[np.bool_]:
+    """Which coordinates clamps hold, (n, 3)."""
+    held = np.zeros(setup.mesh.vertices.shape, dtype=bool)
+    for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
+        held[vertices] |= _axes(clamp)
+    return held
+
+
+def held_positions(setup: Setup) -> NDArray[np.float64]:
+    """Where clamps want their vertices in the end, in m, (n, 3); the others where they are at rest.
+
+    Where two clamps hold the same axis of a vertex, the later one decides.
+
+    Parameters
+    ----------
+    setup
+        The design made ready.
+    """
+    rest = setup.mesh.vertices
+    placed = rest.copy()
+    for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
+        moved = _moved(clamp, rest[vertices])
+        placed[vertices] = np.where(_axes(clamp), moved, placed[vertices])
+    return placed
+
+
+def _axes(clamp: Clamp) -> NDArray[np.bool_]:
+    return np.array([axis in clamp.axes for axis in "xyz"])
+
+
+def _moved(clamp: Clamp, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """First turned, then displaced, both times the last factor of the history."""
+    motion = clamp.motion
+    if motion is None:
+        return points
+    factor = motion.history.factor[-1] if motion.history else 1.0
+    moved = points
+    if motion.rotation is not None:
+        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
+        center = np.asarray(motion.rotation.center)
+        angle = factor * motion.rotation.angle
+        arm = points - center
+        # Rodrigues' formula.
+        moved = (
+            center
+            + np.cos(angle) * arm
+            + np.sin(angle) * np.cross(axis, arm)
+            + (1.0 - np.cos(angle)) * np.outer(arm @ axis, axis)
+        )
+    return np.asarray(moved + factor * np.asarray(motion.displacement))
