@@ -150,6 +150,10 @@ class BrickModel:
             raise SimulationError(
                 "floor", "cannot be given to an outside code", "clamp the foot instead"
             )
+        if setup.design.layers:
+            raise SimulationError(
+                "layers", "cannot be given to an outside code", "compare the design without them"
+            )
         grid = _Lattice.of(setup)
         cells = _split_cells(grid.cells, split)
         keys = 2 * cells[:, None, :] + _HALVES[:nodes]

@@ -3,6 +3,7 @@
 from voxsoft.design.assignment import set_values
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.history import History
+from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, Pressure, Traction
 from voxsoft.design.model import Design
 from voxsoft.design.parameter import Parameter
@@ -20,6 +21,7 @@ __all__ = [
     "Force",
     "Gravity",
     "History",
+    "Layer",
     "Motion",
     "Objective",
     "Parameter",

@@ -21,6 +21,7 @@ from voxsoft.design.clamp import Clamp
 from voxsoft.design.documents import plain_document
 from voxsoft.design.emptiness import without_empty_shapes
 from voxsoft.design.identity import hash_of
+from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
 from voxsoft.design.operands import Name, ParameterName
 from voxsoft.design.parameter import Parameter
@@ -63,6 +64,8 @@ class Design(Record):
         Named values for formulas, with ranges for a study.
     materials
         Materials of this design, by name; a part may also name a material card.
+    layers
+        Thin layers of fabric, film or paper bonded to the body.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
     probes
@@ -104,6 +107,7 @@ class Design(Record):
     shapes: dict[Name, AnyShape] = Field(default_factory=dict)
     materials: dict[Name, AnyMaterial] = Field(default_factory=dict)
     parts: tuple[Part, ...] = Field(min_length=1, max_length=250)
+    layers: tuple[Layer, ...] = Field((), max_length=250)
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None

@@ -62,6 +62,8 @@ def _shape_names(design: Design) -> Iterator[tuple[Path, str]]:
 
 
 def _regions(design: Design) -> Iterator[tuple[Path, Region]]:
+    for index, layer in enumerate(design.layers):
+        yield ("layers", index, "region"), layer.region
     for index, clamp in enumerate(design.clamps):
         yield ("clamps", index, "region"), clamp.region
     for index, load in enumerate(design.loads):

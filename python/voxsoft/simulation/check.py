@@ -13,6 +13,7 @@ from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.layers import chambers
 from voxsoft.simulation.setup import Setup
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
 
@@ -127,15 +128,18 @@ def check(body: Design | Voxels) -> CheckReport:
         mesh = voxels.mesh()
     except VoxSoftError as error:
         return CheckReport(tuple(_errors(error)))
-    findings = [*_findings_of_voxels(voxels), *_findings_of_mesh(mesh)]
+    findings: list[Finding] = []
     mass = voxels.volume * SILICONE_DENSITY
+    cavities, leaks = voxels.cavities, voxels.leaks
     if isinstance(body, Design):
-        setup = Setup(body, mesh)
         try:
+            setup = Setup(body, mesh)
+            cavities, leaks = _closed_by_layers(setup, voxels)
             setup.check()
             mass = setup.problem.mass
         except VoxSoftError as error:
             findings += _errors(error)
+    findings += [*_findings_of_voxels(voxels, leaks), *_findings_of_mesh(mesh)]
     constraints = len(mesh.edges) + len(mesh.tets)
     thinnest = _thinnest_wall(voxels)
     return CheckReport(
@@ -143,8 +147,8 @@ def check(body: Design | Voxels) -> CheckReport:
         voxels=voxels.count,
         vertices=len(mesh.vertices),
         tets=len(mesh.tets),
-        cavities=voxels.cavities,
-        leaks=voxels.leaks,
+        cavities=cavities,
+        leaks=leaks,
         mass=mass,
         thinnest_wall=None if thinnest is None else thinnest.thickness,
         seconds=constraints * _steps_to_rest(voxels) * _SECONDS_PER_CONSTRAINT_STEP,
@@ -157,7 +161,26 @@ def _errors(error: VoxSoftError) -> Iterator[Finding]:
         yield Finding("error", problem.where, problem.what, problem.hint)
 
 
-def _findings_of_voxels(voxels: Voxels) -> Iterator[Finding]:
+def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
+    """Cavities and leaks once the layers of a design close what they span."""
+    if not any(len(layer.openings) for layer in setup.layers):
+        return voxels.cavities, voxels.leaks
+    size, origin = voxels.voxel_size, np.asarray(voxels.origin)
+    shift = np.rint((setup.mesh.vertices.min(axis=0) - origin) / size).astype(np.int64)
+    cavities = []
+    closed: set[tuple[int, ...]] = set()
+    for chamber in chambers(setup.mesh, setup.layers):
+        cells = chamber.cells + shift
+        closed.update(map(tuple, cells.tolist()))
+        runs = np.column_stack([cells, cells[:, 2]]).astype(np.int32)  # each a run of one cell
+        bounds = origin + size * np.stack([cells.min(axis=0), cells.max(axis=0) + 1])
+        surface = chamber.surface
+        cavities.append(Cavity(runs, len(cells), surface.volume, bounds, surface.area))
+    leaks = [leak for leak in voxels.leaks if tuple(leak.cells[0].tolist()) not in closed]
+    return tuple(cavities), tuple(leaks)
+
+
+def _findings_of_voxels(voxels: Voxels, leaks: tuple[Leak, ...]) -> Iterator[Finding]:
     hint = "thicken the body there by a voxel, or make the voxels smaller"
     for hinge in voxels.hinges[:_LISTED]:
         yield Finding(
@@ -179,7 +202,7 @@ def _findings_of_voxels(voxels: Voxels) -> Iterator[Finding]:
             + (" and more" if len(pieces) > _LISTED else ""),
             "join them by whole faces of voxels, or clamp each of them",
         )
-    for leak in voxels.leaks[:_LISTED]:
+    for leak in leaks[:_LISTED]:
         cells = ", ".join(str(cell) for cell in leak.openings[:3])
         yield Finding(
             "warning",

@@ -10,6 +10,7 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design, Solver
+from voxsoft.errors import SimulationError
 from voxsoft.materials import Hyperelastic
 from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
 from voxsoft.simulation.result import History, Result, Status
@@ -35,12 +36,12 @@ def simulate(
 ) -> Result:
     """Simulate a design until it comes to rest, or to an end time.
 
-    Designs of hyperelastic parts are solved by statics, Newton's method on the equilibrium. Others
-    are brought to rest by dynamic relaxation, which is quick and knows no time. With any of
-    `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a `damping` rate, real
-    time is simulated (Algorithm 3 of the paper, extended position-based dynamics); all come to
-    rest in the same state. Real time is damped critically on the way to rest and not at all on
-    the way to an end time, unless `damping` says otherwise.
+    Designs of hyperelastic parts, and those with layers, are solved by statics, Newton's method on
+    the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and knows no
+    time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a
+    `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
+    dynamics); all come to rest in the same state. Real time is damped critically on the way to
+    rest and not at all on the way to an end time, unless `damping` says otherwise.
 
     Parameters
     ----------
@@ -89,6 +90,7 @@ def simulate(
     if wants_statics(setup.design, solver):
         used, report = find_equilibrium(setup, solver, progress)
     elif _wants_time(solver):
+        _refuse_layers(setup.design)
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
     else:
         used, report = _relaxation(setup.problem, solver, progress)
@@ -126,7 +128,8 @@ def wants_statics(design: Design, solver: Solver) -> bool:
     hyperelastic = all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
     path = (solver.control, solver.steps, solver.volume_ratio, solver.first_step)
     asked = any(value is not None for value in path)
-    return asked or (hyperelastic and not _wants_time(solver) and solver.damping is None)
+    layered = bool(design.layers) and not _wants_time(solver)
+    return asked or layered or (hyperelastic and not _wants_time(solver) and solver.damping is None)
 
 
 def _wants_time(solver: Solver) -> bool:
@@ -138,6 +141,15 @@ def _wants_time(solver: Solver) -> bool:
         solver.retardation,
     )
     return any(value is not None for value in timed) or isinstance(solver.damping, float)
+
+
+def _refuse_layers(design: Design) -> None:
+    if design.layers:
+        raise SimulationError(
+            "layers",
+            "runs over time do not know layers yet",
+            'find the state at rest with method = "statics", without settings of time',
+        )
 
 
 def _relaxation(

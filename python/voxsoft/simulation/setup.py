@@ -26,6 +26,7 @@ from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.places import Place, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
 
@@ -41,7 +42,12 @@ class Setup:
     design
         Where it came from.
     mesh
-        Its tetrahedra.
+        Its tetrahedra. Chambers that layers close are among its cavities.
+
+    Raises
+    ------
+    DesignError
+        A layer catches no face of the mesh.
 
     Notes
     -----
@@ -50,6 +56,9 @@ class Setup:
 
     design: Design
     mesh: Mesh
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "mesh", sealed(self.mesh, self.layers))
 
     @classmethod
     def of(cls, design: Design, *, may_fly: bool | None = None, refine: int | None = None) -> Setup:
@@ -88,6 +97,11 @@ class Setup:
         _ = self.places
 
     @cached_property
+    def layers(self) -> tuple[LayerTriangles, ...]:
+        """The triangles of each layer of the design."""
+        return all_layer_triangles(self.design, self.mesh)
+
+    @cached_property
     def places(self) -> dict[str, Place]:
         """What each probe averages over."""
         return {
@@ -115,6 +129,14 @@ class Setup:
 
     def _parts(self) -> _core.ProblemParts:
         parts = _core.ProblemParts()
+        for layer, found in zip(self.design.layers, self.layers, strict=True):
+            parts.membrane(
+                found.all.astype(np.uint32),
+                young=layer.young,
+                poisson=layer.poisson,
+                thickness=layer.thickness,
+                density=layer.density,
+            )
         for clamp, vertices in zip(self.design.clamps, self.clamped, strict=True):
             parts.clamp(vertices, [axis in clamp.axes for axis in "xyz"], **_motion(clamp))
         for index, load in enumerate(self.design.loads):
