@@ -53,6 +53,8 @@ class Profile:
         Ends of the 95 % interval, SI; None where the interval reaches the end of the search range.
     values, errors
         The profile: values in SI, rising, and the smallest mean error at each in m, (k,).
+    kind
+        Kind of quantity of the parameter.
     identifiable
         Whether the interval ends on both sides within the range, and its ends are less than a
         factor of 3 apart.
@@ -70,6 +72,7 @@ class Profile:
     high: float | None
     values: NDArray[np.float64]
     errors: NDArray[np.float64]
+    kind: str = "modulus"
 
     @property
     def identifiable(self) -> bool:
@@ -79,7 +82,7 @@ class Profile:
     @property
     def sentence(self) -> str:
         """What the data say, in words."""
-        low, high = (None if end is None else _shown(end) for end in (self.low, self.high))
+        low, high = (None if end is None else self._shown(end) for end in (self.low, self.high))
         if low and high:
             within = f"between {low} and {high} (95 %)"
             return within if self.identifiable else f"{within}: too wide to count as identified"
@@ -88,6 +91,9 @@ class Profile:
         if low:
             return f"only bounded from below, by {low} (95 %)"
         return "not identifiable: the data fit as well anywhere in the range"
+
+    def _shown(self, value: float) -> str:
+        return format_quantity(float(f"{value:.3g}"), self.kind)
 
 
 def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
@@ -207,8 +213,5 @@ def _joined(misfit: Misfit, best: Evaluation, index: int, down: _Walked, up: _Wa
         high=None if up.end is None else float(low * np.exp(up.end)),
         values=np.array([low * np.exp(point.log) for point in points]),
         errors=np.array([point.error for point in points]),
+        kind=misfit.space.kinds[misfit.space.names[index]],
     )
-
-
-def _shown(modulus: float) -> str:
-    return format_quantity(float(f"{modulus:.3g}"), "modulus")

@@ -1,4 +1,4 @@
-"""Methods of search: the paper's genetic algorithm, CMA-ES, and Optuna's samplers."""
+"""Methods of search: the paper's genetic algorithm, gradients, CMA-ES, and Optuna's samplers."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.calibration.descent import descend
 from voxsoft.calibration.misfit import Evaluation, Misfit
 from voxsoft.errors import StudyError
 from voxsoft.search import Genetic
@@ -32,7 +33,7 @@ def method_named(name: str) -> Method:
     Parameters
     ----------
     name
-        ``genetic``, ``cma-es``, or a sampler of :mod:`voxsoft.search.samplers`.
+        ``genetic``, ``gradient``, ``cma-es``, or a sampler of :mod:`voxsoft.search.samplers`.
 
     Raises
     ------
@@ -112,7 +113,11 @@ def _loss(candidate: Evaluation) -> float:
     return min(candidate.error, _FAILED)
 
 
-_METHODS: Final[dict[str, Method]] = {"genetic": _genetic, "cma-es": _cma_es}
+_METHODS: Final[dict[str, Method]] = {
+    "genetic": _genetic,
+    "gradient": descend,
+    "cma-es": _cma_es,
+}
 
 
 def errors_of(batch: Batch) -> NDArray[np.float64]:

@@ -14,8 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
 from voxsoft.calibration.experiment import Experiment
+from voxsoft.calibration.linearization import seen_slopes
 from voxsoft.calibration.space import Space
-from voxsoft.simulation import Status, relax
+from voxsoft.errors import MaterialError
+from voxsoft.materials import Material
+from voxsoft.simulation import Result, Status, balance, relax
 
 T = TypeVar("T")
 U = TypeVar("U")
@@ -81,6 +84,25 @@ class Evaluation:
     scales: tuple[float, ...]
 
 
+@dataclass(frozen=True)
+class Linearized:
+    """A candidate, and how it changes with the logarithms of the constants.
+
+    Attributes
+    ----------
+    evaluation
+        What it was worth.
+    comparisons
+        Each experiment beside what was measured.
+    slopes
+        Derivatives of the simulated numbers before scaling, (n, q, k) for each experiment, m.
+    """
+
+    evaluation: Evaluation
+    comparisons: tuple[Comparison, ...]
+    slopes: tuple[NDArray[np.float64], ...]
+
+
 def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) -> float:
     """Factor ``s`` that minimises the sum over stations of ``|s simulated - measured|``.
 
@@ -120,6 +142,8 @@ class Misfit:
         Simulations at a time; the answers do not depend on it.
     tolerance
         Relative residual at which a body counts as at rest.
+    statics
+        Whether to solve by statics in place of relaxation; both find the same state.
 
     Notes
     -----
@@ -138,12 +162,14 @@ class Misfit:
         free_scale: bool = False,
         workers: int = 1,
         tolerance: float = TOLERANCE,
+        statics: bool = False,
     ) -> None:
         self.experiments = tuple(experiments)
         self.space = space
         self.free_scale = free_scale
         self.workers = workers
         self.tolerance = tolerance
+        self.statics = statics
         self._seen: dict[tuple[float, ...], Evaluation] = {}
         self._lock = threading.Lock()
         self._pool: ThreadPoolExecutor | None = None
@@ -197,19 +223,47 @@ class Misfit:
 
         Returns the status of the first simulation that failed, if one did.
         """
-        material = self.space.material_at(genes)
+        solved = self._solved(genes)
+        return solved if isinstance(solved, str) else [comparison for comparison, _ in solved]
+
+    def linearized(self, genes: ArrayLike) -> Linearized | Status:
+        """Evaluate one candidate, (n,), and its slopes; or return how its simulation failed."""
+        key = _key(genes)
+        solved = self._solved(key)
+        evaluation = self._worth(key, solved)
+        with self._lock:
+            evaluation = self._seen.setdefault(key, evaluation)
+        if isinstance(solved, str):
+            return solved
+        material = self.space.material_at(key)
+        slopes = tuple(
+            seen_slopes(experiment, self.space, material, result.positions)
+            for experiment, (_, result) in zip(self.experiments, solved, strict=True)
+        )
+        return Linearized(evaluation, tuple(comparison for comparison, _ in solved), slopes)
+
+    def _solved(self, genes: ArrayLike) -> list[tuple[Comparison, Result]] | Status:
+        try:
+            material = self.space.material_at(genes)
+        except MaterialError:  # constants that are possible each, and not together
+            return "failed"
         found = []
         for experiment in self.experiments:
-            setup = experiment.setup
-            problem = setup.problem_with([material] * len(experiment.design.parts))
-            result = relax(setup, problem, self.tolerance, _MAX_STEPS)
+            result = self._settle(experiment, material)
             if result.status != "ok":
                 return result.status
             simulated = experiment.seen_at(result.positions)
             measured = experiment.measurement.values
             scale = best_scale(simulated, measured) if self.free_scale else 1.0
-            found.append(Comparison(scale * simulated, measured, scale))
+            found.append((Comparison(scale * simulated, measured, scale), result))
         return found
+
+    def _settle(self, experiment: Experiment, material: Material) -> Result:
+        setup = experiment.setup
+        problem = setup.problem_with([material] * len(experiment.design.parts))
+        if self.statics:
+            return balance(setup, problem, self.tolerance)
+        return relax(setup, problem, self.tolerance, _MAX_STEPS)
 
     def fitness(self, error: float) -> float:
         """Fitness of a mean error in m."""
@@ -217,11 +271,15 @@ class Misfit:
         return float(np.exp(FITNESS_FACTOR * error * stations / len(self.experiments)))
 
     def _evaluate(self, genes: tuple[float, ...]) -> Evaluation:
-        compared = self.compare(genes)
-        if isinstance(compared, str):
-            return Evaluation(genes, compared, np.inf, 0.0, (1.0,) * len(self.experiments))
-        error = float(np.mean([comparison.errors.mean() for comparison in compared]))
-        scales = tuple(comparison.scale for comparison in compared)
+        return self._worth(genes, self._solved(genes))
+
+    def _worth(
+        self, genes: tuple[float, ...], solved: list[tuple[Comparison, Result]] | Status
+    ) -> Evaluation:
+        if isinstance(solved, str):
+            return Evaluation(genes, solved, np.inf, 0.0, (1.0,) * len(self.experiments))
+        error = float(np.mean([comparison.errors.mean() for comparison, _ in solved]))
+        scales = tuple(comparison.scale for comparison, _ in solved)
         return Evaluation(genes, "ok", error, self.fitness(error), scales)
 
 

@@ -13,7 +13,7 @@ from voxsoft import _core
 from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.identifiability import Profile
 from voxsoft.calibration.misfit import Comparison
-from voxsoft.materials import Card, Lattice
+from voxsoft.materials import Card, Hyperelastic, Lattice, Material, with_constants
 from voxsoft.units import format_quantity
 
 
@@ -117,11 +117,13 @@ class Calibration:
     Attributes
     ----------
     material
-        The lattice that fits best.
+        The material that fits best.
     parameters
-        The moduli that were searched, Pa.
+        The constants that were searched, SI.
     bounds
-        Their ranges, Pa.
+        Their ranges, SI.
+    kinds
+        Their kinds of quantity.
     fits
         Each experiment with its simulated shape.
     fitness
@@ -141,9 +143,10 @@ class Calibration:
         How it was found.
     """
 
-    material: Lattice
+    material: Material
     parameters: Mapping[str, float]
     bounds: Mapping[str, tuple[float, float]]
+    kinds: Mapping[str, str]
     fits: tuple[Fit, ...]
     fitness: float
     search: Stage
@@ -179,12 +182,19 @@ class Calibration:
     @property
     def young(self) -> float:
         """Young's modulus of a large block of the material, Pa."""
-        return self.material.young()
+        return self.material.young(self._voxel_size)
 
     @property
     def poisson(self) -> float:
         """Poisson's ratio of a large block of the material."""
-        return self.material.poisson()
+        material = self.material
+        if isinstance(material, Hyperelastic):
+            return material.poisson
+        return material.poisson(self._voxel_size)
+
+    @property
+    def _voxel_size(self) -> float:
+        return self.fits[0].experiment.voxel_size
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``calibrate``).
@@ -245,21 +255,25 @@ class Calibration:
         Returns
         -------
         Card
-            With moduli rounded to 4 digits, and a record of the calibration.
+            With the constants rounded to 4 digits, and a record of the calibration.
         """
         sources = dict.fromkeys(fit.experiment.measurement.source for fit in self.fits)
         return Card(
             name=name,
             title=title or self.fits[0].experiment.name,
-            material=Lattice(
-                edge=float(f"{self.material.edge:.4g}"),
-                bulk=float(f"{self.material.bulk:.4g}"),
-                density=self.material.density,
-            ),
+            material=self._rounded(),
             source=source or " ".join(filter(None, sources)),
             caution=" ".join(filter(None, [caution, *self._cautions()])),
             calibration=self._record(),
         )
+
+    def _rounded(self) -> Material:
+        """Round to 4 digits: all moduli of a lattice, and whatever else was searched."""
+        rounded = {name: float(f"{value:.4g}") for name, value in self.parameters.items()}
+        if isinstance(self.material, Lattice):
+            own = {"edge": self.material.edge, "bulk": self.material.bulk}
+            rounded = {name: float(f"{value:.4g}") for name, value in own.items()}
+        return with_constants(self.material, rounded)
 
     def _cautions(self) -> Sequence[str]:
         return [
@@ -289,7 +303,10 @@ class Calibration:
             "version": _core.__version__,
         }
         record |= {f"{key}": value for key, value in self.settings.items()}
-        record |= {f"{name}_range": _range(bounds) for name, bounds in self.bounds.items()}
+        record |= {
+            f"{name}_range": _range(bounds, self.kinds[name])
+            for name, bounds in self.bounds.items()
+        }
         record |= {f"{profile.name}_interval": profile.sentence for profile in self.profiles}
         return record
 
@@ -311,5 +328,5 @@ def _text(value: float, kind: str, digits: int) -> str:
     return format_quantity(float(f"{value:.{digits}g}"), kind)
 
 
-def _range(bounds: tuple[float, float]) -> list[str]:
-    return [format_quantity(bound, "modulus") for bound in bounds]
+def _range(bounds: tuple[float, float], kind: str) -> list[str]:
+    return [format_quantity(bound, kind) for bound in bounds]

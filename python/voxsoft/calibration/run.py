@@ -17,7 +17,7 @@ from voxsoft.calibration.refinement import refine as refined
 from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
 from voxsoft.calibration.space import Bounds, Space
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
-from voxsoft.materials import Material
+from voxsoft.materials import Hyperelastic, Material
 
 
 @dataclass(frozen=True)
@@ -60,24 +60,28 @@ def calibrate(
     identify: bool = True,
     progress: ProgressCallback | None = None,
 ) -> Calibration:
-    """Fit the moduli of one lattice material to measurements.
+    """Fit the constants of one material to measurements.
 
     Three stages follow each other. *Search*: the method explores the whole range; with
-    ``genetic`` this is the paper's Algorithm 4 to the letter. *Refinement*: a simplex walks to
-    the bottom of the valley that the search found. *Profiles*: the error along each modulus
-    tells which of them the data determine.
+    ``genetic`` this is the paper's Algorithm 4 to the letter; ``gradient`` looks around and then
+    descends along exact slopes. *Refinement*: a simplex walks to the bottom of the valley that
+    the search found. *Profiles*: the error along each constant tells which of them the data
+    determine.
 
     Parameters
     ----------
     experiments
         One or several, each with the same weight; all bodies are of the same material.
     method
-        ``genetic``, ``cma-es``, or an Optuna sampler: ``random``, ``tpe``, ``gp``, ``nsga-ii`` ...
+        ``genetic``, ``gradient``, ``cma-es``, or an Optuna sampler: ``random``, ``tpe``, ``gp``,
+        ``nsga-ii`` ...
     parameters
-        Range of each modulus that is fitted, as text with a unit or in Pa; default:
-        ``edge`` from 1 kPa to 1 MPa and ``bulk`` from 2 kPa to 1 MPa
-        (:data:`voxsoft.calibration.DEFAULT_BOUNDS` says why). A modulus that is left out stays as
-        the design has it.
+        Range of each constant that is fitted, as text with a unit or in SI units, positive, by
+        a name of :func:`voxsoft.materials.constants_of`: ``edge``, ``c10``, ``mu.1`` ... Default:
+        for a lattice ``edge`` from 1 kPa to 1 MPa and ``bulk`` from 2 kPa to 1 MPa
+        (:data:`voxsoft.calibration.DEFAULT_BOUNDS` says why); for a hyperelastic model ``young``
+        from 5 kPa to 2 MPa, which scales all its moduli. What is left out stays as the design has
+        it.
     free_scale
         Whether each experiment has a factor of its own on the simulated shape, for photographs
         whose scale is doubtful. Errors stay in the data's own metres.
@@ -86,7 +90,8 @@ def calibrate(
     workers
         Simulations at a time; default: the number of cores. The answer does not depend on it.
     generations, population
-        Budget of the search; the paper's 50 and 30 by default. CMA-ES may need fewer.
+        Budget of the search; the paper's 50 and 30 by default. CMA-ES may need fewer;
+        ``gradient`` stops by itself.
     refine
         Whether to refine after the search.
     identify
@@ -104,7 +109,7 @@ def calibrate(
     MeasurementError
         Fewer stations than parameters (a free scale is one more for each experiment).
     MaterialError
-        An unknown modulus or an empty range.
+        An unknown constant or an empty range.
     SimulationError
         No candidate of the search came to rest.
     StudyError
@@ -133,7 +138,10 @@ def calibrate(
     space = Space.of(parameters, _material_of(chosen))
     _check_counts(chosen, space, free_scale, generations, population)
     search = method_named(method)
-    misfit = Misfit(chosen, space, free_scale=free_scale, workers=_workers(workers))
+    statics = method == "gradient" or isinstance(space.base, Hyperelastic)
+    misfit = Misfit(
+        chosen, space, free_scale=free_scale, workers=_workers(workers), statics=statics
+    )
     report = progress or (lambda _: None)
     history: list[Generation] = []
     best: Evaluation | None = None
@@ -156,6 +164,7 @@ def calibrate(
         material=space.material_at(found.genes),
         parameters=space.parameters(found.genes),
         bounds=dict(zip(space.names, zip(space.low, space.high, strict=True), strict=True)),
+        kinds=space.kinds,
         fits=tuple(Fit(*pair) for pair in zip(chosen, compared, strict=True)),
         fitness=found.fitness,
         search=stage,
@@ -169,7 +178,7 @@ def calibrate(
             "generations": generations,
             "population": population,
             "refined": refine,
-            "solver": "xpbd relaxation",
+            "solver": "statics" if statics else "xpbd relaxation",
             "tolerance": TOLERANCE,
         },
     )
@@ -195,7 +204,8 @@ def _check_counts(
         raise MeasurementError(
             "stations",
             f"there are {stations} for {unknowns} parameters{scales}",
-            'measure more stations, or fit fewer parameters: parameters={"edge": ...}',
+            "measure more stations, or fit fewer parameters: "
+            f'parameters={{"{space.names[0]}": ...}}',
         )
     if generations < 1 or population < 4:
         raise StudyError(
@@ -233,6 +243,6 @@ def _require_rest(best: Evaluation | None) -> Evaluation:
         raise SimulationError(
             "calibrate",
             f"no candidate came to rest; the first ended {status}",
-            "narrow or shift the ranges of the moduli, or check clamps and loads with `check`",
+            "narrow or shift the ranges of the constants, or check clamps and loads with `check`",
         )
     return best

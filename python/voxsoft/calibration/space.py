@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.errors import MaterialError
-from voxsoft.materials import Lattice, Material
+from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material
+from voxsoft.materials.constants import constant_of, constants_of, with_constants
 from voxsoft.records import closest
 from voxsoft.units import UnitOf, format_quantity
 
@@ -27,7 +28,8 @@ DEFAULT_BOUNDS: Final[Mapping[str, Bounds]] = {
     "bulk": ("2 kPa", "1 MPa"),
 }
 
-_MODULUS: Final = UnitOf("modulus", positive=True)
+#: Default range of a hyperelastic material: its stiffness, the shape of its curve as it is.
+HYPERELASTIC_BOUNDS: Final[Mapping[str, Bounds]] = {"young": ("5 kPa", "2 MPa")}
 
 
 @dataclass(frozen=True)
@@ -67,16 +69,18 @@ class Space:
         MaterialError
             A constant that the material does not have, or a range that is empty.
         """
-        if not isinstance(material, Lattice):
+        if isinstance(material, CompliantLattice):
             raise MaterialError(
                 "material",
-                f'is "{material.model}"; a calibration fits the moduli of a lattice',
+                f'is "{material.model}"; a calibration fits moduli',
                 'give the parts { model = "lattice", edge = "20 kPa", bulk = "20 kPa" }',
             )
-        asked = DEFAULT_BOUNDS if parameters is None else parameters
+        own = HYPERELASTIC_BOUNDS if isinstance(material, Hyperelastic) else DEFAULT_BOUNDS
+        asked = own if parameters is None else parameters
         if not asked:
-            raise MaterialError("parameters", "none is named", "name edge, bulk or both")
-        ranges = [_range(name, bounds) for name, bounds in asked.items()]
+            raise MaterialError("parameters", "none is named", f"name {' or '.join(own)}")
+        kinds = constants_of(material)
+        ranges = [_range(name, bounds, kinds, material) for name, bounds in asked.items()]
         return cls(
             tuple(asked),
             tuple(low for low, _ in ranges),
@@ -105,18 +109,31 @@ class Space:
         """Constants in SI units by name."""
         return dict(zip(self.names, (float(v) for v in self.values(genes)), strict=True))
 
-    def material_at(self, genes: ArrayLike) -> Lattice:
+    def values_of(self, material: Material) -> dict[str, float]:
+        """Read the constants that are searched from a material, SI, by name."""
+        return {name: constant_of(material, name) for name in self.names}
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Kind of quantity of each constant that is searched, by name."""
+        known = constants_of(self.base)
+        return {name: known[name] for name in self.names}
+
+    def material_at(self, genes: ArrayLike) -> Material:
         """Return the material with these constants."""
-        return Lattice(**{**self.base.model_dump(), **self.parameters(genes)})
+        return with_constants(self.base, self.parameters(genes))
 
 
-def _range(name: str, bounds: Bounds) -> tuple[float, float]:
-    if name not in DEFAULT_BOUNDS:
-        raise MaterialError(
-            f"parameters.{name}", "is not a modulus of the lattice", closest(name, DEFAULT_BOUNDS)
-        )
-    low, high = (_MODULUS.read(bound) for bound in bounds)
+def _range(
+    name: str, bounds: Bounds, kinds: Mapping[str, str], material: Material
+) -> tuple[float, float]:
+    if name not in kinds:
+        lattice = isinstance(material, Lattice)
+        kin = "modulus of the lattice" if lattice else f'constant of "{material.model}"'
+        raise MaterialError(f"parameters.{name}", f"is not a {kin}", closest(name, kinds))
+    unit = UnitOf(kinds[name], positive=True)
+    low, high = (unit.read(bound) for bound in bounds)
     if not low < high:
-        first, last = (format_quantity(bound, "modulus") for bound in (low, high))
+        first, last = (format_quantity(bound, kinds[name]) for bound in (low, high))
         raise MaterialError(f"parameters.{name}", f"the range {first} to {last} is empty")
     return low, high

@@ -25,7 +25,10 @@ def calibrate(
         ),
     ],
     method: Annotated[
-        str, typer.Option("--method", help="genetic (the paper's), cma-es, or an Optuna sampler.")
+        str,
+        typer.Option(
+            "--method", help="genetic (the paper's), gradient, cma-es, or an Optuna sampler."
+        ),
     ] = "genetic",
     material: Annotated[
         str | None, typer.Option("--material", help="Which material, where a file holds several.")
@@ -46,7 +49,7 @@ def calibrate(
     seed: Seed = 0,
     json: Json = False,
 ) -> None:
-    """Fit the lattice material to measurements and write a material card with its report."""
+    """Fit the design's material to measurements and write a material card with its report."""
     from voxsoft import files
     from voxsoft.calibration import Experiment, Measurement
     from voxsoft.calibration import calibrate as fit
@@ -93,7 +96,7 @@ def _show(answer: Calibration) -> None:
         say(f"scale of the simulated shape: {', '.join(f'{scale:.4f}' for scale in scales)}")
     sentences = {profile.name: profile.sentence for profile in answer.profiles}
     rows = [
-        [name, quantity(value, "modulus"), sentences.get(name, "not asked")]
+        [name, quantity(value, answer.kinds[name]), sentences.get(name, "not asked")]
         for name, value in answer.parameters.items()
     ]
     show_table("Parameters", ["name", "value", "what the data say"], rows)

@@ -72,7 +72,11 @@ def _history(calibration: Calibration) -> str:
         for index, generation in enumerate(calibration.history)
     )
     head = ["generation", "best_fitness", "mean_fitness", "best_error_m"]
-    return _csv([*head, *(f"{name}_Pa" for name in moduli)], rows)
+    return _csv([*head, *(_titled(name, calibration.kinds[name]) for name in moduli)], rows)
+
+
+def _titled(name: str, kind: str) -> str:
+    return f"{name}_Pa" if kind == "modulus" else name
 
 
 def _shapes(calibration: Calibration) -> str:

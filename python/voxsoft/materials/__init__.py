@@ -17,6 +17,7 @@ True
 """
 
 from voxsoft.materials.card import Card, card_names, load_card, material_of
+from voxsoft.materials.constants import constants_of, with_constants
 from voxsoft.materials.gent import Gent
 from voxsoft.materials.homogeneous import MODES, Mode, nominal_stress, nominal_tangent
 from voxsoft.materials.hyperelastic import Hyperelastic, PronyTerm
@@ -46,10 +47,12 @@ __all__ = [
     "StableRange",
     "Yeoh",
     "card_names",
+    "constants_of",
     "load_card",
     "material_of",
     "nominal_stress",
     "nominal_tangent",
     "stable_range",
     "stable_ranges",
+    "with_constants",
 ]

@@ -59,9 +59,13 @@ def plot_fitness(calibration: Calibration) -> Figure:
     above.plot(generations, [g.mean_fitness for g in history], color=RED, ls="--", label="mean")
     plain_axes(above, x="", y="fitness")
     plain_legend(above, loc="lower right")
-    ranges = [bound for bounds in calibration.bounds.values() for bound in bounds]
-    scale = scale_for(min(ranges), "modulus")
-    for name, color in zip(calibration.parameters, SERIES, strict=False):
+    # Constants without a unit share the axis only where there are no others.
+    kinds = calibration.kinds
+    kind = "modulus" if "modulus" in kinds.values() else "number"
+    drawn = [name for name in calibration.parameters if kinds[name] == kind]
+    ranges = [bound for name in drawn for bound in calibration.bounds[name]]
+    scale = scale_for(min(ranges), kind)
+    for name, color in zip(drawn, SERIES, strict=False):
         values = np.array([g.parameters[name] for g in history]) * scale.factor
         below.semilogy(generations, values, color=color, label=name)
         refined = calibration.parameters[name] * scale.factor
@@ -78,7 +82,7 @@ def plot_fitness(calibration: Calibration) -> Figure:
         )
     below.set_ylim(min(ranges) * scale.factor, max(ranges) * scale.factor)
     plain_log_axis(below.yaxis)
-    plain_axes(below, x="generation", y=f"modulus of the best ({scale.unit})")
+    plain_axes(below, x="generation", y=scale.label(f"{kind} of the best"))
     plain_legend(below, loc="best")
     return figure
 
@@ -191,7 +195,7 @@ def _stations(fit: Fit) -> tuple[str, ...]:
 
 
 def _draw_profile(axes: Axes, profile: Profile, bounds: tuple[float, float]) -> None:
-    scale: Scale = scale_for(profile.best, "modulus")
+    scale: Scale = scale_for(profile.best, profile.kind)
     values, errors = profile.values * scale.factor, profile.errors * _MM
     low, high = (bound * scale.factor for bound in bounds)
     ends = (
@@ -201,9 +205,7 @@ def _draw_profile(axes: Axes, profile: Profile, bounds: tuple[float, float]) -> 
     axes.axvspan(*ends, color=PALE, alpha=0.6, linewidth=0, label="95 % interval")
     axes.semilogx(values, errors, "o-", color=BLUE, markersize=4, label="profile")
     axes.axvline(profile.best * scale.factor, color=RED, linewidth=1.2, label="best")
-    best = format_quantity(float(f"{profile.best:.4g}"), "modulus")
+    best = format_quantity(float(f"{profile.best:.4g}"), profile.kind)
     verdict = "identifiable" if profile.identifiable else "not identifiable"
-    plain_axes(
-        axes, x=f"{profile.name} ({scale.unit})", y="", title=f"{profile.name} = {best}: {verdict}"
-    )
+    plain_axes(axes, x=scale.label(profile.name), y="", title=f"{profile.name} = {best}: {verdict}")
     plain_log_axis(axes.xaxis)

@@ -4,7 +4,7 @@ from voxsoft.simulation.check import CheckReport, Finding, check
 from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import History, Result, Status
-from voxsoft.simulation.run import ProgressCallback, relax, simulate
+from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions, pieces
 from voxsoft.simulation.targets import check_targets
 
@@ -17,6 +17,7 @@ __all__ = [
     "Result",
     "Setup",
     "Status",
+    "balance",
     "check",
     "check_targets",
     "gradient",

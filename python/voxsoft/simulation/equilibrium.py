@@ -49,9 +49,12 @@ def check_solver(solver: Solver) -> None:
 
 
 def find_equilibrium(
-    setup: Setup, solver: Solver, progress: Callable[[int, float, float], None] | None
+    setup: Setup,
+    solver: Solver,
+    progress: Callable[[int, float, float], None] | None,
+    problem: _core.Problem | None = None,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Solve a setup by statics.
+    """Solve a setup by statics, or a variant of its problem.
 
     Returns
     -------
@@ -78,7 +81,7 @@ def find_equilibrium(
         "ratio": solver.volume_ratio or DEFAULT_VOLUME_RATIO,
     }
     report = _core.equilibrium(
-        setup.problem,
+        problem or setup.problem,
         **asked,
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,

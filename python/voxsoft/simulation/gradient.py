@@ -16,20 +16,13 @@ from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import DesignError, SimulationError, VoxSoftError
 from voxsoft.metrics import METRICS
 from voxsoft.records import closest
+from voxsoft.simulation.differences import STENCIL, STEP
 from voxsoft.simulation.motion import held_axes, held_positions
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.slopes import Target, metric_at, metric_slope
 
 Floats = NDArray[np.float64]
-
-#: Part of a number by which it is varied, once and twice to either side. What is differenced are
-#: forces, at positions that do not change. Rounding leaves 1e-16/5e-6 of the largest force, and
-#: the curvature of the steepest law, the bulk modulus at ν = 0.4999, 4 (ν/(0.5 - ν) 5e-6)⁴ = 2e-6.
-STEP: Final = 5e-6
-
-#: Central differences of fourth order: multiples of the step, and their weights over it.
-_STENCIL: Final = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 
 #: Largest relative residual of a state that counts as an equilibrium. What is left over of the
 #: forces enters a derivative with that part of its size, times the condition of the body.
@@ -184,7 +177,7 @@ def _variation(base: _State, name: str) -> _Variation:
         _check_source(design, with_number(design, name, value), name)
         states = [
             _state_with(base, with_number(design, name, value + multiple * step), name)
-            for multiple, _ in _STENCIL
+            for multiple, _ in STENCIL
         ]
     except VoxSoftError as error:
         if "cannot be varied" in error.what:
@@ -194,7 +187,7 @@ def _variation(base: _State, name: str) -> _Variation:
             f"cannot be varied by a little: {error}",
             "name a number that the design takes at any value, and no count",
         ) from None
-    return _Variation(tuple(states), tuple(weight / step for _, weight in _STENCIL))
+    return _Variation(tuple(states), tuple(weight / step for _, weight in STENCIL))
 
 
 def _state_with(base: _State, design: Design, name: str) -> _State:

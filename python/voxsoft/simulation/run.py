@@ -117,6 +117,23 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     return result_of(setup, used, report, time.perf_counter() - started)
 
 
+def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
+    """Find the equilibrium of one variant of a setup's problem (other materials, say) by statics.
+
+    Parameters
+    ----------
+    setup
+        Where the problem came from.
+    problem
+        The problem to solve, from :meth:`Setup.problem_with`.
+    tolerance
+        Largest relative residual.
+    """
+    started = time.perf_counter()
+    used, report = find_equilibrium(setup, Solver(tolerance=tolerance), None, problem)
+    return result_of(setup, used, report, time.perf_counter() - started)
+
+
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
     return own if not changes else Solver(**{**own.model_dump(), **changes})
 
