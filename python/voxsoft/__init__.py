@@ -56,11 +56,13 @@ if TYPE_CHECKING:
     from voxsoft.materials import (
         Card,
         CompliantLattice,
+        Fiber,
         Gent,
         Lattice,
         MooneyRivlin,
         NeoHookean,
         Ogden,
+        Rigid,
         Yeoh,
         load_card,
     )
@@ -99,11 +101,13 @@ _HOMES: Final = {
     "voxsoft.materials": (
         "Card",
         "CompliantLattice",
+        "Fiber",
         "Gent",
         "Lattice",
         "MooneyRivlin",
         "NeoHookean",
         "Ogden",
+        "Rigid",
         "Yeoh",
         "load_card",
     ),

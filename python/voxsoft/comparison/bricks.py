@@ -154,6 +154,13 @@ class BrickModel:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
             )
+        for index, part in enumerate(setup.design.parts):
+            if part.fibers:
+                raise SimulationError(
+                    f"parts[{index}].fibers",
+                    "cannot be given to an outside code",
+                    "compare the design without them",
+                )
         grid = _Lattice.of(setup)
         cells = _split_cells(grid.cells, split)
         keys = 2 * cells[:, None, :] + _HALVES[:nodes]
@@ -164,7 +171,7 @@ class BrickModel:
             nodes=grid.origin + places * (size / 2),
             bricks=bricks.reshape(len(cells), nodes).astype(np.int64),
             parts=np.repeat(grid.parts, split**3),
-            materials=tuple(setup.design.material_of(part) for part in setup.design.parts),
+            materials=tuple(setup.materials),
             fixed=np.zeros((len(places), 3), dtype=bool),
             values=np.zeros((len(places), 3)),
             forces=np.zeros((len(places), 3)),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from pydantic import Discriminator, Tag
+from pydantic import Discriminator, Field, Tag
 
 from voxsoft.design.operands import Name, ShapeOrName, name_or_table
-from voxsoft.materials import AnyMaterial
+from voxsoft.materials import AnyMaterial, Fiber
 from voxsoft.records import Record
 
 
@@ -21,6 +21,9 @@ class Part(Record):
     material
         Name of a material card or of one of the design's own materials, or a
         material.
+    fibers
+        Families of fibers, up to 10, spread over the part, whose material must then be a
+        hyperelastic one. Default: none.
     name
         What results call it; default: the shape's name.
 
@@ -35,4 +38,5 @@ class Part(Record):
         Annotated[Name, Tag("name")] | Annotated[AnyMaterial, Tag("table")],
         Discriminator(name_or_table),
     ]
+    fibers: tuple[Fiber, ...] = Field((), max_length=10)
     name: Name | None = None

@@ -1,8 +1,9 @@
 """Materials: models with constants in SI units, and the library of cards.
 
-A *model* says how a material answers: ``"lattice"`` (edge and bulk modulus, the paper's), or a
-hyperelastic one, ``"neo-hookean"``, ``"mooney-rivlin"``, ``"yeoh"``, ``"ogden"``, ``"gent"``. A
-*card* is a named model with its density and where its numbers come from, in a plain TOML file.
+A *model* says how a material answers: ``"lattice"`` (edge and bulk modulus, the paper's), a
+hyperelastic one, ``"neo-hookean"``, ``"mooney-rivlin"``, ``"yeoh"``, ``"ogden"``, ``"gent"``, or
+``"rigid"``. A *card* is a named model with its density and where its numbers come from, in a plain
+TOML file.
 
 Examples
 --------
@@ -18,6 +19,7 @@ True
 
 from voxsoft.materials.card import Card, card_names, load_card, material_of
 from voxsoft.materials.constants import constants_of, with_constants
+from voxsoft.materials.fiber import Fiber
 from voxsoft.materials.gent import Gent
 from voxsoft.materials.homogeneous import MODES, Mode, nominal_stress, nominal_tangent
 from voxsoft.materials.hyperelastic import Hyperelastic, PronyTerm
@@ -26,6 +28,7 @@ from voxsoft.materials.model import AnyMaterial, Material
 from voxsoft.materials.mooney_rivlin import MooneyRivlin
 from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
 from voxsoft.materials.yeoh import Yeoh
 
@@ -35,6 +38,7 @@ __all__ = [
     "AnyMaterial",
     "Card",
     "CompliantLattice",
+    "Fiber",
     "Gent",
     "Hyperelastic",
     "Lattice",
@@ -44,6 +48,7 @@ __all__ = [
     "NeoHookean",
     "Ogden",
     "PronyTerm",
+    "Rigid",
     "StableRange",
     "Yeoh",
     "card_names",

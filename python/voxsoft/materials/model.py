@@ -11,10 +11,11 @@ from voxsoft.materials.lattice import CompliantLattice, Lattice
 from voxsoft.materials.mooney_rivlin import MooneyRivlin
 from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
+from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.yeoh import Yeoh
 
 #: Any material model.
-Material = Lattice | CompliantLattice | NeoHookean | MooneyRivlin | Yeoh | Ogden | Gent
+Material = Lattice | CompliantLattice | NeoHookean | MooneyRivlin | Yeoh | Ogden | Gent | Rigid
 
 #: The same as a pydantic field, told apart by ``model``.
 AnyMaterial = Annotated[Material, Field(discriminator="model")]

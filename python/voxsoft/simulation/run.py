@@ -11,7 +11,7 @@ import numpy as np
 from voxsoft import _core
 from voxsoft.design import Design, Solver
 from voxsoft.errors import SimulationError
-from voxsoft.materials import Hyperelastic
+from voxsoft.materials import Hyperelastic, Rigid
 from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
@@ -142,11 +142,13 @@ def wants_statics(design: Design, solver: Solver) -> bool:
     """Whether a solver's settings mean the statics solver for a design."""
     if solver.method != "auto":
         return solver.method == "statics"
-    hyperelastic = all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
+    materials = [design.material_of(part) for part in design.parts]
+    hyperelastic = all(isinstance(material, Hyperelastic) for material in materials)
+    stiff = design.layers or any(isinstance(material, Rigid) for material in materials)
     path = (solver.control, solver.steps, solver.volume_ratio, solver.first_step)
     asked = any(value is not None for value in path)
-    layered = bool(design.layers) and not _wants_time(solver)
-    return asked or layered or (hyperelastic and not _wants_time(solver) and solver.damping is None)
+    stiff = bool(stiff) and not _wants_time(solver)
+    return asked or stiff or (hyperelastic and not _wants_time(solver) and solver.damping is None)
 
 
 def _wants_time(solver: Solver) -> bool:

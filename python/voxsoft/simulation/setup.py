@@ -27,6 +27,7 @@ from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
+from voxsoft.simulation.materials import solid_materials
 from voxsoft.simulation.places import Place, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
 
@@ -119,13 +120,27 @@ class Setup:
             mesh.tets.astype(np.uint32),
             mesh.tet_part - np.uint8(1),
             blocks.astype(np.uint32),
-            [self.design.material_of(part).core for part in self.design.parts],
+            self._cores(self.materials),
             self._parts(),
         )
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
-        return self.problem.with_materials([material.core for material in materials])
+        return self.problem.with_materials(self._cores(materials))
+
+    @cached_property
+    def materials(self) -> list[Material]:
+        """The material of each part, with something stiff in place of what is rigid."""
+        return solid_materials(self.design)
+
+    def _cores(self, materials: list[Material]) -> list[Any]:
+        """What the core takes for each part: its material and its fibers."""
+        return [
+            (*material.core, [fiber.core for fiber in part.fibers])
+            if part.fibers
+            else material.core
+            for part, material in zip(self.design.parts, materials, strict=True)
+        ]
 
     def _parts(self) -> _core.ProblemParts:
         parts = _core.ProblemParts()
