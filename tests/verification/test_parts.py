@@ -222,9 +222,13 @@ def test_what_cannot_be_a_fiber_or_a_rigid_part():
         simulate(bar([vs.Part(shape=box(), material=vs.Rigid())]))
 
 
-def test_outside_codes_refuse_fibers():
+def test_outside_codes_refuse_layers_and_fibers():
     from voxsoft.comparison.bricks import BrickModel
 
+    film = vs.Layer(region=vs.Region(z=(0, 0)), young=50e6, thickness=0.1 * mm)
+    layered = Setup.of(bar([vs.Part(shape=box(), material=rubber())], layers=[film]))
+    with pytest.raises(SimulationError, match="layers: cannot be given"):
+        BrickModel.of(layered)
     fibers = [vs.Fiber(direction=(1, 0, 0), modulus=1 * kPa)]
     setup = Setup.of(bar([vs.Part(shape=box(), material=rubber(), fibers=fibers)]))
     with pytest.raises(SimulationError, match=r"parts\[0\].fibers: cannot be given"):
