@@ -7,14 +7,18 @@ use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Mode
 use crate::simulate::to_python;
 
 /// The model's name, its constants, the bulk modulus (Pa) and the density (kg/m³); families of fibres
-/// as (direction, modulus in Pa, whether they carry compression) may follow.
+/// as (direction, modulus in Pa, whether they carry compression) and Prony branches may follow.
 #[derive(FromPyObject)]
 pub enum MaterialArgument {
     /// Without fibres.
     Plain(String, Vec<f64>, f64, f64),
     /// With fibres.
-    Reinforced(String, Vec<f64>, f64, f64, Vec<(Vec3, f64, bool)>),
+    Reinforced(String, Vec<f64>, f64, f64, Fibers),
+    /// With fibres and Prony branches (share of the instantaneous modulus, time in s).
+    Viscous(String, Vec<f64>, f64, f64, Fibers, Vec<(f64, f64)>),
 }
+
+type Fibers = Vec<(Vec3, f64, bool)>;
 
 /// Young's modulus (Pa) and Poisson's ratio of a lattice material at a voxel size (m).
 #[pyfunction]
@@ -28,12 +32,15 @@ pub fn lattice_constants(argument: MaterialArgument, voxel_size: f64) -> PyResul
 }
 
 pub(crate) fn material(argument: MaterialArgument) -> PyResult<Material> {
-    let (model, constants, bulk, density, fibers) = match argument {
+    let (model, constants, bulk, density, fibers, prony) = match argument {
         MaterialArgument::Plain(model, constants, bulk, density) => {
-            (model, constants, bulk, density, Vec::new())
+            (model, constants, bulk, density, Vec::new(), Vec::new())
         }
         MaterialArgument::Reinforced(model, constants, bulk, density, fibers) => {
-            (model, constants, bulk, density, fibers)
+            (model, constants, bulk, density, fibers, Vec::new())
+        }
+        MaterialArgument::Viscous(model, constants, bulk, density, fibers, prony) => {
+            (model, constants, bulk, density, fibers, prony)
         }
     };
     let model = match (model.as_str(), constants.as_slice()) {
@@ -71,6 +78,7 @@ pub(crate) fn material(argument: MaterialArgument) -> PyResult<Material> {
         });
     let material = HyperelasticMaterial::new(model, bulk, density)
         .and_then(|material| material.with_fibers(fibers.collect()))
+        .and_then(|material| material.with_prony(prony))
         .map_err(to_python)?;
     Ok(material.into())
 }

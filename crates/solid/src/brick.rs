@@ -12,22 +12,23 @@
 //!
 //! - `H₁₁ = p̂₂·e₁`, `H₂₂ = p̂₁·e₂`: bending. The shear `γ₁₃ ∝ ξ` that comes with the mode is left
 //!   out: it is what locks a full brick.
-//! - `H₃₃ = −ν/(1−ν) (H₁₁ + H₂₂)`: a plate that bends is free to change its thickness.
+//! - `H₃₃/S₃₃ = −ν/(1−ν) (H₁₁/S₁₁ + H₂₂/S₂₂)`: a plate that bends is free to change its thickness, in
+//!   proportion to its present shape.
 //! - `H₁₂ = (p̂₁·e₁ + p̂₂·e₂)/2`: twist.
 //!
 //! The isochoric energy is the mean over the six face centres (exact for fields linear in one
 //! coordinate), so that bending follows the material at any stretch. The volumetric energy is that of
-//! `det S`, one number for each voxel (mean dilatation), plus its quadratic part for `tr H`, which is
-//! small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial stretch bilinear in two
-//! coordinates. Energy per rest volume:
+//! one number for each voxel, the mean `J` of `det(S ± Ĥ)` over the same points (mean dilatation), plus a
+//! quadratic part for `tr H`, which is small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial
+//! stretch bilinear in two coordinates. Energy per rest volume:
 //!
-//! `Φ = U(det S) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ (tr H)² + E/18 |p₄|² + fibres(S)`
+//! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibres(S)`
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
-//! derivatives of `R`, see [`Brick::add_stiffness`].
+//! derivatives of `R`, see [`Brick::stiffness`].
 
-pub use crate::brick_energy::BrickStrain;
-use crate::brick_energy::{BrickStress, Modes, Rotated, SHAPE};
+pub use crate::brick_energy::{BrickStrain, BrickStress};
+use crate::brick_energy::{Modes, Rotated, SHAPE};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
 use crate::matrix::{
@@ -134,6 +135,23 @@ impl Brick {
     ) {
         let state = Rotated::of(&self.modes(positions));
         let stress = state.gradient(material);
+        self.spread_stress(&state, &stress, material, forces);
+    }
+
+    /// Adds the elastic forces and those of a viscous stress, which `viscous` gives for the deviatoric
+    /// part of the elastic one; both are in the rotated frame, so that a turn changes neither.
+    pub fn add_viscous_forces(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        viscous: impl FnOnce(&BrickStress) -> BrickStress,
+        forces: &mut [Vec3],
+    ) {
+        let state = Rotated::of(&self.modes(positions));
+        let deviatoric = state.deviatoric(material);
+        let stress = state
+            .gradient(material)
+            .plus_scaled(1.0, &viscous(&deviatoric));
         self.spread_stress(&state, &stress, material, forces);
     }
 

@@ -2,9 +2,9 @@
 //! [`crate::brick`].
 
 use crate::hyperelastic::symmetric::{
-    Sym, isochoric, isochoric_stress, to_sym, volumetric, volumetric_stress,
+    Sym, determinant_response, isochoric, isochoric_stress, to_sym,
 };
-use crate::hyperelastic::{HyperelasticMaterial, fiber};
+use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
 use crate::matrix::{Mat3, apply_transposed, polar};
 use crate::vector::Vec3;
 
@@ -55,6 +55,24 @@ impl BrickStrain {
 }
 
 impl BrickStress {
+    /// No stress.
+    pub const ZERO: Self = Self {
+        stress: [0.0; 6],
+        hourglass: [[0.0; 3]; 3],
+    };
+
+    /// `self + factor other`.
+    #[must_use]
+    pub fn plus_scaled(mut self, factor: f64, other: &Self) -> Self {
+        for (t, o) in self.stress.iter_mut().zip(other.stress) {
+            *t += factor * o;
+        }
+        for m in 0..3 {
+            crate::vector::axpy(&mut self.hourglass[m], factor, other.hourglass[m]);
+        }
+        self
+    }
+
     /// Adds a row of changes.
     pub(crate) fn plus(mut self, row: &[f64; SHAPE]) -> Self {
         for k in 0..6 {
@@ -96,61 +114,119 @@ impl Rotated {
         }
     }
 
-    /// `Ĥₙ` for the axis `n` with the others `i, j`, and the two bending strains.
+    /// `Ĥₙ` for the axis `n` with the others `i, j`.
     #[inline(always)]
-    fn variation(&self, (n, i, j): (usize, usize, usize), thinning: f64) -> (Sym, f64) {
+    fn variation(&self, axes: Axes, thinning: f64) -> Variation {
+        let (n, i, j) = axes;
         let p = &self.hourglass;
-        let sum = p[j][i] + p[i][j];
+        let (first, second) = (p[j][i], p[i][j]);
+        let thickness = Thickness::of(&self.stretch, axes);
         let mut h = [0.0; 6];
-        h[i] = p[j][i];
-        h[j] = p[i][j];
-        h[n] = -thinning * sum;
+        h[i] = first;
+        h[j] = second;
+        h[n] = -thinning * (thickness.first * first + thickness.second * second);
         h[OFF + n] = (p[i][i] + p[j][j]) / SQRT_2;
-        (h, sum)
+        Variation {
+            h,
+            thickness,
+            bending: [first, second],
+        }
+    }
+
+    /// The two face centres of an axis.
+    #[inline(always)]
+    fn ends(&self, h: &Sym) -> [Sym; 2] {
+        [1.0, -1.0].map(|sign| std::array::from_fn(|k| self.stretch[k] + sign * h[k]))
+    }
+
+    /// The mean change of volume over the six face centres, with derivatives where `second` asks.
+    fn volume(&self, thinning: f64, second: bool) -> Shaped {
+        self.mean(thinning, second, |at| determinant_response(at, second))
+    }
+
+    /// The mean over the six face centres of a function of the stretch there.
+    fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
+        let mut mean = Shaped::zero();
+        for axes in AXES {
+            let variation = self.variation(axes, thinning);
+            let [high, low] = self.ends(&variation.h).map(|at| function(&at));
+            mean.value += (high.value + low.value) / 6.0;
+            let mut moment = [0.0; 6];
+            for k in 0..6 {
+                mean.gradient[k] += (high.stress[k] + low.stress[k]) / 6.0;
+                moment[k] = (high.stress[k] - low.stress[k]) / 6.0;
+            }
+            let slopes = variation.slopes(axes, thinning);
+            for (place, direction) in &slopes {
+                mean.gradient[*place] += dot6(direction, &moment);
+            }
+            if second {
+                for k in 0..6 {
+                    for l in 0..6 {
+                        mean.hessian[k][l] += (high.tangent[k][l] + low.tangent[k][l]) / 6.0;
+                    }
+                }
+                for (place, direction) in &slopes {
+                    let mut twice = [0.0; 6];
+                    for k in 0..6 {
+                        let mut mixed = 0.0;
+                        for l in 0..6 {
+                            mixed += (high.tangent[k][l] - low.tangent[k][l]) / 6.0 * direction[l];
+                            twice[k] +=
+                                (high.tangent[k][l] + low.tangent[k][l]) / 6.0 * direction[l];
+                        }
+                        mean.hessian[k][*place] += mixed;
+                        mean.hessian[*place][k] += mixed;
+                    }
+                    for (other, across) in &slopes {
+                        mean.hessian[*other][*place] += dot6(across, &twice);
+                    }
+                }
+                variation.add_curvature(axes, thinning, moment[axes.0], &mut mean.hessian);
+            }
+        }
+        mean
     }
 
     pub fn energy(&self, material: &HyperelasticMaterial) -> f64 {
         let thinning = material.thinning();
-        let mut value = volumetric_stress(material, &self.stretch).0
-            + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>();
+        let change = self.volume(thinning, false).value - 1.0;
+        let mut value = 0.5 * material.bulk() * change * change
+            + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>()
+            + self
+                .mean(thinning, false, |at| stress_only(material, at))
+                .value;
         for fiber in material.fibers() {
             value += fiber::energy(fiber, &self.stretch);
         }
         for axes in AXES {
-            let (h, sum) = self.variation(axes, thinning);
-            let trace = (1.0 - thinning) * sum;
+            let [first, second] = self.variation(axes, thinning).bending;
+            let trace = (1.0 - thinning) * (first + second);
             value += material.bulk() * trace * trace / 6.0;
-            for sign in [1.0, -1.0] {
-                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
-                value += isochoric_stress(material.model(), &at).0 / 6.0;
-            }
         }
         value
     }
 
     pub fn gradient(&self, material: &HyperelasticMaterial) -> BrickStress {
+        let volume = self.volume(material.thinning(), false);
+        let pressure = material.bulk() * (volume.value - 1.0);
+        self.deviatoric(material)
+            .plus(&volume.gradient.map(|slope| pressure * slope))
+    }
+
+    /// The part of the gradient that does not come from the mean change of volume.
+    pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
         let thinning = material.thinning();
-        let mut gradient = BrickStress {
-            stress: volumetric_stress(material, &self.stretch).1,
-            hourglass: [[0.0; 3]; 3],
-        };
+        let mean = self.mean(thinning, false, |at| stress_only(material, at));
+        let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
         for fiber in material.fibers() {
             fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
         }
-        for axes in AXES {
-            let (h, sum) = self.variation(axes, thinning);
-            let stress = |sign: f64| {
-                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
-                isochoric_stress(material.model(), &at).1
-            };
-            let (high, low) = (stress(1.0), stress(-1.0));
-            let trace = material.bulk() * (1.0 - thinning).powi(2) * sum / 3.0;
-            let mut moment = [0.0; 6];
-            for k in 0..6 {
-                gradient.stress[k] += (high[k] + low[k]) / 6.0;
-                moment[k] = (high[k] - low[k]) / 6.0;
-            }
-            add_moment(&mut gradient.hourglass, axes, thinning, &moment, trace);
+        for (n, i, j) in AXES {
+            let [first, second] = self.variation((n, i, j), thinning).bending;
+            let trace = material.bulk() * (1.0 - thinning).powi(2) * (first + second) / 3.0;
+            gradient.hourglass[j][i] += trace;
+            gradient.hourglass[i][j] += trace;
         }
         gradient
     }
@@ -158,82 +234,178 @@ impl Rotated {
     /// The Hessian by `S` and `p̂` (rows 0–5 and `6 + 3 mode + axis`).
     pub fn hessian(&self, material: &HyperelasticMaterial) -> [[f64; SHAPE]; SHAPE] {
         let thinning = material.thinning();
-        let mut hessian = [[0.0; SHAPE]; SHAPE];
-        let mut center = volumetric(material, &self.stretch).tangent;
+        let bulk = material.bulk();
+        let volume = self.volume(thinning, true);
+        let mut hessian = self
+            .mean(thinning, true, |at| isochoric(material.model(), at))
+            .hessian;
+        for (k, row) in hessian.iter_mut().enumerate() {
+            for (l, entry) in row.iter_mut().enumerate() {
+                *entry += bulk
+                    * (volume.gradient[k] * volume.gradient[l]
+                        + (volume.value - 1.0) * volume.hessian[k][l]);
+            }
+        }
+        let mut center = [[0.0; 6]; 6];
         for fiber in material.fibers() {
             fiber::add_tangent(fiber, &self.stretch, &mut center);
-        }
-        for axes in AXES {
-            let (h, _) = self.variation(axes, thinning);
-            let tangent = |sign: f64| {
-                let at = std::array::from_fn(|k| self.stretch[k] + sign * h[k]);
-                isochoric(material.model(), &at).tangent
-            };
-            let (high, low) = (tangent(1.0), tangent(-1.0));
-            let directions = hourglass_directions(axes, thinning);
-            for k in 0..6 {
-                for l in 0..6 {
-                    center[k][l] += (high[k][l] + low[k][l]) / 6.0;
-                }
-            }
-            for (place, direction) in &directions {
-                let mut mixed = [0.0; 6];
-                let mut twice = [0.0; 6];
-                for k in 0..6 {
-                    for l in 0..6 {
-                        mixed[k] += (high[k][l] - low[k][l]) / 6.0 * direction[l];
-                        twice[k] += (high[k][l] + low[k][l]) / 6.0 * direction[l];
-                    }
-                    hessian[k][*place] += mixed[k];
-                    hessian[*place][k] += mixed[k];
-                }
-                let trace = direction[0] + direction[1] + direction[2];
-                for (other, across) in &directions {
-                    let bend: f64 = (0..6).map(|k| across[k] * twice[k]).sum();
-                    let other_trace = across[0] + across[1] + across[2];
-                    hessian[*other][*place] += bend + material.bulk() * trace * other_trace / 3.0;
-                }
-            }
         }
         for k in 0..6 {
             for l in 0..6 {
                 hessian[k][l] += center[k][l];
             }
         }
+        let trace = bulk * (1.0 - thinning).powi(2) / 3.0;
+        for (_, i, j) in AXES {
+            let places = [place(j, i), place(i, j)];
+            for row in places {
+                for column in places {
+                    hessian[row][column] += trace;
+                }
+            }
+        }
         hessian
     }
 }
 
-/// The derivatives of `Ĥₙ` by the four hourglass coordinates that it depends on.
-fn hourglass_directions((n, i, j): (usize, usize, usize), thinning: f64) -> [(usize, Sym); 4] {
-    let bending = |axis: usize| {
-        let mut h = [0.0; 6];
-        h[axis] = 1.0;
-        h[n] = -thinning;
-        h
-    };
-    let mut twist = [0.0; 6];
-    twist[OFF + n] = 1.0 / SQRT_2;
-    let place = |mode: usize, axis: usize| 6 + 3 * mode + axis;
-    [
-        (place(j, i), bending(i)),
-        (place(i, j), bending(j)),
-        (place(i, i), twist),
-        (place(j, j), twist),
-    ]
+/// An axis and the other two.
+type Axes = (usize, usize, usize);
+
+/// The row of the hourglass coordinate `axis` of a mode.
+fn place(mode: usize, axis: usize) -> usize {
+    6 + 3 * mode + axis
 }
 
-#[inline(always)]
-fn add_moment(
-    hourglass: &mut [Vec3; 3],
-    (n, i, j): (usize, usize, usize),
-    thinning: f64,
-    moment: &Sym,
-    trace: f64,
-) {
-    hourglass[j][i] += moment[i] - thinning * moment[n] + trace;
-    hourglass[i][j] += moment[j] - thinning * moment[n] + trace;
-    let twist = moment[OFF + n] / SQRT_2;
-    hourglass[i][i] += twist;
-    hourglass[j][j] += twist;
+fn dot6(a: &Sym, b: &Sym) -> f64 {
+    (0..6).map(|k| a[k] * b[k]).sum()
+}
+
+/// A function of all generalised coordinates.
+struct Shaped {
+    value: f64,
+    gradient: [f64; SHAPE],
+    hessian: [[f64; SHAPE]; SHAPE],
+}
+
+impl Shaped {
+    fn zero() -> Self {
+        Self {
+            value: 0.0,
+            gradient: [0.0; SHAPE],
+            hessian: [[0.0; SHAPE]; SHAPE],
+        }
+    }
+}
+
+fn stress_only(material: &HyperelasticMaterial, at: &Sym) -> Response {
+    let (value, stress) = isochoric_stress(material.model(), at);
+    Response {
+        value,
+        stress,
+        ..Response::default()
+    }
+}
+
+/// A stretch along a voxel's axis below which thickness ratios go on smoothly: a voxel pressed flat
+/// must not ask for infinite thinning.
+const LEAST_STRETCH: f64 = 0.2;
+
+/// A positive stand-in for a stretch along an axis, with derivatives: `x` itself, and a parabola that
+/// joins it below [`LEAST_STRETCH`].
+fn positive(x: f64) -> [f64; 3] {
+    if x >= LEAST_STRETCH {
+        [x, 1.0, 0.0]
+    } else {
+        [
+            (LEAST_STRETCH + x * x / LEAST_STRETCH) / 2.0,
+            x / LEAST_STRETCH,
+            1.0 / LEAST_STRETCH,
+        ]
+    }
+}
+
+/// The ratios `Sₙₙ/Sᵢᵢ` and `Sₙₙ/Sⱼⱼ`: a stretched voxel thins in proportion to its present shape.
+struct Thickness {
+    first: f64,
+    second: f64,
+    n: [f64; 3],
+    i: [f64; 3],
+    j: [f64; 3],
+}
+
+impl Thickness {
+    fn of(stretch: &Sym, (n, i, j): Axes) -> Self {
+        let [n, i, j] = [n, i, j].map(|axis| positive(stretch[axis]));
+        Self {
+            first: n[0] / i[0],
+            second: n[0] / j[0],
+            n,
+            i,
+            j,
+        }
+    }
+}
+
+struct Variation {
+    h: Sym,
+    thickness: Thickness,
+    bending: [f64; 2],
+}
+
+impl Variation {
+    /// The derivatives of `Ĥₙ` by the coordinates that it depends on.
+    fn slopes(&self, (n, i, j): Axes, thinning: f64) -> [(usize, Sym); 7] {
+        let along = |axis: usize, value: f64| {
+            let mut h = [0.0; 6];
+            h[axis] = value;
+            h
+        };
+        let t = &self.thickness;
+        let [a, b] = self.bending;
+        let mut first = along(i, 1.0);
+        first[n] = -thinning * t.first;
+        let mut second = along(j, 1.0);
+        second[n] = -thinning * t.second;
+        let twist = along(OFF + n, 1.0 / SQRT_2);
+        let by_n = -thinning * t.n[1] * (a / t.i[0] + b / t.j[0]);
+        let by_i = thinning * a * t.first * t.i[1] / t.i[0];
+        let by_j = thinning * b * t.second * t.j[1] / t.j[0];
+        [
+            (place(j, i), first),
+            (place(i, j), second),
+            (place(i, i), twist),
+            (place(j, j), twist),
+            (n, along(n, by_n)),
+            (i, along(n, by_i)),
+            (j, along(n, by_j)),
+        ]
+    }
+
+    /// Adds `moment` times the second derivatives of the thickness strain
+    /// `−thinning (a N/I + b N/J)`.
+    fn add_curvature(
+        &self,
+        (n, i, j): Axes,
+        thinning: f64,
+        moment: f64,
+        hessian: &mut [[f64; SHAPE]; SHAPE],
+    ) {
+        let t = &self.thickness;
+        let factor = -thinning * moment;
+        let [a, b] = self.bending;
+        hessian[n][n] += factor * t.n[2] * (a / t.i[0] + b / t.j[0]);
+        for (axis, other, mode, bending) in [(i, &t.i, place(j, i), a), (j, &t.j, place(i, j), b)] {
+            let inverse = 1.0 / other[0];
+            let slope = -other[1] * inverse * inverse;
+            let curvature = (2.0 * other[1] * other[1] * inverse - other[2]) * inverse * inverse;
+            hessian[axis][axis] += factor * bending * t.n[0] * curvature;
+            let mut both = |row: usize, column: usize, value: f64| {
+                hessian[row][column] += factor * value;
+                hessian[column][row] += factor * value;
+            };
+            both(n, axis, bending * t.n[1] * slope);
+            both(mode, n, t.n[1] * inverse);
+            both(mode, axis, t.n[0] * slope);
+        }
+    }
 }

@@ -12,6 +12,7 @@ use crate::outcome::{
     travel_limit,
 };
 use crate::stiffness::largest_eigenvalue;
+use crate::viscosity::Viscosity;
 
 /// How motion is damped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +35,8 @@ pub struct Dynamics {
     pub iterations: u32,
     /// Damping of all motion.
     pub damping: Damping,
-    /// Retardation time `τ` in s of Kelvin–Voigt damping: a constraint answers to `C + τ dC/dt`.
+    /// Retardation time `τ` in s of Kelvin–Voigt damping: a constraint answers to `C + τ dC/dt`, and the
+    /// deviatoric stress of a hyperelastic voxel to `s + τ ds/dt`.
     pub retardation: f64,
     /// Run to this time in s; `None` runs until rest.
     pub end_time: Option<f64>,
@@ -204,6 +206,7 @@ struct Stepper<'a> {
     start: Vec<Vec3>,
     forces: Vec<Vec3>,
     forces_before: Vec<Vec3>,
+    viscosity: Viscosity,
     edge_multipliers: Vec<f64>,
     edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
@@ -233,6 +236,7 @@ impl<'a> Stepper<'a> {
             start: vec![[0.0; 3]; count],
             forces: vec![[0.0; 3]; count],
             forces_before: vec![[0.0; 3]; count],
+            viscosity: Viscosity::new(body, settings.retardation),
             edge_multipliers: vec![0.0; body.edges().len()],
             edge_compliances: body.edges().iter().map(|e| 1.0 / e.stiffness).collect(),
             tet_multipliers: vec![0.0; body.tets().len()],
@@ -247,6 +251,7 @@ impl<'a> Stepper<'a> {
 
     fn restore(&mut self, checkpoint: &State) {
         self.state.clone_from(checkpoint);
+        self.viscosity.restart();
         self.substep_before = 0.0;
     }
 
@@ -273,6 +278,8 @@ impl<'a> Stepper<'a> {
     }
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
+    /// Hyperelastic voxels and membranes are forces only: a substep of one over the highest frequency
+    /// integrates them as it stands (symplectic Euler), and there is nothing to project.
     fn predict(&mut self, h: f64) {
         let body = self.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -293,6 +300,11 @@ impl<'a> Stepper<'a> {
             for (vertex, gradient) in tet.vertices.into_iter().zip(gradients) {
                 axpy(&mut self.forces[vertex as usize], *multiplier, gradient);
             }
+        }
+        self.viscosity
+            .add_forces(body, &self.start, h, &mut self.forces);
+        for membrane in body.membranes() {
+            membrane.add_forces(&self.start, &mut self.forces);
         }
         self.update_damping();
         let kept = (-self.damping_rate * h).exp();

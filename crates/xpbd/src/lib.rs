@@ -24,6 +24,7 @@ pub mod dynamics;
 mod outcome;
 pub mod relaxation;
 mod stiffness;
+mod viscosity;
 
 pub use dynamics::{Damping, Dynamics, simulate};
 pub use outcome::{Answer, Breakdown, Progress, Status};

@@ -61,6 +61,7 @@ pub struct HyperelasticMaterial {
     bulk: f64,
     density: f64,
     fibers: Vec<Fiber>,
+    prony: Vec<(f64, f64)>,
 }
 
 impl HyperelasticMaterial {
@@ -92,6 +93,7 @@ impl HyperelasticMaterial {
             bulk,
             density,
             fibers: Vec::new(),
+            prony: Vec::new(),
         })
     }
 
@@ -113,6 +115,35 @@ impl HyperelasticMaterial {
             }
         }
         Ok(Self { fibers, ..self })
+    }
+
+    /// The same material with branches that relax: pairs of the share `g` of the instantaneous modulus
+    /// and the time `τ` in s. The model's own constants stay those at rest.
+    pub fn with_prony(self, prony: Vec<(f64, f64)>) -> Result<Self, ProblemError> {
+        for &(share, time) in &prony {
+            for (what, value) in [
+                ("share of a Prony branch", share),
+                ("time of a Prony branch (s)", time),
+            ] {
+                if !(value > 0.0 && value.is_finite()) {
+                    return Err(ProblemError::NotPositive { what, value });
+                }
+            }
+        }
+        let left = 1.0 - prony.iter().map(|(share, _)| share).sum::<f64>();
+        if !(left > 0.0) {
+            let what = "share of the modulus that Prony branches leave";
+            return Err(ProblemError::NotPositive { what, value: left });
+        }
+        Ok(Self { prony, ..self })
+    }
+
+    /// The branches that relax: stiffness over that at rest, `g/(1 − Σ g)`, and time in s.
+    pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let left = 1.0 - self.prony.iter().map(|(share, _)| share).sum::<f64>();
+        self.prony
+            .iter()
+            .map(move |&(share, time)| (share / left, time))
     }
 
     /// A compressible neo-Hookean material of a Young's modulus (Pa) and Poisson's ratio.
