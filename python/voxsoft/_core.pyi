@@ -149,7 +149,11 @@ class Shape:
     ) -> NDArray[np.uint8]: ...
 
 _Fibers = list[tuple[tuple[float, float, float], float, bool]]
-_Material = tuple[str, list[float], float, float] | tuple[str, list[float], float, float, _Fibers]
+_Material = (
+    tuple[str, list[float], float, float]
+    | tuple[str, list[float], float, float, _Fibers]
+    | tuple[str, list[float], float, float, _Fibers, list[tuple[float, float]]]
+)
 _History = tuple[Sequence[float], Sequence[float]] | None
 
 def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...

@@ -130,13 +130,13 @@ impl Body {
                 let fraction = fraction_of(mesh, block);
                 let mut constraints = Vec::with_capacity(block.len());
                 for &t in block {
-                    let material = &materials[usize::from(mesh.tet_part[t])];
+                    let Material::Lattice(material) = materials[usize::from(mesh.tet_part[t])]
+                    else {
+                        continue;
+                    };
                     for vertex in mesh.tets[t] {
                         masses[vertex as usize] += fraction * material.density() * volumes[t] / 4.0;
                     }
-                    let Material::Lattice(material) = *material else {
-                        continue;
-                    };
                     let mut constraint = volume_constraint(mesh.tets[t], volumes[t], material);
                     constraint.stiffness *= fraction;
                     constraints.push(constraint);
@@ -155,16 +155,23 @@ impl Body {
                                 .ok_or(ProblemError::NotVoxels { tet: t })?;
                     }
                 }
-                if let Material::Hyperelastic(_) = materials[usize::from(mesh.tet_part[block[0]])] {
+                if let Material::Hyperelastic(material) =
+                    &materials[usize::from(mesh.tet_part[block[0]])]
+                {
                     let (vertices, side) = cube::corners(mesh, block)
                         .ok_or(ProblemError::NotCubes { tet: block[0] })?;
-                    let material = u32::from(mesh.tet_part[block[0]]);
-                    bricks.push(Brick {
+                    let brick = Brick {
                         vertices,
-                        material,
+                        material: u32::from(mesh.tet_part[block[0]]),
                         side,
                         fraction,
-                    });
+                    };
+                    // An eighth for each corner: the shares of the tetrahedra differ five to one between
+                    // corners, which a brick's modes would feel as a rattle.
+                    for vertex in vertices {
+                        masses[vertex as usize] += material.density() * brick.volume() / 8.0;
+                    }
+                    bricks.push(brick);
                 }
                 owned.push((first_new..found.len()).collect());
                 volume_constraints.push(constraints);
@@ -217,7 +224,8 @@ impl Body {
         &self.rest
     }
 
-    /// The lumped mass of every vertex in kg: a quarter of each tetrahedron around it.
+    /// The lumped mass of every vertex in kg: a quarter of each tetrahedron of the lattice around it, an
+    /// eighth of each hyperelastic voxel.
     pub fn masses(&self) -> &[f64] {
         &self.masses
     }

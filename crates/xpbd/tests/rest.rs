@@ -202,7 +202,7 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
         tets: tets.tets.iter().map(|tet| tet.map(|v| v as u32)).collect(),
         tet_part: vec![0; tets.tets.len()],
         tet_block: (0..tets.tets.len() as u32).map(|tet| tet / 5).collect(),
-        ..Mesh::default()
+        ..voxsoft_solid::Mesh::default()
     };
     let triangles: Vec<[u32; 3]> = tets.cavities[0]
         .triangles

@@ -26,6 +26,16 @@ Floats = NDArray[np.float64]
 #: What the Rust core takes: the model, its constants, bulk modulus in Pa, density in kg/m³.
 Core = tuple[str, list[float], float, float]
 
+#: The same with families of fibres and pairs of ``g`` and ``tau`` in s.
+ViscousCore = tuple[
+    str,
+    list[float],
+    float,
+    float,
+    list[tuple[tuple[float, float, float], float, bool]],
+    list[tuple[float, float]],
+]
+
 #: A modulus that may be negative, as coefficients of polynomials are.
 SignedModulus = Annotated[float, UnitOf("modulus")]
 
@@ -145,9 +155,11 @@ class Hyperelastic(Record):
         return 2.0 * self.shear * (1.0 + self.poisson) / (3.0 * (1.0 - 2.0 * self.poisson))
 
     @property
-    def core(self) -> Core:
-        """What the Rust core takes: model, constants, bulk modulus, density."""
-        return (self.model, self.constants, self.bulk, self.density)
+    def core(self) -> Core | ViscousCore:
+        """What the Rust core takes: model, constants, bulk modulus, density, any branches."""
+        plain = (self.model, self.constants, self.bulk, self.density)
+        branches = [(term.g, term.tau) for term in self.prony]
+        return (*plain, [], branches) if branches else plain
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
