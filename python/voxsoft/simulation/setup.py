@@ -136,7 +136,7 @@ class Setup:
     def _cores(self, materials: list[Material]) -> list[Any]:
         """What the core takes for each part: its material and its fibers."""
         return [
-            (*material.core, [fiber.core for fiber in part.fibers])
+            (*material.core[:4], [fiber.core for fiber in part.fibers], *material.core[5:])
             if part.fibers
             else material.core
             for part, material in zip(self.design.parts, materials, strict=True)
