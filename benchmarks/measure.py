@@ -59,12 +59,19 @@ def peak_bytes() -> int:
 
 
 class Report:
-    """Rows of a benchmark, printed as text or, with ``--json``, as one object."""
+    """Rows of a benchmark, printed as text or, with ``--json``, as one object.
 
-    def __init__(self, description: str) -> None:
+    `flags` are further switches of the command line, each with its help; `options` says which of
+    them were given.
+    """
+
+    def __init__(self, description: str, **flags: str) -> None:
         parser = argparse.ArgumentParser(description=description)
         parser.add_argument("--json", action="store_true", help="print one JSON object")
-        self._json = parser.parse_args().json
+        for flag, meaning in flags.items():
+            parser.add_argument(f"--{flag}", action="store_true", help=meaning)
+        self.options = vars(parser.parse_args())
+        self._json = self.options["json"]
         self._title = description
         self.rows: list[dict[str, Any]] = []
 
