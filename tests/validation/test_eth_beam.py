@@ -1,0 +1,78 @@
+"""A beam of Dragon Skin 10: one modulus from self weight, and what it foretells.
+
+Coarse elements of 5 mm keep this quick; `docs/validation.md` has the figures of 2.5 mm.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def eth():
+    sys.path.insert(0, str(ROOT / "examples" / "validation"))
+    try:
+        import eth_beam
+    finally:
+        sys.path.pop(0)
+    return eth_beam
+
+
+@pytest.fixture(scope="module")
+def found(eth):
+    return eth.outcome()
+
+
+def test_self_weight_identifies_a_plausible_modulus(found):
+    # The authors found 263.8 kPa with tetrahedra. 5 mm elements are 2 % stiff at the clamp.
+    assert found.young == pytest.approx(264e3, rel=0.04)
+    simulated, measured = found.sags["gravity"]
+    assert simulated == pytest.approx(measured, rel=1e-3)  # the modulus is found to 0.02 %
+
+
+def test_the_unseen_load_is_foretold(found):
+    """-4.9 % was seen: short of the 3 % that were hoped for, and of one sign for all markers."""
+    simulated, measured = found.sags["load52"]
+    assert simulated == pytest.approx(measured, rel=0.06)
+
+
+def test_the_frequencies_are_foretold(found):
+    """-2.8 and -4.8 % were seen; the two runs are 0.04 Hz apart."""
+    for simulated, swings in found.frequencies.values():
+        real = np.mean([swing.frequency for swing in swings])
+        assert simulated == pytest.approx(real, rel=0.05)
+
+
+def test_the_lowest_mode_is_that_of_a_beam(eth):
+    """The same inverse iteration on a slender, light beam against Euler and Bernoulli.
+
+    The section of 10 mm makes it slender: shear and the clamp change the frequency by 2 %.
+    """
+    import voxsoft as vs
+
+    young, length, thick = 1e6, 0.1, 0.01
+    design = vs.Design(
+        name="slender",
+        voxel_size=0.005,
+        shapes={"bar": vs.Box(size=(length, thick, thick))},
+        parts=(vs.Part(shape="bar", material=vs.NeoHookean(young=young, poisson=0.3)),),
+        clamps=(vs.Clamp(region=vs.Region(x=(0, 0))),),
+        loads=(vs.Gravity(value=1e-3),),
+    )
+    beam = eth.Setup.of(design)
+    found = eth.frequency(beam, vs.simulate(beam), 0.0)
+    exact = 1.8751**2 / (2 * np.pi) * np.sqrt(young * thick**2 / (12 * 1070 * length**4))
+    assert found == pytest.approx(exact, rel=0.03)
+
+
+def test_swings_are_read_from_a_known_oscillation(eth):
+    time = np.arange(0.0, 3.0, 0.01)
+    height = 0.004 * np.exp(-2.0 * time) * np.cos(2 * np.pi * 6.3 * time + 0.4)
+    rows = [{"t_s": str(t), "tip1_z_m": str(z)} for t, z in zip(time, height, strict=True)]
+    swing = eth._swing(rows)
+    assert swing.frequency == pytest.approx(6.3, rel=1e-6)
+    assert swing.decay == pytest.approx(2.0, rel=1e-5)
