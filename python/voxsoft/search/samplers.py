@@ -15,9 +15,11 @@ from optuna.trial import FrozenTrial
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.records import closest
 from voxsoft.search.genetic_sampler import GeneticSampler
+from voxsoft.search.gradient_sampler import Answer, GradientSampler
 from voxsoft.units import round_significant
 
 Constraints = Callable[[FrozenTrial], Sequence[float]]
+Answers = Callable[[FrozenTrial], Answer | None]
 
 #: The names that :func:`sampler_named` knows, and what each is for.
 SAMPLERS: Final[Mapping[str, str]] = {
@@ -29,11 +31,12 @@ SAMPLERS: Final[Mapping[str, str]] = {
     "nsga-ii": "non-dominated sorting; several objectives",
     "nsga-iii": "non-dominated sorting with reference points; three objectives or more",
     "genetic": "the paper's genetic algorithm; one objective",
+    "gradient": "along exact slopes, from many starts; one objective, ranges without steps",
 }
 
 
 #: Samplers that take one objective only.
-SINGLE_OBJECTIVE: Final = frozenset({"cma-es", "genetic"})
+SINGLE_OBJECTIVE: Final = frozenset({"cma-es", "genetic", "gradient"})
 
 
 def sampler_named(
@@ -42,6 +45,7 @@ def sampler_named(
     *,
     seed: int | None = None,
     constraints: Constraints | None = None,
+    answers: Answers | None = None,
 ) -> BaseSampler:
     """Make a sampler.
 
@@ -56,6 +60,8 @@ def sampler_named(
     constraints
         From a finished trial to numbers that are at most 0 where a constraint holds. It reaches
         the samplers that know constraints: all but ``grid``, ``random`` and ``cma-es``.
+    answers
+        From a finished trial to its values and slopes, which ``gradient`` needs.
 
     Raises
     ------
@@ -73,6 +79,11 @@ def sampler_named(
     """
     if name not in SAMPLERS:
         raise StudyError("sampler", f'"{name}" is not known', closest(name, SAMPLERS))
+    if name == "gradient":
+        if answers is None:
+            what = '"gradient" needs trials that tell their slopes'
+            raise StudyError("sampler", what, 'use it with Study.optimize("gradient", ...)')
+        return GradientSampler(space, answers, seed=seed)
     with warnings.catch_warnings():
         # Multivariate TPE and others are marked as subject to change; the tests run them all.
         warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)

@@ -15,7 +15,8 @@ from optuna.samplers import BaseSampler
 from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from voxsoft.search.genetic_sampler import GeneticSampler
-from voxsoft.search.samplers import grid_values, sampler_named
+from voxsoft.search.gradient_sampler import GradientSampler
+from voxsoft.search.samplers import Answers, grid_values, sampler_named
 from voxsoft.study.trial import OUTCOME_KEY, rounded
 
 #: Trials a sampler suggests before it sees their outcomes, unless the user says otherwise.
@@ -71,8 +72,8 @@ def sampled_proposals(
         Number of trials in the end, those of earlier runs included.
     batch
         Trials suggested before their outcomes are seen; default: a generation for the genetic
-        algorithm, else :data:`DEFAULT_BATCH`. Batches start at multiples of it, so that a study
-        that was stopped suggests what it would have suggested.
+        algorithm, 1 along gradients, else :data:`DEFAULT_BATCH`. Batches start at multiples of
+        it, so that a study that was stopped suggests what it would have suggested.
     sampler
         From the number of the next trial to the sampler that suggests it.
     """
@@ -84,6 +85,8 @@ def sampled_proposals(
         room = size - held % size
         if batch is None and isinstance(study.sampler, GeneticSampler):
             room = study.sampler.room(study)
+        if batch is None and isinstance(study.sampler, GradientSampler):
+            room = 1
         numbers = range(held, min(held + room, budget))
         yield [_ask(study, space, sampler(number)) for number in numbers]
 
@@ -93,16 +96,17 @@ def seeded_samplers(
     space: Distributions,
     seed: int,
     constraints: Callable[[FrozenTrial], tuple[float, ...]] | None,
+    answers: Answers | None = None,
 ) -> Callable[[int], BaseSampler]:
     """Make a sampler anew for each trial, seeded by the study's seed and the trial's number.
 
     A study that was stopped and resumed then suggests the same trials as one that ran through.
     Optuna's samplers keep what they learn in the study, not in themselves.
     """
-    if name == "genetic":
-        # Its generations are bred from one stream of random numbers.
-        genetic = sampler_named(name, space, seed=seed, constraints=constraints)
-        return lambda number: genetic
+    if name in ("genetic", "gradient"):
+        # Generations are bred from one stream of random numbers; starts have seeds of their own.
+        one = sampler_named(name, space, seed=seed, constraints=constraints, answers=answers)
+        return lambda number: one
 
     def sampler(number: int) -> BaseSampler:
         (own_seed,) = np.random.SeedSequence([seed, number]).generate_state(1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
+from functools import partial
 from math import prod
 from pathlib import Path
 from typing import Any, TypeVar
@@ -28,6 +29,7 @@ from voxsoft.study.proposals import (
 )
 from voxsoft.study.result import StudyResult
 from voxsoft.study.run import StudyRun
+from voxsoft.study.slopes import answers_of, evaluate_slopes, require_slopes
 from voxsoft.study.space import Domain, read_space, space_of
 from voxsoft.study.storage import TrialStorage
 from voxsoft.study.trial import OUTCOME_KEY, read_trial, violations
@@ -197,7 +199,8 @@ class Study:
             raised later sees the outcomes of its last, cut batch earlier.
         batch
             Trials that are suggested before their outcomes are seen. Suggestions depend on it,
-            and not on the number of workers. Default: a generation for ``"genetic"``, else 8;
+            and not on the number of workers. Default: a generation for ``"genetic"``, 1 for
+            ``"gradient"`` (more are further starts), else 8;
             a cluster of more workers than that needs a larger one to be busy.
         executor, scheduler, workers, progress
             As for :meth:`grid`.
@@ -225,10 +228,15 @@ class Study:
         if sampler in SINGLE_OBJECTIVE and len(self.objectives) > 1:
             what = f'"{sampler}" takes one objective, and there are {len(self.objectives)}'
             raise StudyError("sampler", what, 'use "tpe", "nsga-ii" or "nsga-iii"')
-        space = self._distributions
+        space, evaluate = self._distributions, self._evaluate
         if isinstance(sampler, str):
             constraints = self._violations if self.constraints else None
-            samplers = seeded_samplers(sampler, space, self.seed, constraints)
+            answers = None
+            if sampler == "gradient":
+                require_slopes(self.family, tuple(space))
+                evaluate = partial(evaluate_slopes, parameters=tuple(space))
+                answers = answers_of(self.objectives, self.constraints, tuple(space))
+            samplers = seeded_samplers(sampler, space, self.seed, constraints, answers)
             samplers(0)  # says what is wrong with it before any worker starts
         else:
             own: BaseSampler = sampler
@@ -240,6 +248,7 @@ class Study:
             scheduler,
             workers,
             progress,
+            evaluate,
         )
 
     def result(self) -> StudyResult:
@@ -270,6 +279,7 @@ class Study:
         scheduler: str | None,
         workers: int | None,
         progress: ProgressCallback | None,
+        evaluate: Evaluate | None = None,
     ) -> StudyResult:
         with self._storage.open(write=True) as study:
             evaluators = make_workers(executor, scheduler, workers)
@@ -278,7 +288,7 @@ class Study:
                 StudyRun(
                     study,
                     self._build,
-                    self._evaluate,
+                    evaluate or self._evaluate,
                     self.objectives,
                     self.constraints,
                     evaluators,
