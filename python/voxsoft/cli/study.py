@@ -67,7 +67,8 @@ def optimize(
     sampler: Annotated[
         str,
         typer.Option(
-            "--sampler", help="tpe, cma-es, gp, nsga-ii, nsga-iii, random, grid or genetic."
+            "--sampler",
+            help="tpe, cma-es, gp, nsga-ii, nsga-iii, random, grid, genetic or gradient.",
         ),
     ] = "tpe",
     budget: Annotated[int, typer.Option("--budget", min=1, help="How many trials.")] = 100,
