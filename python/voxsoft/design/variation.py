@@ -16,7 +16,7 @@ from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.records import Record, closest
 
 #: What a change may reach, beside the parameters.
-_ROOTS = ("clamps", "loads", "materials", "parts", "probes", "shapes")
+_ROOTS = ("clamps", "layers", "loads", "materials", "parts", "probes", "shapes")
 
 
 def number_of(design: Design, name: str) -> float:

@@ -286,7 +286,16 @@ def _check_positions(state: _State) -> None:
 
 def _check_source(design: Design, rebuilt: Design, name: str) -> None:
     """A design that was changed in Python behind the back of its parameters cannot be varied."""
-    for field in ("voxel_size", "shapes", "materials", "parts", "clamps", "loads", "probes"):
+    for field in (
+        "voxel_size",
+        "shapes",
+        "materials",
+        "parts",
+        "layers",
+        "clamps",
+        "loads",
+        "probes",
+    ):
         if getattr(design, field) != getattr(rebuilt, field):
             raise DesignError(
                 name,
