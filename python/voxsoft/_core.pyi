@@ -193,7 +193,9 @@ class ProblemParts:
         thickness: float,
         density: float,
     ) -> None: ...
-    def fractions(self, fractions: NDArray[np.float64]) -> None: ...
+    def fractions(
+        self, fractions: NDArray[np.float64], moments: NDArray[np.float64] | None = None
+    ) -> None: ...
 
 def equilibrium(
     problem: Problem,

@@ -6,7 +6,8 @@ Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one b
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Self
 
@@ -27,29 +28,62 @@ class MeshCavity:
     triangles : ndarray of int32, shape (t, 3)
         Vertex indices, pointing out of the material, that is into the cavity.
     volume : float
-        Enclosed volume [m³].
+        Enclosed volume [m³], voids included.
     area : float
         Area of the triangles [m²].
+    void_tets : ndarray of int32, shape (k, 4)
+        Tets of cut voxels into which the cavity reaches beyond its triangles; none by default.
+    void_parts : ndarray of float64, shape (k,)
+        The part of each that belongs to the cavity; negative where the voxel holds more material
+        than it has room for.
     """
 
     triangles: NDArray[np.int32] = field(repr=False)
     volume: float
     area: float
+    void_tets: NDArray[np.int32] = field(
+        default_factory=lambda: np.zeros((0, 4), np.int32), repr=False
+    )
+    void_parts: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0), repr=False)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "triangles", _frozen(self.triangles, np.int32))
+        for name in ("triangles", "void_tets"):
+            object.__setattr__(self, name, _frozen(getattr(self, name), np.int32))
+        object.__setattr__(self, "void_parts", _frozen(self.void_parts, np.float64))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return MeshCavity, (self.triangles, self.volume, self.area)
+        return MeshCavity, tuple(getattr(self, each.name) for each in fields(self))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, MeshCavity):
             return NotImplemented
-        return (self.volume, self.area) == (other.volume, other.area) and np.array_equal(
-            self.triangles, other.triangles
+        arrays = ("triangles", "void_tets", "void_parts")
+        return (self.volume, self.area) == (other.volume, other.area) and all(
+            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
         )
 
     __hash__ = None  # type: ignore[assignment]
+
+    def volume_at(self, positions: NDArray[np.float64]) -> float:
+        """Return the volume [m³] when the vertices have moved.
+
+        Parameters
+        ----------
+        positions : ndarray, shape (n, 3)
+            All vertices of the mesh now [m].
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> shell = np.ones((3, 3, 3), dtype=bool)
+        >>> shell[1, 1, 1] = False
+        >>> mesh = Voxels.from_array(shell, voxel_size=0.01).mesh()
+        >>> round(mesh.cavities[0].volume_at(2 * mesh.vertices), 12)
+        8e-06
+        """
+        a, b, c = positions[self.triangles].transpose(1, 0, 2)
+        enclosed = -np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0
+        return float(enclosed + self.void_parts @ _tet_volumes(positions, self.void_tets))
 
 
 @dataclass(frozen=True)
@@ -115,6 +149,11 @@ class Mesh:
         Side of the voxels [m]; None if not made of voxels.
     cavities : tuple of MeshCavity
         Largest first.
+    fractions : ndarray of float64, shape (v,), or None
+        The material of each voxel in volumes of a voxel; None where every voxel is full.
+    moments : ndarray of float64, shape (v, 6), or None
+        Where in each voxel the material is, in halves of an edge: its center along x, y, z, counted
+        from that of the voxel, and √3 times its standard deviation from there (1 if full).
     """
 
     vertices: NDArray[np.float64]
@@ -125,6 +164,8 @@ class Mesh:
     tet_voxel: NDArray[np.int32] | None
     voxel_size: float | None
     cavities: tuple[MeshCavity, ...]
+    fractions: NDArray[np.float64] | None = None
+    moments: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -184,6 +225,64 @@ class Mesh:
         surfaces = tuple(MeshCavity(*cavity) for cavity in cavities)
         return cls(vertices, tets, edges, triangles, tet_part, tet_voxel, voxel_size, surfaces)
 
+    def with_fractions(
+        self,
+        fractions: ArrayLike,
+        voids: Sequence[tuple[NDArray[np.integer], NDArray[np.float64]]] = (),
+        moments: ArrayLike | None = None,
+    ) -> Self:
+        """Return the mesh with voxels that are partly filled.
+
+        Parameters
+        ----------
+        fractions : array_like, shape (v,)
+            The material of each voxel in volumes of a voxel, positive.
+        voids : sequence of pairs, one for each cavity
+            Numbers of voxels and the part of each that belongs to the cavity.
+        moments : array_like, shape (v, 6), optional
+            Where in each voxel the material is, see the attribute; default: all over.
+
+        Raises
+        ------
+        MeshError
+            The mesh is not made of voxels, or the numbers do not fit it.
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> mesh = Voxels.from_array([[[1, 1]]], voxel_size=0.5).mesh().with_fractions([1, 0.5])
+        >>> round(mesh.volume, 12)
+        0.1875
+        """
+        values = np.asarray(fractions, dtype=np.float64)
+        if self.tet_voxel is None or self.voxel_size is None:
+            raise MeshError("fractions", "need a mesh made of voxels")
+        count = len(self.tets) // 5
+        if values.shape != (count,) or not (np.isfinite(values) & (values > 0.0)).all():
+            raise MeshError("fractions", f"must be {count} positive numbers, one for each voxel")
+        where = np.repeat([[0.0] * 3 + [1.0] * 3], count, axis=0) if moments is None else moments
+        where = _matrix("moments", where, 6, np.float64)
+        if where.shape != (count, 6) or not (np.isfinite(where).all() and (where[:, 3:] > 0).all()):
+            raise MeshError("moments", f"must be {count} rows of finite numbers, spreads positive")
+        cavities = list(self.cavities)
+        for index, (numbers, parts) in enumerate(voids):
+            tets = self.tets.reshape(count, 5, 4)[numbers].reshape(-1, 4)
+            cavities[index] = replace(
+                cavities[index],
+                volume=cavities[index].volume + float(parts.sum()) * self.voxel_size**3,
+                void_tets=tets,
+                void_parts=np.repeat(parts, 5),
+            )
+        return replace(self, fractions=values, moments=where, cavities=tuple(cavities))
+
+    @property
+    def volume(self) -> float:
+        """Volume of the material [m³]: of the tets, each as far as its voxel is filled."""
+        volumes = self.tet_volumes
+        if self.fractions is not None and self.tet_voxel is not None:
+            volumes = volumes * self.fractions[self.tet_voxel]
+        return float(volumes.sum())
+
     def __reduce__(self) -> tuple[Any, ...]:
         return Mesh, tuple(getattr(self, each.name) for each in fields(self))
 
@@ -205,9 +304,7 @@ class Mesh:
     @property
     def tet_volumes(self) -> NDArray[np.float64]:
         """Volume of each tet [m³], shape (m,)."""
-        a, b, c, d = (self.vertices[self.tets[:, corner]] for corner in range(4))
-        volumes: NDArray[np.float64] = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
-        return volumes
+        return _tet_volumes(self.vertices, self.tets)
 
     @property
     def surface_volume(self) -> float:
@@ -251,7 +348,15 @@ _DTYPES: dict[str, type[np.generic]] = {
     "triangles": np.int32,
     "tet_part": np.uint8,
     "tet_voxel": np.int32,
+    "fractions": np.float64,
+    "moments": np.float64,
 }
+
+
+def _tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDArray[np.float64]:
+    a, b, c, d = (positions[tets[:, corner]] for corner in range(4))
+    volumes: NDArray[np.float64] = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
+    return volumes
 
 
 def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[Any]:

@@ -6,8 +6,8 @@ use pyo3::types::PyDict;
 use voxsoft_solid::balance::{balance, total_load};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial, Mesh,
-    Motion, Problem, ProblemError, State, elastic,
+    Body, Clamp, Filling, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial,
+    Mesh, Motion, Problem, ProblemError, State, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, relax, simulate};
 
@@ -59,6 +59,7 @@ pub struct PyProblemParts {
     floor: Option<Floor>,
     membranes: Vec<(Vec<[u32; 3]>, MembraneMaterial)>,
     block_fraction: Vec<f64>,
+    block_filling: Vec<Filling>,
 }
 
 #[pymethods]
@@ -167,9 +168,22 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// The filled part of each block.
-    fn fractions(&mut self, fractions: PyReadonlyArray1<'_, f64>) {
+    /// The filled part of each block, and where in it the material is: center and spread along the
+    /// axes in halves of an edge.
+    #[pyo3(signature = (fractions, moments=None))]
+    fn fractions(
+        &mut self,
+        fractions: PyReadonlyArray1<'_, f64>,
+        moments: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<()> {
         self.block_fraction = fractions.as_array().to_vec();
+        let rows: Vec<[f64; 6]> = moments.map_or(Ok(Vec::new()), |m| rows("moments", &m))?;
+        let filling = |[x, y, z, a, b, c]: [f64; 6]| Filling {
+            shift: [x, y, z],
+            spread: [a, b, c],
+        };
+        self.block_filling = rows.into_iter().map(filling).collect();
+        Ok(())
     }
 }
 
@@ -214,6 +228,7 @@ impl PyProblem {
             tet_part: tet_part.as_array().to_vec(),
             tet_block: tet_block.as_array().to_vec(),
             block_fraction: parts.block_fraction.clone(),
+            block_filling: parts.block_filling.clone(),
             membranes: Vec::new(),
         };
         let count = mesh.vertices.len();
@@ -241,6 +256,7 @@ impl PyProblem {
             floor: self.problem.floor(),
             membranes: Vec::new(),
             block_fraction: Vec::new(),
+            block_filling: Vec::new(),
         };
         let mesh = self.mesh.clone();
         let problem = assemble(&mesh, materials, &parts)?;

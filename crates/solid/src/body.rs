@@ -16,7 +16,9 @@ use std::ops::Range;
 use crate::color::{color_order, interleave};
 use crate::lattice::Stiffness;
 use crate::vector::{Vec3, cross, dot, norm, sub};
-use crate::{Brick, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube};
+use crate::{
+    Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube,
+};
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
 const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
@@ -42,6 +44,9 @@ pub struct Mesh {
     /// The part of each block that is filled with material, above zero; empty means all of it.
     /// Masses and all stiffness scale with it.
     pub block_fraction: Vec<f64>,
+    /// Where in each block its material is; empty means all over. Hyperelastic voxels bend accordingly;
+    /// lattices and masses do not heed it.
+    pub block_filling: Vec<Filling>,
     /// Membranes on triangles.
     pub membranes: Vec<Membrane>,
 }
@@ -165,6 +170,7 @@ impl Body {
                         material: u32::from(mesh.tet_part[block[0]]),
                         side,
                         fraction,
+                        filling: filling_of(mesh, block),
                     };
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
@@ -359,6 +365,21 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
             });
         }
     }
+    for filling in &mesh.block_filling {
+        for value in filling.spread {
+            if !(value > 0.0 && value.is_finite()) {
+                let what = "spread of a voxel's material";
+                return Err(ProblemError::NotPositive { what, value });
+            }
+        }
+    }
+    if !mesh.block_filling.is_empty() && mesh.block_filling.len() != mesh.block_fraction.len() {
+        return Err(ProblemError::Length {
+            what: "fillings of blocks",
+            got: mesh.block_filling.len(),
+            expected: mesh.block_fraction.len(),
+        });
+    }
     for membrane in &mesh.membranes {
         for vertex in membrane.vertices() {
             in_range("vertex of a membrane", vertex as usize, mesh.vertices.len())?;
@@ -371,6 +392,12 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
 fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
     let index = mesh.tet_block[block[0]] as usize;
     mesh.block_fraction.get(index).copied().unwrap_or(1.0)
+}
+
+/// Where the material of a block is, given by its tetrahedra.
+fn filling_of(mesh: &Mesh, block: &[usize]) -> Filling {
+    let index = mesh.tet_block[block[0]] as usize;
+    *mesh.block_filling.get(index).unwrap_or(&Filling::FULL)
 }
 
 /// The signed volume of a tetrahedron in m³.

@@ -24,10 +24,14 @@
 //!
 //! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibres(S)`
 //!
+//! A voxel that the surface cuts knows the center `c` and the spread `σ` of its material along each axis
+//! ([`Filling`]): `S` becomes the stretch at that center, `S + Σ c Ĥ`, and `Ĥ` becomes `σ Ĥ`, which
+//! integrates the energy over the material to second order. Fibres keep the mean stretch.
+//!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
 
-pub use crate::brick_energy::{BrickStrain, BrickStress};
+pub use crate::brick_energy::{BrickStrain, BrickStress, Filling};
 use crate::brick_energy::{Modes, Rotated, SHAPE};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
@@ -62,6 +66,8 @@ pub struct Brick {
     pub side: f64,
     /// The part of the cube that is filled with material.
     pub fraction: f64,
+    /// Where in the cube the material is.
+    pub filling: Filling,
 }
 
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
@@ -114,7 +120,7 @@ impl Brick {
 
     /// The elastic energy in J.
     pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
-        self.volume() * Rotated::of(&self.modes(positions)).energy(material)
+        self.volume() * Rotated::of(&self.modes(positions), self.filling).energy(material)
     }
 
     /// The mean deformation gradient.
@@ -133,7 +139,7 @@ impl Brick {
         positions: &[Vec3],
         forces: &mut [Vec3],
     ) {
-        let state = Rotated::of(&self.modes(positions));
+        let state = Rotated::of(&self.modes(positions), self.filling);
         let stress = state.gradient(material);
         self.spread_stress(&state, &stress, material, forces);
     }
@@ -147,7 +153,7 @@ impl Brick {
         viscous: impl FnOnce(&BrickStress) -> BrickStress,
         forces: &mut [Vec3],
     ) {
-        let state = Rotated::of(&self.modes(positions));
+        let state = Rotated::of(&self.modes(positions), self.filling);
         let deviatoric = state.deviatoric(material);
         let stress = state
             .gradient(material)
@@ -164,7 +170,7 @@ impl Brick {
         positions: &[Vec3],
         forces: &mut [Vec3],
     ) {
-        let state = Rotated::of(&self.modes(positions));
+        let state = Rotated::of(&self.modes(positions), self.filling);
         let other = state.with_strain(strain);
         let (now, then) = (state.strain().row(), strain.row());
         let change = times(
@@ -219,7 +225,7 @@ impl Brick {
         positions: &[Vec3],
         strain: Option<&BrickStrain>,
     ) -> BrickMatrix {
-        let state = Rotated::of(&self.modes(positions));
+        let state = Rotated::of(&self.modes(positions), self.filling);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
@@ -293,7 +299,7 @@ impl Brick {
 
     /// The strain at `positions`, and how it changes along `moves` to first order.
     pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> BrickStrain {
-        let state = Rotated::of(&self.modes(positions));
+        let state = Rotated::of(&self.modes(positions), self.filling);
         let stretch = to_matrix(&state.stretch);
         let direction = self.modes(moves);
         let b: Mat3 = std::array::from_fn(|i| {

@@ -22,8 +22,26 @@ pub(crate) type Modes = [Vec3; 7];
 /// The generalised coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
 pub(crate) const SHAPE: usize = 15;
 
+/// Where in a voxel its material is, along each axis, in units of half an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Filling {
+    /// The center of the material; 0 is that of the voxel.
+    pub shift: Vec3,
+    /// √3 times the standard deviation of the material from its center; 1 for a full voxel.
+    pub spread: Vec3,
+}
+
+impl Filling {
+    /// That of a full voxel.
+    pub const FULL: Self = Self {
+        shift: [0.0; 3],
+        spread: [1.0; 3],
+    };
+}
+
 /// Where the energy of one voxel comes from, at one state.
 pub(crate) struct Rotated {
+    pub filling: Filling,
     pub rotation: Mat3,
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
@@ -96,6 +114,7 @@ impl Rotated {
     /// The same frame with another strain.
     pub fn with_strain(&self, strain: &BrickStrain) -> Self {
         Self {
+            filling: self.filling,
             rotation: self.rotation,
             stretch: strain.stretch,
             hourglass: strain.hourglass,
@@ -103,10 +122,11 @@ impl Rotated {
         }
     }
 
-    pub fn of(modes: &Modes) -> Self {
+    pub fn of(modes: &Modes, filling: Filling) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);
         Self {
+            filling,
             stretch: to_sym(&stretch),
             hourglass: std::array::from_fn(|m| apply_transposed(&rotation, modes[3 + m])),
             bilinear: modes[6],
@@ -146,6 +166,9 @@ impl Rotated {
 
     /// The mean over the six face centres of a function of the stretch there.
     fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
+        if self.filling != Filling::FULL {
+            return self.cut_mean(thinning, second, function);
+        }
         let mut mean = Shaped::zero();
         for axes in AXES {
             let variation = self.variation(axes, thinning);
@@ -188,6 +211,63 @@ impl Rotated {
         mean
     }
 
+    /// The same of a voxel that is partly filled: over `S + Σ cₘ Ĥₘ ± σₙ Ĥₙ`.
+    fn cut_mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
+        let Filling { shift, spread } = self.filling;
+        let variations = AXES.map(|axes| self.variation(axes, thinning));
+        let slopes: [_; 3] = std::array::from_fn(|m| variations[m].slopes(AXES[m], thinning));
+        let mut center = self.stretch;
+        // How the stretch at the center of the material moves with each coordinate.
+        let mut moves = [[0.0; 6]; SHAPE];
+        for k in 0..6 {
+            moves[k][k] = 1.0;
+        }
+        for m in 0..3 {
+            for k in 0..6 {
+                center[k] += shift[m] * variations[m].h[k];
+                for (place, direction) in &slopes[m] {
+                    moves[*place][k] += shift[m] * direction[k];
+                }
+            }
+        }
+        let mut mean = Shaped::zero();
+        let (mut force, mut moments) = ([0.0; 6], [[0.0; 6]; 3]);
+        for m in 0..3 {
+            for sign in [spread[m], -spread[m]] {
+                let at = std::array::from_fn(|k| center[k] + sign * variations[m].h[k]);
+                let response = function(&at);
+                mean.value += response.value / 6.0;
+                let mut moves = moves;
+                for k in 0..6 {
+                    force[k] += response.stress[k] / 6.0;
+                    moments[m][k] += sign * response.stress[k] / 6.0;
+                    for (place, direction) in &slopes[m] {
+                        moves[*place][k] += sign * direction[k];
+                    }
+                }
+                for row in 0..SHAPE {
+                    mean.gradient[row] += dot6(&moves[row], &response.stress) / 6.0;
+                }
+                if second {
+                    for row in 0..SHAPE {
+                        let along: Sym =
+                            std::array::from_fn(|k| dot6(&response.tangent[k], &moves[row]) / 6.0);
+                        for column in 0..SHAPE {
+                            mean.hessian[row][column] += dot6(&along, &moves[column]);
+                        }
+                    }
+                }
+            }
+        }
+        if second {
+            for m in 0..3 {
+                let moment = moments[m][m] + shift[m] * force[m];
+                variations[m].add_curvature(AXES[m], thinning, moment, &mut mean.hessian);
+            }
+        }
+        mean
+    }
+
     pub fn energy(&self, material: &HyperelasticMaterial) -> f64 {
         let thinning = material.thinning();
         let change = self.volume(thinning, false).value - 1.0;
@@ -201,7 +281,7 @@ impl Rotated {
         }
         for axes in AXES {
             let [first, second] = self.variation(axes, thinning).bending;
-            let trace = (1.0 - thinning) * (first + second);
+            let trace = (1.0 - thinning) * self.filling.spread[axes.0] * (first + second);
             value += material.bulk() * trace * trace / 6.0;
         }
         value
@@ -224,7 +304,8 @@ impl Rotated {
         }
         for (n, i, j) in AXES {
             let [first, second] = self.variation((n, i, j), thinning).bending;
-            let trace = material.bulk() * (1.0 - thinning).powi(2) * (first + second) / 3.0;
+            let trace = (1.0 - thinning) * self.filling.spread[n];
+            let trace = material.bulk() * trace.powi(2) * (first + second) / 3.0;
             gradient.hourglass[j][i] += trace;
             gradient.hourglass[i][j] += trace;
         }
@@ -256,7 +337,8 @@ impl Rotated {
             }
         }
         let trace = bulk * (1.0 - thinning).powi(2) / 3.0;
-        for (_, i, j) in AXES {
+        for (n, i, j) in AXES {
+            let trace = trace * self.filling.spread[n].powi(2);
             let places = [place(j, i), place(i, j)];
             for row in places {
                 for column in places {

@@ -56,7 +56,7 @@ mod state;
 pub mod vector;
 
 pub use body::{Body, Edge, Mesh, Tet};
-pub use brick::Brick;
+pub use brick::{Brick, Filling};
 pub use clamp::{Clamp, Motion};
 pub use error::ProblemError;
 pub use history::History;

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use voxsoft_solid::matrix::{apply, polar};
 use voxsoft_solid::vector::{Vec3, add};
-use voxsoft_solid::{Brick, Fiber, HyperelasticMaterial, Model};
+use voxsoft_solid::{Brick, Fiber, Filling, HyperelasticMaterial, Model};
 
 const SIDE: f64 = 0.5;
 
@@ -14,8 +14,17 @@ fn cube() -> (Brick, Vec<Vec3>) {
         material: 0,
         side: SIDE,
         fraction: 0.7,
+        filling: Filling::FULL,
     };
     (brick, (0..8).map(corner).collect())
+}
+
+/// Material in one corner, some of it outside the cube.
+fn cut() -> Filling {
+    Filling {
+        shift: [0.4, -0.7, 1.1],
+        spread: [0.6, 0.3, 1.2],
+    }
 }
 
 fn materials() -> Vec<HyperelasticMaterial> {
@@ -52,8 +61,9 @@ fn forces(brick: &Brick, material: &HyperelasticMaterial, positions: &[Vec3]) ->
 proptest! {
     // Central differences with h = 1e-6 (a strain of 2e-6) err by about h² × 1e3 + 1e-16/h.
     #[test]
-    fn forces_and_stiffness_are_derivatives(positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
-        let (brick, _) = cube();
+    fn forces_and_stiffness_are_derivatives(is_cut in any::<bool>(), positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
+        let filling = if is_cut { cut() } else { Filling::FULL };
+        let brick = Brick { filling, ..cube().0 };
         let step = 1e-6;
         let at = |t: f64| -> Vec<Vec3> {
             positions.iter().zip(&direction).map(|(x, d)| std::array::from_fn(|i| x[i] + t * d[i])).collect()

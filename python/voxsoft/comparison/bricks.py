@@ -136,7 +136,7 @@ class BrickModel:
         Raises
         ------
         SimulationError
-            A mesh that is not made of voxels, or a floor, which no outside code is given.
+            A mesh that is not made of full voxels, or a floor, which no outside code is given.
 
         Examples
         --------
@@ -161,6 +161,12 @@ class BrickModel:
                     "cannot be given to an outside code",
                     "compare the design without them",
                 )
+        if setup.mesh.fractions is not None:
+            raise SimulationError(
+                "fill",
+                "outside codes are given full voxels, and these are partly filled",
+                'compare with fill = "binary"',
+            )
         grid = _Lattice.of(setup)
         cells = _split_cells(grid.cells, split)
         keys = 2 * cells[:, None, :] + _HALVES[:nodes]

@@ -88,7 +88,7 @@ def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantiti
         floor = _LEAST_SHARE * float(np.linalg.norm(forces, axis=1).sum())
         found |= _components(name, forces.sum(axis=0), "force", floor)
     for index, cavity in enumerate(setup.mesh.cavities):
-        volume = metrics.enclosed_volume(cavity.triangles, positions)
+        volume = cavity.volume_at(positions)
         grown = volume - cavity.volume
         found[f"growth of cavity {index}"] = Quantity(grown, "volume", abs(grown))
     return found

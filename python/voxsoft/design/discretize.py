@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.model import Design
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
@@ -12,6 +13,9 @@ from voxsoft.voxels import Voxels
 
 def voxels_of(design: Design) -> Voxels:
     """Fill a grid with the parts of a design; the first part wins where parts overlap.
+
+    With ``fill = "binary"`` a cell is of the part that holds its center; with ``"fraction"`` it
+    counts if it is 30 % full, and is of the part with the largest share of it.
 
     Parameters
     ----------
@@ -30,6 +34,8 @@ def voxels_of(design: Design) -> Voxels:
     >>> voxels_of(families.beam()).count
     80
     """
+    if design.fill == "fraction":
+        return CutVoxels.of(design).voxels
     size = design.voxel_size
     grids = []
     for part in design.parts:
@@ -58,8 +64,8 @@ def mesh_of(design: Design, refine: int = 1) -> Mesh:
     design
         The design.
     refine
-        Cut every voxel into this many along each axis first. The body stays the same, stairs
-        and all.
+        Cut every voxel into this many along each axis first. With ``fill = "binary"`` the body
+        stays the same, stairs and all; with ``"fraction"`` the smaller cells are filled anew.
 
     Examples
     --------
@@ -69,5 +75,7 @@ def mesh_of(design: Design, refine: int = 1) -> Mesh:
     >>> len(mesh_of(families.beam(), refine=2).tets)
     3200
     """
+    if design.fill == "fraction":
+        return CutVoxels.of(design, refine).mesh()
     voxels = voxels_of(design)
     return (voxels.refine(refine) if refine > 1 else voxels).mesh()

@@ -54,6 +54,10 @@ class Design(Record):
         What to call it.
     voxel_size
         Edge of a voxel.
+    fill
+        What a cell that the surface cuts becomes. ``"binary"`` (default): full if its center is
+        inside, else empty. ``"fraction"``: it carries the part of it that is inside, in mass,
+        stiffness and pressure.
     shapes
         Named shapes, to be used by parts and by other shapes.
     parts
@@ -103,6 +107,7 @@ class Design(Record):
     name: Name
     description: str = ""
     voxel_size: PositiveLength
+    fill: Literal["binary", "fraction"] = "binary"
     parameters: dict[ParameterName, Parameter] = Field(default_factory=dict, max_length=200)
     shapes: dict[Name, AnyShape] = Field(default_factory=dict)
     materials: dict[Name, AnyMaterial] = Field(default_factory=dict)

@@ -1,8 +1,9 @@
 """VTU (ParaView, PyVista): keeps everything, also voxels and data.
 
 Tets come first, in their order, with cell arrays ``part`` and, for voxel meshes, ``voxel`` and
-``voxel_size``. The triangles of cavities follow, with their number from 1 in the cell array
-``cavity``. A region is the point array ``region:NAME``, 1 at its vertices.
+``voxel_size``, and ``fraction`` and ``moments`` where voxels are partly filled. The triangles of
+cavities follow, with their number from 1 in the cell array ``cavity``; what cut voxels add to a
+cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertices.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
 from voxsoft.mesh import Mesh
 
 _REGION = "region:"
-_OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size"}
+_OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments"}
 
 
 def write(path: Path, content: MeshFile) -> None:
@@ -44,6 +45,10 @@ def write(path: Path, content: MeshFile) -> None:
     if mesh.tet_voxel is not None and mesh.voxel_size is not None:
         arrays["voxel"] = per_cell(mesh.tet_voxel)
         arrays["voxel_size"] = per_cell(np.full(len(mesh.tets), mesh.voxel_size))
+        if mesh.fractions is not None:
+            arrays["fraction"] = per_cell(mesh.fractions[mesh.tet_voxel])
+        if mesh.moments is not None:
+            arrays["moments"] = per_cell(mesh.moments[mesh.tet_voxel])
 
     points = dict(content.point_data)
     for name, vertices in content.regions.items():
@@ -66,6 +71,9 @@ def read(path: Path) -> MeshFile:
     if "voxel" in per_tet and "voxel_size" in per_tet:
         voxel_size = float(per_tet["voxel_size"][0])
         mesh = replace(mesh, tet_voxel=per_tet["voxel"], voxel_size=voxel_size)
+        if "fraction" in per_tet:
+            moments = per_tet["moments"][::5] if "moments" in per_tet else None
+            mesh = mesh.with_fractions(per_tet["fraction"][::5], moments=moments)
     if "cavity" in data.cell_data:
         mesh = with_cavities(mesh, _cavity_triangles(data), str(path))
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
 
 from voxsoft.design import Design
+from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY
@@ -26,6 +27,8 @@ GOOD_WALL = 2
 # bytes of the core's tables for one constraint.
 _SECONDS_PER_CONSTRAINT_STEP = 2e-8
 _BYTES_PER_CONSTRAINT = 120
+# Less material than this part may vanish without a word.
+_LOST = 1e-3
 # Voxels and their hinges are listed by name up to this number.
 _LISTED = 5
 
@@ -124,13 +127,12 @@ def check(body: Design | Voxels) -> CheckReport:
     (True, 80, 2)
     """
     try:
-        voxels = voxels_of(body) if isinstance(body, Design) else body
-        mesh = voxels.mesh()
+        voxels, mesh, lost = _discretized(body)
     except VoxSoftError as error:
         return CheckReport(tuple(_errors(error)))
-    findings: list[Finding] = []
-    mass = voxels.volume * SILICONE_DENSITY
-    cavities, leaks = voxels.cavities, voxels.leaks
+    findings = _findings_of_loss(lost, mesh)
+    mass = mesh.volume * SILICONE_DENSITY
+    cavities, leaks = _cavities(voxels, mesh), voxels.leaks
     if isinstance(body, Design):
         try:
             setup = Setup(body, mesh)
@@ -156,15 +158,38 @@ def check(body: Design | Voxels) -> CheckReport:
     )
 
 
+def _discretized(body: Design | Voxels) -> tuple[Voxels, Mesh, float]:
+    """Voxels, their mesh, and the volume [m³] of material that found no voxel."""
+    if isinstance(body, Design) and body.fill == "fraction":
+        cut = CutVoxels.of(body)
+        return cut.voxels, cut.mesh(), cut.lost
+    voxels = voxels_of(body) if isinstance(body, Design) else body
+    return voxels, voxels.mesh(), 0.0
+
+
 def _errors(error: VoxSoftError) -> Iterator[Finding]:
     for problem in error.problems:
         yield Finding("error", problem.where, problem.what, problem.hint)
 
 
+def _cavities(voxels: Voxels, mesh: Mesh) -> tuple[Cavity, ...]:
+    """The cavities of the voxels with the volumes of the mesh, which knows of voids."""
+    pairs = zip(voxels.cavities, mesh.cavities, strict=True)
+    return tuple(replace(cavity, volume=float(surface.volume)) for cavity, surface in pairs)
+
+
+def _findings_of_loss(lost: float, mesh: Mesh) -> list[Finding]:
+    if lost <= _LOST * mesh.volume:
+        return []
+    share = lost / (lost + mesh.volume)
+    what = f"{share:.1%} of the material is in walls too thin to fill a voxel, and is left out"
+    return [Finding("warning", "parts", what, "make the voxels smaller")]
+
+
 def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
     """Cavities and leaks once the layers of a design close what they span."""
     if not any(len(layer.openings) for layer in setup.layers):
-        return voxels.cavities, voxels.leaks
+        return _cavities(voxels, setup.mesh), voxels.leaks
     size, origin = voxels.voxel_size, np.asarray(voxels.origin)
     shift = np.rint((setup.mesh.vertices.min(axis=0) - origin) / size).astype(np.int64)
     cavities = []

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from voxsoft.design import Design, Layer
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh, MeshCavity
-from voxsoft.simulation.places import vertices_in
+from voxsoft.simulation.places import on_the_body, vertices_in
 
 Triangles = NDArray[np.int32]
 Ints = NDArray[np.int64]
@@ -91,7 +91,7 @@ def layer_triangles(layer: Layer, design: Design, mesh: Mesh, where: str) -> Lay
     ------
     DesignError
         The region catches no vertex or no whole face, or a layer that seals meets a mesh that is
-        not made of voxels.
+        not made of full voxels.
 
     Examples
     --------
@@ -103,7 +103,8 @@ def layer_triangles(layer: Layer, design: Design, mesh: Mesh, where: str) -> Lay
     80
     """
     inside = np.zeros(len(mesh.vertices), dtype=bool)
-    inside[vertices_in(layer.region, mesh, design.shapes, f"{where}.region")] = True
+    points = on_the_body(design, mesh)
+    inside[vertices_in(layer.region, mesh, design.shapes, f"{where}.region", points)] = True
     bonded = _bonded(layer, mesh, inside)
     if len(bonded) == 0:
         raise DesignError(
@@ -201,6 +202,9 @@ def _spanning(layer: Layer, mesh: Mesh, bonded: Triangles, where: str) -> tuple[
 
     if mesh.voxel_size is None:
         raise DesignError(f"{where}.seal", "needs a body of voxels, and this mesh is another one")
+    if mesh.fractions is not None:
+        what = "cannot close a chamber whose voxels are partly filled"
+        raise DesignError(f"{where}.seal", what, 'use fill = "binary"')
     axis = layer.axis
     if axis is None:
         raise DesignError(f"{where}.seal", "needs a region that is a plane")

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Probe, Region
+from voxsoft.design import Design, Probe, Region
+from voxsoft.design.cut_cells import built_parts
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import Shape
@@ -27,7 +28,11 @@ class Place:
 
 
 def vertices_in(
-    region: Region, mesh: Mesh, shapes: Mapping[str, Shape], where: str
+    region: Region,
+    mesh: Mesh,
+    shapes: Mapping[str, Shape],
+    where: str,
+    points: NDArray[np.float64] | None = None,
 ) -> NDArray[np.uint32]:
     """Indices of the vertices in a region or within half a voxel of it.
 
@@ -41,6 +46,9 @@ def vertices_in(
         Named shapes that a region may refer to.
     where
         The place in the design, for messages.
+    points
+        Where the vertices count as being, (n, 3), m, from :func:`on_the_body`; default: where
+        they are.
 
     Raises
     ------
@@ -48,7 +56,8 @@ def vertices_in(
         No vertex is caught.
     """
     reach = _HALF * voxel_size(mesh)
-    caught = np.flatnonzero(_inside(region, mesh.vertices, shapes, reach)).astype(np.uint32)
+    points = mesh.vertices if points is None else points
+    caught = np.flatnonzero(_inside(region, points, shapes, reach)).astype(np.uint32)
     if caught.size == 0:
         raise DesignError(where, f"catches no vertex; the body spans {_span(mesh)}", _TRY)
     return caught
@@ -57,12 +66,66 @@ def vertices_in(
 _TRY = "move or widen the region so that it touches the body"
 
 
-def place_of(probe: Probe, mesh: Mesh, shapes: Mapping[str, Shape], where: str) -> Place:
+def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
+    """Where the vertices of a mesh count as being when a region looks for them.
+
+    Parameters
+    ----------
+    design
+        Where the mesh comes from.
+    mesh
+        Its mesh.
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+        In m. The vertices themselves, unless the mesh has cut voxels: those reach out of the body,
+        and a vertex outside it counts as the nearest point of its surface, within a voxel's
+        diagonal. So a region at a surface catches the vertices that carry it, and not those beside.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> from voxsoft.design.discretize import mesh_of
+    >>> short = families.beam(length="98 mm").model_copy(update={"fill": "fraction"})
+    >>> mesh = mesh_of(short)
+    >>> print(mesh.vertices[:, 0].max().round(4), on_the_body(short, mesh)[:, 0].max().round(4))
+    0.1 0.098
+    """
+    if mesh.fractions is None:
+        return mesh.vertices
+    shapes = built_parts(design)
+    size = voxel_size(mesh)
+    steps = 0.01 * size * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
+    points = mesh.vertices.copy()
+    outside = np.unique(mesh.triangles)
+    # Two steps of Newton's method along the gradient: exact at once for distances.
+    for _ in range(2):
+        around = (points[outside][:, None] + steps).reshape(-1, 3)
+        levels = np.min([shape.evaluate(around) for shape in shapes], axis=0).reshape(-1, 7)
+        slope = (levels[:, 1:4] - levels[:, 4:]) / (0.02 * size)
+        square = np.square(slope).sum(axis=1)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.where(levels[:, 0] > 0.0, levels[:, 0] / square, 0.0)[:, None] * slope
+        far = np.linalg.norm(step, axis=1) > np.sqrt(3.0) * size
+        step[far | ~np.isfinite(step).all(axis=1)] = 0.0
+        points[outside] -= step
+    return points
+
+
+def place_of(
+    probe: Probe,
+    mesh: Mesh,
+    shapes: Mapping[str, Shape],
+    where: str,
+    points: NDArray[np.float64] | None = None,
+) -> Place:
     """Vertices and weights that a probe averages over.
 
     A point takes the corners of the tetrahedron around it, with barycentric weights. A range of
     zero width takes the two layers of vertices next to it, weighted for linear interpolation
-    between them. Everything else weighs all vertices in the region alike.
+    between them. Everything else weighs all vertices in the region alike. Parameters are those of
+    :func:`vertices_in`.
 
     Raises
     ------
@@ -72,14 +135,17 @@ def place_of(probe: Probe, mesh: Mesh, shapes: Mapping[str, Shape], where: str) 
     if probe.point is not None:
         return _point(np.asarray(probe.point), mesh, where)
     size = voxel_size(mesh)
+    points = mesh.vertices if points is None else points
     weights = np.ones(len(mesh.vertices))
     reach = np.full(3, _HALF * size)
     for axis, name in enumerate("xyz"):
         bounds = getattr(probe, name)
         if bounds is not None and bounds[0] == bounds[1]:
             reach[axis] = size
+            # Between layers the motion is interpolated, so that here vertices are where they are.
+            points = mesh.vertices
             weights *= 1.0 - np.abs(mesh.vertices[:, axis] - bounds[0]) / size
-    weights = np.where(_inside(probe, mesh.vertices, shapes, reach), weights, 0.0)
+    weights = np.where(_inside(probe, points, shapes, reach), weights, 0.0)
     # Layers a whole voxel away have the weight 0 up to rounding.
     weights[weights < 1e-9] = 0.0
     caught = np.flatnonzero(weights)
@@ -128,7 +194,9 @@ def _point(point: NDArray[np.float64], mesh: Mesh, where: str) -> Place:
     best = int(np.argmax(coordinates.min(axis=1)))
     weights = np.clip(coordinates[best], 0.0, None)
     weights /= weights.sum()
-    if np.linalg.norm(weights @ corners[best] - point) > 0.5 * voxel_size(mesh):
+    # Cut voxels less full than the least are left out, and their corner with them.
+    reach = 0.5 if mesh.fractions is None else 1.0
+    if np.linalg.norm(weights @ corners[best] - point) > reach * voxel_size(mesh):
         shown = ", ".join(format_quantity(float(value), "length") for value in point)
         raise DesignError(
             where,

@@ -128,10 +128,7 @@ class Result:
     @cached_property
     def cavity_volumes(self) -> tuple[float, ...]:
         """Volume of each cavity now, in m³, in the order of the mesh's cavities."""
-        return tuple(
-            metrics.enclosed_volume(cavity.triangles, self.positions)
-            for cavity in self.mesh.cavities
-        )
+        return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
 
     def metric(
         self,
@@ -177,7 +174,7 @@ class Result:
             case "mass":
                 return self.mass
             case "volume":
-                return float(self.mesh.quality.volume)
+                return self.mesh.volume
             case "elastic_energy":
                 return self.elastic_energy
             case "max_displacement":

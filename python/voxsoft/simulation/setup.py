@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -25,10 +25,10 @@ from voxsoft.design import History as LoadHistory
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
 from voxsoft.materials import Material
-from voxsoft.mesh import Mesh
+from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.materials import solid_materials
-from voxsoft.simulation.places import Place, place_of, vertices_in
+from voxsoft.simulation.places import Place, on_the_body, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
 
 Triangles = NDArray[np.int32]
@@ -103,10 +103,15 @@ class Setup:
         return all_layer_triangles(self.design, self.mesh)
 
     @cached_property
+    def points(self) -> NDArray[np.float64]:
+        """Where the vertices count as being when regions look for them, (n, 3), m."""
+        return on_the_body(self.design, self.mesh)
+
+    @cached_property
     def places(self) -> dict[str, Place]:
         """What each probe averages over."""
         return {
-            name: place_of(probe, self.mesh, self.design.shapes, f"probes.{name}")
+            name: place_of(probe, self.mesh, self.design.shapes, f"probes.{name}", self.points)
             for name, probe in self.design.probes.items()
         }
 
@@ -160,22 +165,25 @@ class Setup:
                 down = np.asarray(load.direction) / np.linalg.norm(load.direction)
                 parts.gravity((load.value * down).tolist(), history)
             elif isinstance(load, Pressure):
-                for triangles in self._pressurized(load):
-                    parts.pressure(triangles.astype(np.uint32), load.value, history)
+                for cavity in self._pressurized(load):
+                    voids = (cavity.void_tets.astype(np.uint32), cavity.void_parts)
+                    triangles = cavity.triangles.astype(np.uint32)
+                    parts.pressure(triangles, load.value, history, voids)
             elif isinstance(load, Force):
-                vertices = vertices_in(load.region, self.mesh, self.design.shapes, where)
+                vertices = self._vertices_in(load.region, where)
                 share = np.tile(np.asarray(load.value) / len(vertices), (len(vertices), 1))
                 parts.forces(vertices, share, history)
             else:
                 self._add_traction(parts, load, where, history)
         if self.design.floor is not None:
             parts.floor(self.design.floor.z)
+        if self.mesh.fractions is not None:
+            parts.fractions(self.mesh.fractions, self.mesh.moments)
         return parts
 
-    def _pressurized(self, load: Pressure) -> Iterator[Triangles]:
+    def _pressurized(self, load: Pressure) -> Sequence[MeshCavity]:
         cavities = self.mesh.cavities
-        for cavity in cavities if load.cavity == "all" else [cavities[load.cavity]]:
-            yield cavity.triangles
+        return cavities if load.cavity == "all" else [cavities[load.cavity]]
 
     def _add_traction(
         self, parts: _core.ProblemParts, load: Traction, where: str, history: _CoreHistory
@@ -200,7 +208,7 @@ class Setup:
         DesignError
             There are none.
         """
-        region = vertices_in(load.region, self.mesh, self.design.shapes, where)
+        region = self._vertices_in(load.region, where)
         inside = np.zeros(len(self.mesh.vertices), dtype=bool)
         inside[region] = True
         triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
@@ -212,9 +220,12 @@ class Setup:
     def clamped(self) -> list[NDArray[np.uint32]]:
         """The vertices of each clamp."""
         return [
-            vertices_in(clamp.region, self.mesh, self.design.shapes, f"clamps[{index}].region")
+            self._vertices_in(clamp.region, f"clamps[{index}].region")
             for index, clamp in enumerate(self.design.clamps)
         ]
+
+    def _vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
+        return vertices_in(region, self.mesh, self.design.shapes, where, self.points)
 
     def _check_cavities(self) -> None:
         count = len(self.mesh.cavities)
@@ -264,12 +275,13 @@ def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
         **{f"clamp_{index}": clamp.region for index, clamp in enumerate(design.clamps)},
         **{f"probe_{name}": probe for name, probe in design.probes.items()},
     }
+    points = on_the_body(design, mesh)
     for name, region in places.items():
         try:
             if isinstance(region, Probe):
-                regions[name] = place_of(region, mesh, design.shapes, name).vertices
+                regions[name] = place_of(region, mesh, design.shapes, name, points).vertices
             else:
-                regions[name] = vertices_in(region, mesh, design.shapes, name)
+                regions[name] = vertices_in(region, mesh, design.shapes, name, points)
         except DesignError:
             continue  # A place outside the body is a finding of `check`, not of an export.
     return regions

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from voxsoft import metrics
 from voxsoft.design import Constraint, Objective, Traction
 from voxsoft.errors import DesignError, SimulationError
+from voxsoft.mesh import MeshCavity
 from voxsoft.records import closest
 from voxsoft.simulation.places import Place
 from voxsoft.simulation.setup import Setup
@@ -44,7 +45,7 @@ def metric_at(setup: Setup, target: Target, positions: Floats) -> float:
             return _component(_reaction(setup, positions), target.axis)
         case "cavity_volume" | "cavity_volume_change":
             chosen = [mesh.cavities[index] for index in _cavities(setup, target)]
-            now = sum(metrics.enclosed_volume(cavity.triangles, positions) for cavity in chosen)
+            now = sum(cavity.volume_at(positions) for cavity in chosen)
             before = sum(float(cavity.volume) for cavity in chosen)
             return now - before if name == "cavity_volume_change" else now
         case "elastic_energy":
@@ -52,7 +53,7 @@ def metric_at(setup: Setup, target: Target, positions: Floats) -> float:
         case "mass":
             return setup.problem.mass
         case "volume":
-            return float(mesh.quality.volume)
+            return mesh.volume
         case "max_displacement":
             return float(np.linalg.norm(positions - mesh.vertices, axis=1).max())
         case "max_stretch":
@@ -94,7 +95,7 @@ def metric_slope(setup: Setup, target: Target, positions: Floats) -> Floats:
             _add_reaction_slope(setup, along, positions, slope)
         case "cavity_volume" | "cavity_volume_change":
             for index in _cavities(setup, target):
-                _add_volume_slope(mesh.cavities[index].triangles, positions, slope)
+                _add_volume_slope(mesh.cavities[index], positions, slope)
         case "elastic_energy":
             slope -= setup.problem.elastic(positions)[1]
         case "max_displacement":
@@ -174,11 +175,19 @@ def _add_reaction_slope(setup: Setup, along: Floats, positions: Floats, slope: F
             np.add.at(slope, triangles[:, corner], 0.5 * pressure * np.cross(along, opposite))
 
 
-def _add_volume_slope(triangles: NDArray[np.int32], positions: Floats, slope: Floats) -> None:
-    """Add ``-(b x c)/6`` at the corner a of each triangle, and so on around."""
-    a, b, c = positions[triangles].transpose(1, 0, 2)
+def _add_volume_slope(cavity: MeshCavity, positions: Floats, slope: Floats) -> None:
+    """Add ``-(b x c)/6`` at the corner a of each triangle, and so on around; then of the voids.
+
+    The volume of a tet grows by ``((c - b) x (d - b))/6``, turned inward, at its corner a.
+    """
+    a, b, c = positions[cavity.triangles].transpose(1, 0, 2)
     for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
-        np.add.at(slope, triangles[:, corner], -np.cross(one, other) / 6.0)
+        np.add.at(slope, cavity.triangles[:, corner], -np.cross(one, other) / 6.0)
+    a, b, c, d = positions[cavity.void_tets].transpose(1, 0, 2)
+    parts = cavity.void_parts[:, None] / 6.0
+    edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))
+    for corner, (one, other) in enumerate(edges):
+        np.add.at(slope, cavity.void_tets[:, corner], parts * np.cross(one, other))
 
 
 def _add_stretch_slope(

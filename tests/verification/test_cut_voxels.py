@@ -1,0 +1,107 @@
+"""Cut voxels against closed forms: plates of any thickness, spheres under pressure, sweeps."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.materials import NeoHookean
+from voxsoft.units import mm
+
+YOUNG, POISSON, DENSITY = 1e6, 0.3, 1000.0
+STIFF = NeoHookean(young=YOUNG, poisson=POISSON, density=DENSITY)
+GRAVITY = 0.01  # deflections of some micrometers: small strain
+
+
+def strip(thickness, low=0.0, voxel=5 * mm):
+    """A cantilever 100 x 10 mm whose root is free to change its thickness."""
+    return vs.Design(
+        name="strip",
+        voxel_size=voxel,
+        fill="fraction",
+        parts=[
+            {
+                "shape": vs.Box(
+                    size=(100 * mm, 10 * mm, thickness),
+                    center=(50 * mm, 5 * mm, low + thickness / 2),
+                ),
+                "material": STIFF,
+            }
+        ],
+        clamps=[{"region": {"x": (0, 0)}}],
+        loads=[vs.Gravity(value=GRAVITY)],
+        probes={"tip": vs.Probe(x=(100 * mm, 100 * mm))},
+    )
+
+
+def sag(design):
+    result = vs.simulate(design, method="statics")
+    assert result.status == "ok", result.message
+    return -result.metric("displacement", axis="z")
+
+
+def timoshenko(thickness):
+    length, width = 100 * mm, 10 * mm
+    weight = DENSITY * GRAVITY * width * thickness
+    bending = weight * length**4 / (8 * YOUNG * width * thickness**3 / 12)
+    shear_modulus = YOUNG / (2 * (1 + POISSON))
+    return bending + weight * length**2 / (2 * 5 / 6 * shear_modulus * width * thickness)
+
+
+@pytest.mark.parametrize("thickness", [5, 6, 7, 7.5, 8, 9, 12.5])
+def test_strips_of_any_thickness_bend_as_beams(thickness):
+    # One to two and a half voxels across. Whole ones miss by -0.9 (5 mm) and -1.6 % (10 mm), the
+    # clamp's share; a material smeared over its cut voxels misses by -44 to +42 %.
+    assert sag(strip(thickness * mm)) == pytest.approx(timoshenko(thickness * mm), rel=0.03)
+
+
+def test_a_surface_that_sweeps_through_a_voxel_changes_the_sag_smoothly():
+    thicknesses = np.linspace(10, 15, 26) * mm
+    sags = np.array([sag(strip(t)) for t in thicknesses])
+    ratios = sags / [timoshenko(t) for t in thicknesses]
+    # Where the voxels of the upper layer begin to count (30 % full) the strip jumps a little: by
+    # less than the discretization's own error of 2 %.
+    assert np.abs(np.diff(ratios)).max() < 0.015
+    assert (np.diff(sags) < 0.0).all()
+
+
+def test_the_place_of_the_lattice_does_not_matter():
+    sags = [sag(strip(7.5 * mm, low * mm)) for low in (0.0, 1.25, 2.5, 3.0, 3.75)]
+    assert max(sags) / min(sags) < 1.03  # the clamp's share again: 2 % of the sag
+
+
+def hollow_sphere(voxel, fill="fraction"):
+    """10 mm inside, 15 mm outside, free to grow from its center."""
+    return vs.Design(
+        name="sphere",
+        voxel_size=voxel,
+        fill=fill,
+        parts=[
+            {
+                "shape": vs.Sphere(radius=15 * mm) - vs.Sphere(radius=10 * mm),
+                "material": STIFF,
+            }
+        ],
+        clamps=[{"region": {axis: (0, 0)}, "axes": axis} for axis in "xyz"],
+        loads=[vs.Pressure(value=100.0)],
+    )
+
+
+def lame_growth():
+    """Growth of the cavity: 4πa²u, u = pa/(E(b³ − a³)) ((1 − 2ν)a³ + (1 + ν)b³/2)."""
+    a, b = 10 * mm, 15 * mm
+    u = 100.0 * a / (YOUNG * (b**3 - a**3))
+    u *= (1 - 2 * POISSON) * a**3 + (1 + POISSON) * b**3 / 2
+    return 4 * np.pi * a**2 * u
+
+
+@pytest.mark.parametrize("voxel", [3.75, 2.5])
+def test_a_hollow_sphere_grows_as_lame_says(voxel):
+    grown = {}
+    for fill in ("binary", "fraction"):
+        result = vs.simulate(hollow_sphere(voxel * mm, fill), method="statics")
+        grown[fill] = abs(result.metric("cavity_volume_change") / lame_growth() - 1)
+    # One and a half voxels across the wall, and two. Measured: +1 and +5 %, against +40 and +23 %
+    # of binary voxels. What is left is of first order: the outermost corners of cut voxels give
+    # way to the pressure.
+    assert grown["fraction"] < 0.07
+    assert grown["fraction"] < 0.3 * grown["binary"]
