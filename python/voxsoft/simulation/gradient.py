@@ -12,12 +12,15 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design, Objective
+from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import DesignError, SimulationError, VoxSoftError
+from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.simulation.differences import STENCIL, STEP
 from voxsoft.simulation.motion import held_axes, held_positions
+from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.slopes import Target, metric_at, metric_slope
@@ -141,6 +144,29 @@ class _State:
     setup: Setup
     positions: Floats
 
+    @cached_property
+    def _cut(self) -> CutVoxels:
+        design, mesh = self.setup.design, self.setup.mesh
+        cut = CutVoxels.of(design, max(1, round(design.voxel_size / voxel_size(mesh))))
+        if mesh.fractions is None or not np.array_equal(cut.fractions, mesh.fractions):
+            raise SimulationError(
+                "gradient", "the result has other cut voxels than its design", "solve it again"
+            )
+        return cut
+
+    def reshaped(self, design: Design, name: str) -> Mesh:
+        """Return the mesh of the same voxels, filled as a design with another shape fills them."""
+        own = self.setup.design
+        if own.fill != "fraction" or design.voxel_size != own.voxel_size:
+            raise DesignError(
+                name,
+                "cannot be varied: it changes the shape, and voxels are either full or empty, so "
+                "that the derivative is zero or does not exist",
+                'use fill = "fraction", where cut voxels hold their share of material, and vary '
+                "no voxel_size",
+            )
+        return self._cut.resampled(design).mesh()
+
 
 @dataclass(frozen=True)
 class _Variation:
@@ -192,16 +218,10 @@ def _variation(base: _State, name: str) -> _Variation:
 
 def _state_with(base: _State, design: Design, name: str) -> _State:
     before = base.setup
-    if _shapes(design) != _shapes(before.design):
-        raise DesignError(
-            name,
-            "cannot be varied: it changes the shape, and voxels are either full or empty, so that "
-            "the derivative is zero or does not exist",
-            'use fill = "fraction", where cut voxels hold their share of material',
-        )
+    mesh = before.mesh if _shapes(design) == _shapes(before.design) else base.reshaped(design, name)
     if design.floor != before.design.floor:
         raise DesignError(name, "cannot be varied: it moves the floor", "name another number")
-    setup = Setup(design, before.mesh)
+    setup = Setup(design, mesh)
     held = held_axes(before)
     if (held_axes(setup) != held).any():
         raise DesignError(

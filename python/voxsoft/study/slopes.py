@@ -135,7 +135,8 @@ def require_slopes(family: object, parameters: Sequence[str]) -> Design:
     for name in parameters:
         value = family.parameters[name].value
         other = with_number(family, name, value * (1.0 + 1e-6) or 1e-6)
-        if other.shapes != family.shapes or other.voxel_size != family.voxel_size:
+        jumps = family.fill != "fraction" and other.shapes != family.shapes
+        if jumps or other.voxel_size != family.voxel_size:
             raise StudyError(
                 f"space.{name}",
                 "changes the shape, and voxels are either full or empty",
