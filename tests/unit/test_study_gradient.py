@@ -29,12 +29,12 @@ def run(folder, budget, space=None, **changes):
 
 def test_the_optimum_lies_on_the_constraint(tmp_path):
     """The softer the more energy, until the tip sags as far as it may: one descent finds it."""
-    result = run(tmp_path / "one", 20)
-    assert result.counts["ok"] == 20
+    result = run(tmp_path / "one", 12)
+    assert result.counts["ok"] == 12
     best = result.best
     assert best.feasible
-    # Only feasible trials count, and the last steps may lie outside by their own gain.
-    assert best.metrics["sag"] == pytest.approx(4e-3, rel=2e-3)
+    # The margin by which a descent keeps inside, and as much again for its last step.
+    assert best.metrics["sag"] == pytest.approx(4e-3, rel=2e-6)
     # Along the constraint stiffness trades between the constants: both slopes are parallel there.
     energy, sag = (
         [best.metrics[f"d {target} / d {name}"] for name in SPACE] for target in ("energy", "sag")

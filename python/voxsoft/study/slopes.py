@@ -19,6 +19,9 @@ from voxsoft.study.trial import OUTCOME_KEY
 
 # Residual of each solution: slopes are as right as the state.
 _TOLERANCE: Final = 1e-8
+# A descent ends on a bound from either side, by less than this part of it; aiming so far inside
+# keeps its end feasible.
+_MARGIN: Final = 1e-6
 
 
 def slope_name(target: str, parameter: str) -> str:
@@ -107,7 +110,7 @@ def answers_of(
                 for bound, way in ((constraint.min, -1.0), (constraint.max, 1.0)):
                     if bound is not None:
                         size = abs(bound) or 1.0
-                        limits.append(way * (metrics[name] - bound) / size)
+                        limits.append(way * (metrics[name] - bound) / size + _MARGIN)
                         slopes.append(way * slope(name) / size)
             return Answer(
                 sign * metrics[objective],
