@@ -259,7 +259,7 @@ fn walk(
                     point.stable = limit.is_none();
                 }
                 highest = highest.max(now);
-                if now >= end {
+                if now >= end || (path.looking && limit.is_some()) {
                     return Ok(limit);
                 }
                 tangent = tangent_at(path, Some(&tangent), unit)?;
@@ -288,10 +288,11 @@ pub(crate) fn look_for_limit(path: &mut Path<'_, '_>, settings: &Settings) -> Op
     let kept = (path.positions.clone(), path.point, path.points.len());
     let unit = path_unit(path);
     let first = 0.02;
-    let mut highest: Option<f64> = None;
-    if let Ok(Some(limit)) = walk(path, settings, LOOK_STEPS, first, unit, 1.0) {
-        highest = Some(limit);
-    }
+    path.looking = true;
+    let highest = walk(path, settings, LOOK_STEPS, first, unit, 1.0)
+        .ok()
+        .flatten();
+    path.looking = false;
     path.positions = kept.0;
     path.point = kept.1;
     path.points.truncate(kept.2);

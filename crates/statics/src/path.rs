@@ -23,6 +23,8 @@ pub(crate) struct Path<'a, 'b> {
     pub point: Point,
     pub points: Vec<PathPoint>,
     pub observer: &'a mut Observer<'b>,
+    /// Whether the points are only a look ahead, not to be recorded.
+    pub looking: bool,
 }
 
 /// Finds the equilibrium under the final values of all loads and motions, from `start` (positions in m)
@@ -45,6 +47,7 @@ pub fn solve(
         point: Point::all(0.0),
         points: Vec::new(),
         observer,
+        looking: false,
     };
     let (status, limit) = match settings.control {
         Control::Load => path.follow_load(settings, start.is_some()),
@@ -143,7 +146,7 @@ impl Path<'_, '_> {
             factor: point.pressure,
             residual,
             positions: &self.positions,
-            converged: true,
+            converged: !self.looking,
         });
     }
 

@@ -110,7 +110,12 @@ def sentence(report: dict[str, Any]) -> str:
             words = f"equilibrium after {iterations}, {residual}"
             if report["limit"] is not None:
                 words += f"; the path has a limit at {100 * report['limit']:.4g} % of the load"
-            return words if report["stable"] else f"{words}; it is not stable"
+            return words if report["stable"] else f"{words}; under constant loads it is not stable"
+        case "limit-reached" if not report["stable"]:
+            return (
+                f"the path has a limit at {100 * report['limit']:.4g} % of the load; its steps "
+                f"ended past it, at {carried}. Raise steps to follow it further"
+            )
         case "limit-reached":
             return (
                 f"no equilibrium past {100 * report['limit']:.4g} % of the load, the limit of this "
