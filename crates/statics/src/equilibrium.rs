@@ -205,7 +205,7 @@ impl<'a> Equilibrium<'a> {
 
     fn newton_mixed(
         &mut self,
-        positions: &mut Vec<Vec3>,
+        positions: &mut [Vec3],
         point: Point,
         settings: &Settings,
         observer: &mut Observer<'_>,

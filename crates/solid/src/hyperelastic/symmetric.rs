@@ -196,6 +196,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    type Function = Box<dyn Fn(&Sym) -> Response>;
+
     fn models() -> Vec<Model> {
         vec![
             Model::NeoHookean { c10: 1.0 },
@@ -230,7 +232,7 @@ mod tests {
         fn stress_and_tangent_are_the_derivatives(s in stretch(), direction in prop::array::uniform6(-1.0..1.0f64)) {
             let step = 1e-5;
             let at = |t: f64| std::array::from_fn(|i| s[i] + t * direction[i]);
-            let mut functions: Vec<Box<dyn Fn(&Sym) -> Response>> = vec![Box::new(|s| determinant_response(s, true))];
+            let mut functions: Vec<Function> = vec![Box::new(|s| determinant_response(s, true))];
             for model in models() {
                 functions.push(Box::new(move |s| isochoric(&model, s)));
             }
