@@ -7,7 +7,7 @@ from typing import get_args
 import pytest
 import typer
 
-from voxsoft import Design
+from voxsoft import Design, Solver
 from voxsoft.cli.app import app
 from voxsoft.materials import Material
 from voxsoft.metrics import METRICS
@@ -40,6 +40,10 @@ def commands():
         else:
             found |= {f"{name} {verb}": inner[verb] for verb in inner}
     return found
+
+
+def test_every_key_of_the_solver_is_there():
+    assert cells(section("design-file.md", "Solver"), 0) == set(Solver.model_fields)
 
 
 def test_every_verb_is_there():

@@ -1,0 +1,128 @@
+"""Strips, a plate and a block of the voxels that are solved: bending, and where they are stable.
+
+``python benchmarks/bending.py [--json]``. The cases are those by which the element was chosen
+(`benchmarks/elements.py`, docs/method/elements.md), here with the element of the package: strips
+100 mm long and 10 mm thick against Timoshenko's beam, a clamped plate of 200 x 200 x 5 mm against
+Kirchhoff's, and a block with sliding ends that is squeezed and drawn until it is not stable. No
+corner is singular in the strips: their roots are planes of symmetry.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+from measure import Report
+
+import voxsoft as vs
+from voxsoft.units import kPa, mm
+
+YOUNG = 60 * kPa
+#: Kirchhoff's deflection of the middle of a clamped square plate, over p a⁴/D.
+PLATE = 0.00126532
+
+
+def rubber(poisson: float = 0.49) -> vs.NeoHookean:
+    """Of 1 kg/m³, so that an acceleration is a weight per volume."""
+    return vs.NeoHookean(young=YOUNG, poisson=poisson, density=1.0)
+
+
+def held(axes: str, **where: tuple[float, float]) -> vs.Clamp:
+    """Hold the vertices of some ranges along some axes."""
+    return vs.Clamp(region=vs.Region(**where), axes=axes)
+
+
+def solved(design: vs.Design) -> vs.Result:
+    """The equilibrium, or an end of the benchmark."""
+    result = vs.simulate(design, method="statics")
+    if result.status != "ok":
+        raise SystemExit(f"wrong answer: {design.name}, {result.message}")
+    return result
+
+
+def strip(layers: int, poisson: float, wide: bool) -> float:
+    """Error of the tip under 20 N/m³: small, and far above the rounding of K at ν = 0.4999."""
+    length, thick, weight = 100 * mm, 10 * mm, 20.0
+    across = (0, thick) if wide else (0, 0)
+    design = vs.Design(
+        name="strip",
+        voxel_size=thick / layers,
+        parts=[vs.Part(shape=vs.Box(size=(length, thick, thick)), material=rubber(poisson))],
+        clamps=[
+            held("x", x=(0, 0)),
+            held("y", y=across),
+            held("z", x=(0, 0), y=(0, 0), z=(0, 0)),
+        ],
+        loads=[vs.Gravity(value=weight)],
+        probes={"tip": vs.Probe(point=(length, 0, 0))},
+    )
+    young = YOUNG / (1 - poisson**2) if wide else YOUNG
+    bend = weight * length**4 * 12 / (8 * young * thick**2)
+    shear = weight * length**2 / (2 * 5 / 6 * rubber(poisson).shear)
+    return float(solved(design).probes["tip"][2]) / -(bend + shear) - 1
+
+
+def plate() -> float:
+    """Error of the middle of a plate one voxel thick under a small weight; a quarter is solved."""
+    half, thick, weight = 100 * mm, 5 * mm, 2.0
+    design = vs.Design(
+        name="plate",
+        voxel_size=thick,
+        parts=[vs.Part(shape=vs.Box(size=(half, half, thick)), material=rubber())],
+        clamps=[
+            held("x", x=(0, 0)),
+            held("y", y=(0, 0)),
+            held("xyz", x=(half, half)),
+            held("xyz", y=(half, half)),
+        ],
+        loads=[vs.Gravity(value=weight)],
+        probes={"middle": vs.Probe(point=(0, 0, 0))},
+    )
+    rigidity = YOUNG * thick**3 / (12 * (1 - rubber().poisson ** 2))
+    expected = PLATE * weight * thick * (2 * half) ** 4 / rigidity
+    return float(solved(design).probes["middle"][2]) / -expected - 1
+
+
+def stable_to(stretches: tuple[float, ...]) -> float:
+    """The last stretch at which a block of 4 × 4 × 4 voxels with sliding ends is stable."""
+    side, last = 20 * mm, 1.0
+    for stretch in stretches:
+        pull = vs.Motion(displacement=((stretch - 1) * side, 0, 0))
+        design = vs.Design(
+            name="block",
+            voxel_size=side / 4,
+            parts=[vs.Part(shape=vs.Box(size=(side, side, side)), material=rubber())],
+            clamps=[
+                held("x", x=(0, 0)),
+                held("y", y=(0, 0)),
+                held("z", z=(0, 0)),
+                vs.Clamp(region=vs.Region(x=(side, side)), axes="x", motion=pull),
+            ],
+        )
+        result = vs.simulate(design, method="statics", first_step=0.1)
+        if result.status != "ok" or not result.stable:
+            break
+        last = stretch
+    return last
+
+
+def main() -> None:
+    """Measure everything."""
+    report = Report("Bending and stability of the voxel element")
+    for wide in (False, True):
+        for layers in (1, 2):
+            words = "strip held sideways" if wide else "strip"
+            error = strip(layers, 0.49, wide)
+            report.add(f"{words}, {layers} across", 100 * error, "%", 1 + error)
+    error = strip(2, 0.4999, False)
+    report.add("strip, ν = 0.4999, 2 across", 100 * error, "%", 1 + error)
+    error = plate()
+    report.add("plate, 1 across", 100 * error, "%", 1 + error)
+    down = tuple(np.arange(0.95, 0.44, -0.05).tolist())
+    report.add("squeezed, stable to", stable_to(down), "")
+    report.add("drawn, stable to", stable_to(tuple(np.arange(1.25, 4.01, 0.25).tolist())), "")
+    report.show()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
