@@ -9,6 +9,7 @@ from voxsoft import _core
 from voxsoft.errors import DisconnectedError
 from voxsoft.materials.homogeneous import EXPONENTS, nominal_stress
 from voxsoft.simulation import Setup, simulate
+from voxsoft.simulation.freedom import moves_freely
 from voxsoft.units import kPa, mm
 
 #: Poisson's ratio of the blocks: K/μ is 5000, and an incompressible closed form is off by about
@@ -21,6 +22,7 @@ MODELS = {
     "ogden": vs.Ogden(mu=(20 * kPa, 3 * kPa), alpha=(1.5, 4.0), poisson=NEARLY),
     "gent": vs.Gent(shear=20 * kPa, jm=20.0, poisson=NEARLY),
 }
+RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49)
 SIDE = 4 * mm
 
 
@@ -197,7 +199,7 @@ def ball(pressure, **settings):
     return vs.Design(
         name="ball",
         voxel_size=5 * mm,
-        parts=[vs.Part(shape=shape, material=vs.NeoHookean(young=60 * kPa, poisson=0.49))],
+        parts=[vs.Part(shape=shape, material=RUBBER)],
         clamps=[vs.Clamp(region=vs.Region(z=("-inf", -14.9 * mm)))],
         loads=[vs.Pressure(value=pressure)],
         solver=vs.Solver(**settings),
@@ -247,8 +249,39 @@ def test_voxels_on_one_edge_are_refused_as_a_hinge():
         simulate(design, method="statics")
 
 
+@pytest.mark.parametrize(
+    "clamps",
+    [
+        [vs.Clamp(region=vs.Region(x=(0, 0)), axes="x")],
+        [vs.Clamp(region=vs.Region(x=(0, 0), z=(0, 0)))],
+    ],
+    ids=["slides", "turns about an edge"],
+)
+def test_a_body_that_its_clamps_let_go_is_said_to_move_freely(clamps):
+    design = box_design(
+        (4 * SIDE, SIDE, SIDE),
+        SIDE,
+        RUBBER,
+        clamps,
+        [vs.Force(region=vs.Region(x=(4 * SIDE, 4 * SIDE)), value=(0, 0, -0.01))],
+    )
+    result = simulate(design, method="statics")
+    assert result.status == "not-at-rest"
+    assert result.message.startswith("a part of the body moves freely")
+    assert result.load_factor == 0.0
+
+
+def test_a_load_beyond_all_bounds_is_not_called_a_free_part():
+    held = [vs.Clamp(region=vs.Region(x=(0, 0)))]
+    push = vs.Force(region=vs.Region(x=(2 * SIDE, 2 * SIDE)), value=(-1e6, 0, 0))
+    design = box_design((2 * SIDE, SIDE, SIDE), SIDE, RUBBER, held, [push])
+    assert not moves_freely(Setup.of(design))
+    result = simulate(design, method="statics")
+    assert result.status == "not-at-rest"
+    assert result.message.startswith("no equilibrium")
+
+
 LATTICE = vs.Lattice(edge=25 * kPa, bulk=100 * kPa)
-RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49)
 END = vs.Region(x=(40 * mm, 40 * mm))
 ROOT = [vs.Clamp(region=vs.Region(x=(0, 0)))]
 FOOT = [vs.Clamp(region=vs.Region(z=(0, 0)))]

@@ -8,6 +8,7 @@ from typing import Any
 from voxsoft import _core
 from voxsoft.design import Pressure, Solver
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.setup import Setup
 
 DEFAULT_STATICS_TOLERANCE = 1e-8
@@ -86,6 +87,9 @@ def find_equilibrium(
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,
     )
+    if report["status"] == "not-converged" and report["factor"] == 0.0 and moves_freely(setup):
+        # Singular up to rounding is all that the factor shows of it.
+        report["status"] = "mechanism"
     if report["status"] == "out-of-memory":
         raise SimulationError(
             "solver.method",
