@@ -1,0 +1,159 @@
+"""Bending actuators of EcoFlex 00-30 with a film of silk: angle over pressure, nothing fitted.
+
+The silicone's constants were published from tensile tests. The film is softer than silk, and the
+tunnel between the chambers is wider than it was; `docs/validation.md` says what that does. The path
+is followed by the volume of the chambers. Measured: Reconfigurable Robotics Lab, EPFL
+(`examples/data/epfl_bender/README.md`).
+
+``python examples/validation/epfl_bender.py [--film PA] [--ratio R] [--picture FILE]``
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+import voxsoft as vs
+from voxsoft.plot.style import SERIES, empty_figure, plain_axes, plain_legend
+from voxsoft.units import MPa, kPa
+
+Floats = NDArray[np.float64]
+
+DESIGN = Path(__file__).parent / "epfl_bender.toml"
+DATA = Path(__file__).parents[1] / "data" / "epfl_bender" / "angle.csv"
+#: What the data call the actuator with walls of 10 mm.
+NAME = "chamber8x8-c5-w10"
+#: How far the chambers grow, and the largest step of that. Larger first steps are lost.
+RATIO, STEP = 40.0, 0.75
+#: Measured angles are zero here, where the recording begins.
+START = 10 * kPa
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Angle in rad over pressure in Pa; a path need not be monotonic."""
+
+    pressure: Floats
+    angle: Floats
+
+
+def measured() -> Curve:
+    """The recorded angles, from the angle at 10 kPa on."""
+    with DATA.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["actuator"] == NAME]
+    pressure = np.array([float(row["pressure_kPa"]) for row in rows]) * kPa
+    return Curve(pressure, np.radians([float(row["angle_deg"]) for row in rows]))
+
+
+def foretold(ratio: float = RATIO, film: float = 41 * MPa) -> Curve:
+    """The equilibria along the path, from no pressure on.
+
+    The angle is that of the line from the root's lower edge to the tip's, as the authors measure
+    it in pictures: about half of what the tip turns.
+
+    Parameters
+    ----------
+    ratio
+        Volume of the chambers at the end, over that without pressure.
+    film
+        Young's modulus of the film in Pa, of which there are 0.5 mm.
+    """
+    design = vs.load(DESIGN, film=film)
+    steps = round((ratio - 1.0) / STEP)
+    result = vs.simulate(design, volume_ratio=ratio, steps=max(steps, 12))
+    assert result.status == "ok", result.message
+    load = design.loads[0]
+    assert isinstance(load, vs.Pressure)
+    moved = result.history.probes["tip"]
+    length = float(np.ptp(result.mesh.vertices[:, 0]))
+    angle = np.arctan2(-moved[:, 2], length + moved[:, 0])
+    return Curve(load.value * result.history.times, angle)
+
+
+def from_start(curve: Curve) -> Curve:
+    """Angles less that at 10 kPa, as the recording counts them."""
+    angle = np.interp(START, curve.pressure[: _turn(curve)], curve.angle[: _turn(curve)])
+    return Curve(curve.pressure, curve.angle - angle)
+
+
+def _turn(curve: Curve) -> int:
+    """How many points the path has before its pressure falls for the first time."""
+    falls = np.flatnonzero(np.diff(curve.pressure) < 0.0)
+    return int(falls[0]) + 1 if len(falls) else len(curve.pressure)
+
+
+def errors(simulated: Curve, real: Curve) -> tuple[Floats, Floats]:
+    """Pressures in Pa that both curves reach, and foretold less measured angles there, in rad."""
+    line, rising = from_start(simulated), slice(_turn(simulated))
+    at = real.pressure[real.pressure <= line.pressure[rising][-1]]
+    here = np.interp(at, line.pressure[rising], line.angle[rising])
+    return at, here - real.angle[: len(at)]
+
+
+def reached(curve: Curve, angle: float) -> float:
+    """The pressure in Pa at which a curve first has an angle, NaN if it does not."""
+    above = np.flatnonzero(curve.angle >= angle)
+    if len(above) == 0 or above[0] == 0:
+        return float("nan")
+    pair = slice(above[0] - 1, above[0] + 1)
+    return float(np.interp(angle, curve.angle[pair], curve.pressure[pair]))
+
+
+def steepest(curve: Curve) -> tuple[float, float]:
+    """Where an angle grows most over pressure, in Pa, and how much, in rad/Pa."""
+    rising = slice(_turn(curve))
+    pressure, angle = curve.pressure[rising], curve.angle[rising]
+    slope = np.diff(angle) / np.diff(pressure)
+    most = int(np.argmax(slope))
+    return float(pressure[most : most + 2].mean()), float(slope[most])
+
+
+def main() -> None:
+    """Print the comparison, and draw it if asked."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--film", type=float, default=41 * MPa, help="modulus of the film, Pa")
+    parser.add_argument("--ratio", type=float, default=RATIO, help="how far the chambers grow")
+    parser.add_argument("--picture", type=Path, help="where to save a picture")
+    options = parser.parse_args()
+    simulated, real = foretold(options.ratio, options.film), measured()
+    at, apart = errors(simulated, real)
+    print(
+        f"up to {at[-1] / kPa:.1f} kPa the angle is {np.degrees(np.abs(apart).mean()):.1f} deg off"
+    )
+    for pressure, difference in zip(at, apart, strict=True):
+        angle = np.interp(pressure, real.pressure, real.angle)
+        here, there = np.degrees((angle + difference, angle))
+        print(f"  {pressure / kPa:.1f} kPa: {here:.1f} deg, measured {there:.1f}")
+    for degrees in (2, 5, 10, 15, 20, 30):
+        angle = np.radians(degrees)
+        here, there = (reached(curve, angle) / kPa for curve in (from_start(simulated), real))
+        print(f"  {degrees} deg at {here:.1f} kPa, measured {there:.1f}")
+    for name, curve in {"foretold": simulated, "measured": real}.items():
+        pressure, slope = steepest(curve)
+        slope = np.degrees(slope) * kPa
+        print(f"  {name}: steepest at {pressure / kPa:.1f} kPa, {slope:.1f} deg/kPa")
+    if options.picture:
+        draw(simulated, real, options.picture)
+
+
+def draw(simulated: Curve, real: Curve, path: Path) -> None:
+    """Draw angle over pressure, foretold and measured."""
+    figure = empty_figure(6.5, 4.2)
+    axes = figure.subplots()
+    line = from_start(simulated)
+    axes.plot(line.pressure / kPa, np.degrees(line.angle), color=SERIES[0], label="foretold")
+    seen = np.degrees(real.angle)
+    axes.plot(real.pressure / kPa, seen, "o", color=SERIES[1], markersize=4, label="measured")
+    axes.set_xlim(START / kPa, 70)
+    plain_axes(axes, x="pressure (kPa)", y="bending angle from 10 kPa on (degrees)")
+    plain_legend(axes, loc="upper left")
+    figure.savefig(path)
+
+
+if __name__ == "__main__":
+    main()
