@@ -319,12 +319,12 @@ pub(crate) fn follow_volume(
     let mut part = 1.0 / f64::from(steps.max(1));
     let least = part / 256.0;
     let mut done = 0.0;
-    let mut before: Option<(Vec<Vec3>, f64, f64)> = None;
+    let mut before: Option<(Vec<Vec3>, f64)> = None;
     while done < 1.0 - 1e-12 {
         let next = (done + part).min(1.0);
         let target = first * (1.0 + (ratio - 1.0) * next);
-        let kept = (path.positions.clone(), path.point.pressure, done);
-        match volume_step(path, target, before.as_ref(), next, settings) {
+        let kept = (path.positions.clone(), path.point.pressure);
+        match volume_step(path, target, before.as_ref(), settings) {
             Ok(()) => {
                 before = Some(kept);
                 done = next;
@@ -369,20 +369,18 @@ fn volume(path: &Path<'_, '_>, positions: &[Vec3]) -> f64 {
 fn volume_step(
     path: &mut Path<'_, '_>,
     target: f64,
-    before: Option<&(Vec<Vec3>, f64, f64)>,
-    next: f64,
+    before: Option<&(Vec<Vec3>, f64)>,
     settings: &Settings,
 ) -> Result<(), Failure> {
     let unknown = Unknown::Pressure;
     let mut positions = path.positions.clone();
     let mut factor = path.point.pressure;
-    if let Some((earlier, pressure, then)) = before {
+    if let Some((earlier, pressure)) = before {
         // A straight look ahead, as far as the last step went.
-        let part = ((next - then) / (next - then).max(1e-300)).min(1.0);
         for (x, e) in positions.iter_mut().zip(earlier) {
-            *x = add(*x, scale(part, sub(*x, *e)));
+            *x = add(*x, sub(*x, *e));
         }
-        factor += part * (factor - pressure);
+        factor += factor - pressure;
     }
     let size = path.equilibrium.problem.body().size();
     for iteration in 1..=2 * BORDERED_ITERATIONS {

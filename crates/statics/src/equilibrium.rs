@@ -102,10 +102,12 @@ const SUFFICIENT: f64 = 1e-4;
 const HALVINGS: u32 = 12;
 /// Potentials are sums of many terms and known to about this part of their size.
 const ROUNDING: f64 = 1e-12;
-/// A Newton step this small against the body is rounding; the residual cannot fall any more.
+/// A Newton step this small against the body, or against how far it has moved, is rounding: Newton's
+/// method squares its error, so that what is left of the residual cannot fall any more.
 const STANDSTILL: f64 = 1e-13;
-/// What a residual may be at a standstill: rounding of stiff parts, over the load.
-const STANDSTILL_RESIDUAL: f64 = 1e-5;
+const STANDSTILL_OF_MOTION: f64 = 1e-9;
+/// What a residual may be at a standstill: rounding of stiff parts, over a small load.
+const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl<'a> Equilibrium<'a> {
     pub fn new(problem: &'a Problem) -> Result<Self, FactorError> {
@@ -261,7 +263,7 @@ impl<'a> Equilibrium<'a> {
             if !(largest < 20.0 * body.size() + largest_motion(self.problem)) {
                 return Err(Failure::Lost);
             }
-            if largest < STANDSTILL * body.size() && relative <= STANDSTILL_RESIDUAL {
+            if self.stands_still(positions, largest, relative) {
                 return Ok(Found {
                     iterations: iteration,
                     residual: relative,
@@ -273,6 +275,18 @@ impl<'a> Equilibrium<'a> {
             }
         }
         Err(Failure::Lost)
+    }
+
+    /// Whether a step of the size `largest` (m) is nothing but rounding.
+    fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
+        let body = self.problem.body();
+        let moved = positions
+            .iter()
+            .zip(body.rest())
+            .map(|(x, rest)| norm(sub(*x, *rest)))
+            .fold(0.0, f64::max);
+        let rounding = f64::max(STANDSTILL * body.size(), STANDSTILL_OF_MOTION * moved);
+        relative <= STANDSTILL_RESIDUAL && largest < rounding
     }
 
     fn tell(
@@ -342,7 +356,7 @@ impl<'a> Equilibrium<'a> {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
             }
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
-            if largest < STANDSTILL * size && relative <= STANDSTILL_RESIDUAL {
+            if self.stands_still(positions, largest, relative) {
                 return Ok(Found {
                     iterations: iteration,
                     residual: relative,
