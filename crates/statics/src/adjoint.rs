@@ -9,7 +9,8 @@ use std::fmt;
 use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
-use crate::equilibrium::{Equilibrium, Point};
+use crate::equilibrium::Equilibrium;
+use crate::point::Point;
 use crate::system::FactorError;
 
 /// Why there is no derivative.

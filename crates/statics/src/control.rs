@@ -10,8 +10,9 @@ use std::ops::ControlFlow;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{LoadKind, enclosed_volume};
 
-use crate::equilibrium::{Failure, Point};
+use crate::equilibrium::Failure;
 use crate::path::{Path, status_of};
+use crate::point::Point;
 use crate::settings::{Progress, Settings, Status};
 
 /// Steps of the look for a limit, and how long they are against the last step that converged.

@@ -5,36 +5,11 @@ use std::ops::ControlFlow;
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Load, LoadKind, Problem, elastic};
+use voxsoft_solid::{Problem, elastic};
 
+use crate::point::Point;
 use crate::settings::{Observer, Progress, Settings};
 use crate::system::{Factor, FactorError, System};
-
-/// Where on the path: factors on pressures and on everything else.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Point {
-    pub dead: f64,
-    pub pressure: f64,
-}
-
-impl Point {
-    pub fn all(factor: f64) -> Self {
-        Self {
-            dead: factor,
-            pressure: factor,
-        }
-    }
-
-    pub fn factor_of(self) -> impl Fn(&Load) -> f64 {
-        move |load| {
-            let factor = match load.kind {
-                LoadKind::Pressure { .. } => self.pressure,
-                LoadKind::Gravity(_) | LoadKind::Forces { .. } => self.dead,
-            };
-            factor * load.history.at(f64::INFINITY)
-        }
-    }
-}
 
 /// Why Newton's method stopped without an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -39,6 +39,7 @@ mod control;
 mod equilibrium;
 mod ordering;
 mod path;
+mod point;
 mod settings;
 mod system;
 

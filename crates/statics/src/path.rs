@@ -4,7 +4,8 @@ use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
 use crate::control;
-use crate::equilibrium::{Equilibrium, Failure, Found, Point};
+use crate::equilibrium::{Equilibrium, Failure, Found};
+use crate::point::Point;
 use crate::settings::{Answer, Control, Observer, PathPoint, Progress, Settings, Status};
 use crate::system::FactorError;
 
