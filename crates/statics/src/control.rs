@@ -30,12 +30,6 @@ enum Unknown {
 }
 
 impl Unknown {
-    fn read(self, point: Point) -> f64 {
-        match self {
-            Self::All | Self::Pressure => point.pressure,
-        }
-    }
-
     fn with(self, point: Point, factor: f64) -> Point {
         match self {
             Self::All => Point::all(factor),
@@ -118,7 +112,7 @@ fn arc_step(
 ) -> Result<(), Failure> {
     let unknown = Unknown::All;
     let mut positions = path.positions.clone();
-    let mut factor = unknown.read(path.point);
+    let mut factor = path.point.pressure;
     let shift = |positions: &mut Vec<Vec3>, moves: Vec<Vec3>, part: f64| {
         for (x, m) in positions.iter_mut().zip(moves) {
             *x = add(*x, scale(part, m));
@@ -332,6 +326,10 @@ pub(crate) fn follow_volume(
                 let now = path.point.pressure;
                 if now < highest - 1e-9 && turned.is_none() {
                     turned = Some(highest);
+                }
+                // Past the limit only the volume holds the state; its pressure alone would not.
+                if let Some(point) = path.points.last_mut() {
+                    point.stable = turned.is_none();
                 }
                 highest = highest.max(now);
                 part = (1.5 * part).min(1.0 / f64::from(steps.max(1)));

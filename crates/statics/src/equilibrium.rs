@@ -192,13 +192,8 @@ impl<'a> Equilibrium<'a> {
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         for iteration in 0..=MIXED_ITERATIONS {
-            let jump = self.jump(positions, point);
-            let mut forces = self.forces(positions, point);
+            let (mut forces, jump) = self.look(positions, point, observer)?;
             let relative = forces.relative();
-            if !relative.is_finite() {
-                return Err(Failure::Lost);
-            }
-            self.tell(positions, point, relative, observer)?;
             if jump.is_none() && relative <= settings.tolerance {
                 return Ok(Found {
                     iterations: iteration,
@@ -252,6 +247,23 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
+    /// The forces at the start of an iteration and what the clamps still have to move, told to the
+    /// observer.
+    fn look(
+        &self,
+        positions: &[Vec3],
+        point: Point,
+        observer: &mut Observer<'_>,
+    ) -> Result<(Forces, Option<Vec<Vec3>>), Failure> {
+        let forces = self.forces(positions, point);
+        let relative = forces.relative();
+        if !relative.is_finite() {
+            return Err(Failure::Lost);
+        }
+        self.tell(positions, point, relative, observer)?;
+        Ok((forces, self.jump(positions, point)))
+    }
+
     /// Whether a step of the size `largest` (m) is nothing but rounding.
     fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
         let body = self.problem.body();
@@ -295,13 +307,8 @@ impl<'a> Equilibrium<'a> {
         let limit = 20.0 * size;
         let mut shift = 0.0f64;
         for iteration in 0..=settings.max_iterations {
-            let jump = self.jump(positions, point);
-            let mut forces = self.forces(positions, point);
+            let (mut forces, jump) = self.look(positions, point, observer)?;
             let relative = forces.relative();
-            if !relative.is_finite() {
-                return Err(Failure::Lost);
-            }
-            self.tell(positions, point, relative, observer)?;
             if jump.is_none() && relative <= settings.tolerance {
                 return Ok(Found {
                     iterations: iteration,
