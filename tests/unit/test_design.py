@@ -9,21 +9,13 @@ import pytest
 
 from voxsoft.design import (
     Clamp,
-    Constraint,
     Design,
-    Force,
     Gravity,
-    History,
-    Motion,
-    Objective,
     Parameter,
     Part,
     Pressure,
     Probe,
     Region,
-    Rotation,
-    Solver,
-    Traction,
 )
 from voxsoft.errors import DesignError, FormulaError, UnitError
 from voxsoft.shapes import Box, Function
@@ -252,62 +244,6 @@ def test_nesting_without_end_is_refused():
         deep = [deep]
     with pytest.raises(DesignError, match="nests deeper"):
         Design.from_document(changed("probes", {"top": {"z": deep}}))
-
-
-# --- parts of the model -------------------------------------------------------------------------
-
-
-def test_every_load_reads_text_and_floats():
-    region = Region(center=(0, 0, 0), radius="5 mm")
-    assert Traction(region=region, value=["1 kPa", 0, 0]).value == (1e3, 0.0, 0.0)
-    assert Traction(region=region, value=1e3).value == 1e3
-    assert Force(region=region, value=["1 N", 0, "-2 mN"]).value == (1.0, 0.0, -0.002)
-    assert Pressure(value="-1 kPa", cavity=0).cavity == 0
-    with pytest.raises(DesignError, match="no direction"):
-        Gravity(direction=(0, 0, 0))
-
-
-def test_prescribed_motion():
-    turn = Rotation(axis=(0, 0, 1), angle="90 deg")
-    clamp = Clamp(region=Region(x=(0, 0)), motion=Motion(rotation=turn))
-    assert clamp.motion.rotation.angle == pytest.approx(1.5707963267948966)
-    with pytest.raises(DesignError, match="holds all axes"):
-        Clamp(region=Region(x=(0, 0)), axes="xy", motion=Motion(rotation=turn))
-
-
-def test_a_history_is_linear_between_and_constant_outside():
-    history = History(time=("0 s", "100 ms", "0.2 s"), factor=(0, 1, 0.5))
-    assert [history.at(t) for t in (-1, 0, 0.05, 0.1, 0.15, 9)] == pytest.approx(
-        [0, 0, 0.5, 1, 0.75, 0.5]
-    )
-    with pytest.raises(DesignError, match="does not rise"):
-        History(time=(0, 0), factor=(0, 1))
-    with pytest.raises(DesignError, match="2 times and 1 factors"):
-        History(time=(0, 1), factor=(0,))
-
-
-def test_a_region_may_be_open_on_a_side():
-    region = Region(x=(float("-inf"), 0), y=("1 mm", float("inf")))
-    assert region.y == (0.001, float("inf"))
-    with pytest.raises(DesignError, match="not a finite number"):
-        Region(x=(float("nan"), 0))
-
-
-def test_objectives_and_constraints():
-    assert Objective(minimize="mass").direction == "minimize"
-    bound = Constraint(metric="mass", min="1 g", max="30 g")
-    assert (bound.min, bound.max, bound.kind) == (0.001, 0.03, "mass")
-    with pytest.raises(DesignError, match="is above max"):
-        Constraint(metric="mass", min="2 g", max="1 g")
-    with pytest.raises(DesignError, match="a mass is due"):
-        Constraint(metric="mass", min="2 g", max="1 mm")
-
-
-def test_solver_choices():
-    assert Solver(damping="critical").damping == "critical"
-    assert Solver(damping=2.0, time_step="1 ms").time_step == 0.001
-    with pytest.raises(DesignError, match="negative"):
-        Solver(damping="-1 1/s")
 
 
 def test_plain_si_numbers_need_a_kind_in_python():
