@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from voxsoft._interrupt import Interrupts
 from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.identifiability import profiles
 from voxsoft.calibration.methods import Batch, errors_of, method_named
@@ -145,8 +146,9 @@ def calibrate(
     report = progress or (lambda _: None)
     history: list[Generation] = []
     best: Evaluation | None = None
-    with misfit.pool():
+    with misfit.pool(), Interrupts() as interrupts:
         for batch in search(misfit, generations, population, seed):
+            interrupts.stop_if_interrupted()
             best = min(batch if best is None else [best, *batch], key=lambda each: each.error)
             history.append(_generation(misfit, batch))
             done = len(history)

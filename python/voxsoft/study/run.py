@@ -11,6 +11,7 @@ from typing import Any
 import optuna
 from optuna.trial import TrialState
 
+from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import StudyError, VoxSoftError
 from voxsoft.study.event import ProgressCallback, TrialEvent
@@ -77,14 +78,17 @@ class StudyRun:
 
     def evaluate_all(self, batches: Iterable[Iterable[Proposal]]) -> None:
         """Evaluate batch after batch; each is asked for once the one before is stored."""
-        for batch in batches:
-            for proposal in batch:
-                self._begin(proposal)
-                # A few more than run at once wait at the workers, so that none is idle.
-                while len(self._running) >= 2 * self.workers.slots:
+        with Interrupts() as interrupts:
+            for batch in batches:
+                for proposal in batch:
+                    interrupts.stop_if_interrupted()
+                    self._begin(proposal)
+                    # A few more than run at once wait at the workers, so that none is idle.
+                    while len(self._running) >= 2 * self.workers.slots:
+                        self._collect()
+                while self._running:
+                    interrupts.stop_if_interrupted()
                     self._collect()
-            while self._running:
-                self._collect()
 
     def _begin(self, proposal: Proposal) -> None:
         try:
