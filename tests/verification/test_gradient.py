@@ -151,6 +151,49 @@ def test_prescribed_motion_moves_the_clamped_vertices_too():
     check(design, {key: targets[key] for key in ("point", "energy")}, ["E"])
 
 
+def test_two_materials_in_one_body():
+    """A stiff skin on a soft bar, of two laws: each constant by the adjoint of the whole."""
+    parts = [
+        {
+            "shape": {"kind": "box", "size": ["30 mm", "10 mm", "5 mm"], "corner": [0, 0, "5 mm"]},
+            "material": {"model": "yeoh", "c": ["40 kPa", "4 kPa"], "poisson": 0.45},
+        },
+        {"shape": "body", "material": {"model": "neo-hookean", "young": "= E", "poisson": 0.499}},
+    ]
+    bar = block(
+        shapes={"body": {"kind": "box", "size": ["30 mm", "10 mm", "10 mm"]}},
+        parts=parts,
+        probes={
+            "end": {"x": ["30 mm", "30 mm"]},
+            "point": {"point": ["30 mm", "10 mm", "5 mm"]},
+        },
+    )
+    targets = {
+        "sag": Objective(maximize="displacement", probe="end", axis="z"),
+        # On the seam, where elements of both materials meet.
+        "seam": Objective(maximize="displacement", probe="point", axis="x"),
+        "turn": Objective(maximize="rotation", probe="end"),
+        "energy": Objective(maximize="elastic_energy"),
+    }
+    constants = ["parts.0.material.c.0", "parts.0.material.c.1", "parts.1.material.poisson"]
+    check(bar, targets, ["E", *constants, "parts.0.material.density", "loads.0.value"])
+
+
+def test_springs_beside_rubber():
+    """The lattice and the hyperelastic voxel share vertices, and so one tangent."""
+    half = {"kind": "box", "size": ["10 mm", "10 mm", "10 mm"]}
+    bar = block(
+        shapes={"body": {"kind": "box", "size": ["20 mm", "10 mm", "10 mm"]}},
+        parts=[
+            {"shape": half, "material": {"model": "lattice", "edge": "= E", "bulk": "90 kPa"}},
+            {"shape": "body", "material": {"model": "neo-hookean", "young": "60 kPa"}},
+        ],
+        probes={"end": {"x": ["20 mm", "20 mm"]}, "point": {"point": ["12 mm", 0, 0]}},
+    )
+    tip = {"sag": Objective(maximize="displacement", probe="end", axis="z")}
+    check(bar, tip, ["E", "parts.0.material.bulk", "parts.1.material.young"])
+
+
 def test_forces_and_a_pressure_on_an_open_surface():
     """The pressure turns with the face: the tangent is not symmetric, and the sum changes."""
     loads = [
