@@ -72,13 +72,19 @@ def sag(moved: Floats) -> float:
 
 def swings(case: str) -> list[Swing]:
     """Frequency and decay of the upper marker, one for each run: a decaying cosine, fitted."""
+    return [oscillation(*trace(case, run)) for run in "ab"]
+
+
+def trace(case: str, run: str) -> tuple[Floats, Floats]:
+    """Times in s after release and heights of the upper marker in mm."""
     with (DATA / "timeseries.csv").open() as file:
-        rows = [row for row in csv.DictReader(file) if row["case"] == case]
-    return [_swing([row for row in rows if row["run"] == run]) for run in "ab"]
-
-
-def _swing(rows: list[dict[str, str]]) -> Swing:
+        rows = [row for row in csv.DictReader(file) if (row["case"], row["run"]) == (case, run)]
     time, height = np.array([[float(row["t_s"]), float(row["tip1_z_m"]) / mm] for row in rows]).T
+    return time, height
+
+
+def oscillation(time: Floats, height: Floats) -> Swing:
+    """Frequency and decay of a height in mm over time in s, at steps of 0.01 s."""
     inside = (time >= WINDOW[0]) & (time <= WINDOW[1])
     time, height = time[inside], height[inside] - height[inside].mean()
 
@@ -236,14 +242,11 @@ def draw(found: Outcome, path: Path) -> None:
     plain_axes(left, x="", y="sag of the markers (mm): top, left, right", title="at rest")
     left.set_xticks(range(2), ticks)
     plain_legend(left, loc="upper left")
-    with (DATA / "timeseries.csv").open() as file:
-        rows = list(csv.DictReader(file))
     for color, case in zip(SERIES, MASSES, strict=False):
-        series = [row for row in rows if row["case"] == case and row["run"] == "a"]
-        time, height = np.array([[float(r["t_s"]), float(r["tip1_z_m"])] for r in series]).T
+        time, height = trace(case, "a")
         seen = [swing.frequency for swing in found.frequencies[case][1]]
         words = f"{found.frequencies[case][0]:.2f} Hz foretold, {np.mean(seen):.2f} Hz measured"
-        right.plot(time, (height - height[-1]) / mm, color=color, label=words, linewidth=1.2)
+        right.plot(time, height - height[-1], color=color, label=words, linewidth=1.2)
     right.set_xlim(-0.05, 2.0)
     plain_axes(right, x="time after release (s)", y="height of the tip (mm)", title="released")
     plain_legend(right)

@@ -21,19 +21,28 @@ def test_three_sizes_give_order_and_limit_exactly(order, sizes):
     assert found.error == pytest.approx(2.0 * 0.3, rel=1e-8)
 
 
-def test_two_sizes_hold_every_order_from_five_sixths_on():
-    for order in np.linspace(0.85, 4.0, 13):
+def test_two_sizes_hold_every_order_from_two_fifths_on():
+    # 2^p - 1 >= 1/3
+    for order in np.linspace(np.log2(4 / 3), 4.0, 13):
         values = sequence(1.0, 0.2, order, (2.0, 1.0))
         assert discretization_error((2.0, 1.0), values).error >= 0.2 * (1 - 1e-12)
 
 
 def test_orders_are_kept_in_range():
     sizes = (4.0, 2.0, 1.0)
-    assert discretization_error(sizes, sequence(1.0, 1.0, 4.0, sizes)).order == 2.0
+    assert discretization_error(sizes, sequence(1.0, 1.0, 2.15, sizes)).order == 2.0
     # Nearly no convergence: five times the last change is called possible.
     slow = discretization_error(sizes, [3.0, 2.0, 1.0])
     assert slow.order == 0.5
     assert slow.error == pytest.approx(2.0 / (np.sqrt(2) - 1))
+
+
+def test_faster_than_the_elements_can_is_no_order():
+    sizes = (4.0, 2.0, 1.0)
+    found = discretization_error(sizes, sequence(1.0, 1.0, 4.0, sizes))
+    assert (found.order, found.basis) == (1.0, "two sizes")
+    assert found.error == pytest.approx(3 * 15.0)
+    assert found.values == (257.0, 17.0, 2.0)
 
 
 def test_oscillating_values_are_not_extrapolated():

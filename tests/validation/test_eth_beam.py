@@ -71,8 +71,7 @@ def test_the_lowest_mode_is_that_of_a_beam(eth):
 
 def test_swings_are_read_from_a_known_oscillation(eth):
     time = np.arange(0.0, 3.0, 0.01)
-    height = 0.004 * np.exp(-2.0 * time) * np.cos(2 * np.pi * 6.3 * time + 0.4)
-    rows = [{"t_s": str(t), "tip1_z_m": str(z)} for t, z in zip(time, height, strict=True)]
-    swing = eth._swing(rows)
+    height = 4.0 * np.exp(-2.0 * time) * np.cos(2 * np.pi * 6.3 * time + 0.4)
+    swing = eth.oscillation(time, height)
     assert swing.frequency == pytest.approx(6.3, rel=1e-6)
     assert swing.decay == pytest.approx(2.0, rel=1e-5)
