@@ -19,6 +19,7 @@ from typing import NamedTuple
 
 import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
+from voxsoft.errors import OutsideCodeError
 from voxsoft.files.calculix import run_calculix
 from voxsoft.shapes import Shape
 from voxsoft.simulation import Setup, simulate
@@ -316,7 +317,11 @@ def solved(group: str, name: str, each: Body) -> list[tuple[object, ...]]:
             )
     vertex = setup.places["probe"].vertices
     for split in OUTER:
-        answer = run_calculix(BrickModel.of(setup, split=split, nodes=20), time_limit=300)
+        try:
+            answer = run_calculix(BrickModel.of(setup, split=split, nodes=20), time_limit=300)
+        except OutsideCodeError as error:
+            print(name, split, error, flush=True)
+            continue
         print(name, "CalculiX", split, answer.status, f"{answer.seconds:.1f} s", flush=True)
         if answer.status == "ok":
             value = float(setup.places["probe"].weights @ answer.displacements[vertex, number]) / mm

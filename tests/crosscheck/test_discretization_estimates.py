@@ -1,4 +1,8 @@
-"""Estimates of the discretization error against the error itself, on ten varied bodies."""
+"""Estimates of the discretization error against the error itself, on ten varied bodies.
+
+The order that two sizes assume was chosen with these bodies at hand; `test_fresh_estimates.py` has
+others that came later.
+"""
 
 import pytest
 

@@ -85,11 +85,11 @@ def q(value):
 
 
 def test_agreement_is_within_the_estimates_of_both():
-    # 1.30 at 4 mm and 1.10 at 2 mm: the estimate is 0.25 at 2 mm, 0.45 at 4 mm.
-    assert made_up({1: 1.3, 2: 1.1}, {2: 0.86}).agrees("u") is True
-    assert made_up({1: 1.3, 2: 1.1}, {2: 0.84}).agrees("u") is False
-    # The outside code's own estimate counts too: 0.125 at its finest split.
-    assert made_up({1: 1.3, 2: 1.1}, {1: 0.74, 2: 0.84}).agrees("u") is True
+    # 1.30 at 4 mm and 1.10 at 2 mm: the estimate is 0.6 at 2 mm, 0.8 at 4 mm.
+    assert made_up({1: 1.3, 2: 1.1}, {2: 0.51}).agrees("u") is True
+    assert made_up({1: 1.3, 2: 1.1}, {2: 0.49}).agrees("u") is False
+    # The outside code's own estimate counts too: 0.09 at its finest split.
+    assert made_up({1: 1.3, 2: 1.1}, {1: 0.46, 2: 0.49}).agrees("u") is True
     assert made_up({1: 1.3}, {2: 1.0}).agrees("u") is None
     assert made_up({1: 1.3, 2: 1.1}).agrees("u") is None
 
