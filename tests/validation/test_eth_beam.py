@@ -75,3 +75,26 @@ def test_swings_are_read_from_a_known_oscillation(eth):
     swing = eth.oscillation(time, height)
     assert swing.frequency == pytest.approx(6.3, rel=1e-6)
     assert swing.decay == pytest.approx(2.0, rel=1e-5)
+
+
+@pytest.fixture(scope="module")
+def swing(eth):
+    sys.path.insert(0, str(ROOT / "examples" / "validation"))
+    try:
+        import eth_beam_swing
+    finally:
+        sys.path.pop(0)
+    return eth_beam_swing
+
+
+def test_the_weight_hangs_on_the_upper_edge(eth, swing):
+    rubber = eth.vs.NeoHookean(young=260e3, poisson=0.499)
+    bare, heavy = (eth.Setup.of(swing.loaded(mass, rubber)) for mass in (0.0, 0.052))
+    assert heavy.problem.masses.sum() - bare.problem.masses.sum() == pytest.approx(0.052, rel=1e-9)
+    first, other = (
+        (each.problem.masses[:, None] * each.mesh.vertices).sum(axis=0) for each in (bare, heavy)
+    )
+    center = (other - first) / 0.052
+    # The row outside is rubber where the beam has none: 3.2 g of 52 stand half a voxel off.
+    assert center[0] == pytest.approx(0.0, abs=0.5e-3)
+    assert center[1] == pytest.approx(15e-3, abs=1e-9)
