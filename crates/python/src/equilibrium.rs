@@ -124,6 +124,7 @@ pub fn equilibrium<'py>(
     let report = problem.report(py, common, watch, f64::INFINITY)?;
     report.set_item("status", status)?;
     report.set_item("factor", factor)?;
+    report.set_item("reached", answer.reached)?;
     report.set_item("limit", limit)?;
     report.set_item("stable", stable)?;
     report.set_item("path", from_rows(py, &path))?;

@@ -184,8 +184,8 @@ impl Membrane {
         ]
     }
 
-    /// The stress at `positions`, and how it would change along `moves` to first order.
-    pub fn predict_stress(&self, positions: &[Vec3], moves: &[Vec3]) -> Plane {
+    /// The strain that a step `moves` from `positions` leads to, to first order.
+    pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> Plane {
         let (tangents, mut strain) = self.strain(positions);
         for corner in 0..3 {
             let along = moves[self.vertices[corner] as usize];
@@ -193,7 +193,7 @@ impl Membrane {
                 *e += dot(slope, along);
             }
         }
-        self.stress(strain)
+        strain
     }
 
     /// The energy in J.
@@ -205,7 +205,21 @@ impl Membrane {
     /// Adds the elastic forces in N.
     pub fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let (tangents, strain) = self.strain(positions);
-        let stress = self.stress(strain);
+        self.add_forces_of(self.stress(strain), tangents, forces);
+    }
+
+    /// Adds the forces at `positions` of the stress that `predicted`, a strain, has, and of what its
+    /// tangent adds for the strain that is there ([`crate::mixed`]).
+    pub fn add_predicted_forces(&self, predicted: Plane, positions: &[Vec3], forces: &mut [Vec3]) {
+        let (tangents, strain) = self.strain(positions);
+        let rest: Plane = std::array::from_fn(|k| strain[k] - predicted[k]);
+        let tangent = self.tangent(predicted);
+        let stress = self.stress(predicted);
+        let stress = std::array::from_fn(|k| stress[k] + dot(tangent[k], rest));
+        self.add_forces_of(stress, tangents, forces);
+    }
+
+    fn add_forces_of(&self, stress: Plane, tangents: [Vec3; 2], forces: &mut [Vec3]) {
         for corner in 0..3 {
             let force = &mut forces[self.vertices[corner] as usize];
             for (slope, t) in self.slopes(tangents, corner).into_iter().zip(stress) {
@@ -216,11 +230,11 @@ impl Membrane {
 
     /// The Hessian of the energy in N/m, row and column `3 corner + axis`.
     ///
-    /// A `stress` of the caller's takes the place of the present one in the geometric part.
-    pub fn stiffness(&self, positions: &[Vec3], stress: Option<Plane>) -> [[f64; 9]; 9] {
+    /// A strain of the caller's takes the place of the present one in stress and moduli.
+    pub fn stiffness(&self, positions: &[Vec3], predicted: Option<Plane>) -> [[f64; 9]; 9] {
         let (tangents, strain) = self.strain(positions);
-        let tangent = self.tangent(strain);
-        let stress = stress.unwrap_or_else(|| self.stress(strain));
+        let strain = predicted.unwrap_or(strain);
+        let (tangent, stress) = (self.tangent(strain), self.stress(strain));
         let slopes: [_; 3] = std::array::from_fn(|corner| self.slopes(tangents, corner));
         let mut matrix = [[0.0; 9]; 9];
         for c in 0..3 {
@@ -313,6 +327,42 @@ mod tests {
                     assert!((change + stiffness[row][column]).abs() < 1e-9);
                 }
             }
+        }
+    }
+
+    #[test]
+    fn with_its_own_strain_carried_along_it_is_the_same() {
+        let membrane = Membrane::new([0, 1, 2], REST, CLOTH).unwrap();
+        let before = [[0.1, 0.0, 1.2], [1.7, 0.2, 0.9], [0.4, 1.2, 1.5]];
+        let moves = [[0.0; 3], [1e-7, 2e-7, -1e-7], [3e-7, 0.0, 1e-7]];
+        let after: [Vec3; 3] =
+            std::array::from_fn(|v| std::array::from_fn(|i| before[v][i] + moves[v][i]));
+        let strain = membrane.predict_strain(&before, &moves);
+        let forces = |carried: Option<Plane>| {
+            let mut forces = vec![[0.0; 3]; 3];
+            match carried {
+                Some(strain) => membrane.add_predicted_forces(strain, &after, &mut forces),
+                None => membrane.add_forces(&after, &mut forces),
+            }
+            forces
+        };
+        let (own, predicted) = (forces(None), forces(Some(strain)));
+        let (stiff, carried) = (
+            membrane.stiffness(&after, None),
+            membrane.stiffness(&after, Some(strain)),
+        );
+        // The prediction leaves out the square of the moves, 1e-13; forces leave out its square again.
+        for (a, b) in own.as_flattened().iter().zip(predicted.as_flattened()) {
+            assert!((a - b).abs() < 1e-15, "{a} {b}");
+        }
+        for (a, b) in stiff.as_flattened().iter().zip(carried.as_flattened()) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+        // Far from the strain that is there, the tangent makes up for the difference to first order.
+        let nowhere = strain.map(|e| e + 1e-4);
+        let (near, far) = (forces(Some(nowhere)), forces(None));
+        for (a, b) in near.as_flattened().iter().zip(far.as_flattened()) {
+            assert!((a - b).abs() < 1e-6, "{a} {b}");
         }
     }
 

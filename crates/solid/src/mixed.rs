@@ -45,7 +45,7 @@ impl Strains {
         let membranes = body
             .membranes()
             .iter()
-            .map(|membrane| membrane.predict_stress(positions, moves));
+            .map(|membrane| membrane.predict_strain(positions, moves));
         Self {
             edges: edges.collect(),
             tets: tets.collect(),
@@ -54,15 +54,15 @@ impl Strains {
         }
     }
 
-    /// Adds the forces at `positions` of the stress that these strains predict, in N. Constraints and
-    /// membranes are linear in their strains, so theirs are the true ones.
+    /// Adds the forces at `positions` of the stress that these strains predict, in N. Constraints are
+    /// linear in their strains, so theirs are the true ones.
     pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
         elastic::add_constraint_forces(body, positions, forces);
         for (brick, strain) in body.bricks().iter().zip(&self.bricks) {
             brick.add_predicted_forces(body.material_of(brick), strain, positions, forces);
         }
-        for membrane in body.membranes() {
-            membrane.add_forces(positions, forces);
+        for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
+            membrane.add_predicted_forces(*strain, positions, forces);
         }
     }
 
@@ -86,8 +86,8 @@ impl Strains {
             let matrix = brick.stiffness(body.material_of(brick), positions, Some(strain));
             visit(&brick.vertices, matrix.as_flattened());
         }
-        for (membrane, stress) in body.membranes().iter().zip(&self.membranes) {
-            let matrix = membrane.stiffness(positions, Some(*stress));
+        for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
+            let matrix = membrane.stiffness(positions, Some(*strain));
             visit(&membrane.vertices(), matrix.as_flattened());
         }
     }

@@ -1,17 +1,17 @@
-//! Paths on which the load is an unknown: arc length and volume control.
+//! Paths on which the load is an unknown: what they share, and arc length. Volume control has a file of
+//! its own.
 //!
-//! Both solve the equilibrium `r(x, s) = 0` with one more equation `c(x, s) = 0`. A Newton step of the
+//! They solve the equilibrium `r(x, s) = 0` with one more equation `c(x, s) = 0`. A Newton step of the
 //! bordered system takes two solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`:
 //! `δx = a + b δs`, and the extra equation gives `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The
 //! tangent may be indefinite; it is singular only at single points of the path.
 
 use std::ops::ControlFlow;
 
-use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{LoadKind, enclosed_volume};
+use voxsoft_solid::vector::{Vec3, add, scale};
 
 use crate::equilibrium::Failure;
-use crate::path::{Path, status_of};
+use crate::path::{Ending, Path, status_of};
 use crate::point::Point;
 use crate::settings::{Progress, Settings, Status};
 
@@ -24,13 +24,13 @@ const HALVINGS: u32 = 10;
 
 /// Which factor is the unknown.
 #[derive(Clone, Copy, PartialEq)]
-enum Unknown {
+pub(crate) enum Unknown {
     All,
     Pressure,
 }
 
 impl Unknown {
-    fn with(self, point: Point, factor: f64) -> Point {
+    pub fn with(self, point: Point, factor: f64) -> Point {
         match self {
             Self::All => Point::all(factor),
             Self::Pressure => Point {
@@ -42,7 +42,11 @@ impl Unknown {
 }
 
 /// The derivative of the forces by the unknown factor, on free coordinates.
-fn load_direction(path: &Path<'_, '_>, positions: &[Vec3], unknown: Unknown) -> Vec<f64> {
+pub(crate) fn load_direction(
+    path: &Path<'_, '_>,
+    positions: &[Vec3],
+    unknown: Unknown,
+) -> Vec<f64> {
     let one = match unknown {
         Unknown::All => Point::all(1.0),
         Unknown::Pressure => Point {
@@ -91,7 +95,7 @@ fn two_solutions(
     }
 }
 
-fn product(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
@@ -186,34 +190,23 @@ fn tangent_at(
 }
 
 /// Follows the path by arc length to the full load.
-pub(crate) fn follow_arc(
-    path: &mut Path<'_, '_>,
-    settings: &Settings,
-    steps: u32,
-) -> (Status, Option<f64>) {
+pub(crate) fn follow_arc(path: &mut Path<'_, '_>, settings: &Settings, steps: u32) -> Ending {
     let unit = path_unit(path);
-    match walk(
-        path,
-        settings,
-        steps,
-        settings.first_step.min(0.2),
-        unit,
-        1.0,
-    ) {
+    let first = settings.first_step.min(0.2);
+    let (status, limit) = match walk(path, settings, steps, first, unit, 1.0) {
         Ok(limit) if path.point.pressure >= 1.0 => {
             let full = Point::all(1.0);
             let start = path.positions.clone();
-            match path.settle(start, full, settings, true) {
-                Ok(_) => (Status::AtRest, limit),
-                Err(failure) => (status_of(failure), limit),
-            }
+            let settled = path.settle(start, full, settings, true);
+            (settled.map_or_else(status_of, |_| Status::AtRest), limit)
         }
         Ok(limit) => (
             limit.map_or(Status::NotConverged, |_| Status::LimitReached),
             limit,
         ),
         Err(failure) => (status_of(failure), None),
-    }
+    };
+    Ending::new(status, limit, path.point.pressure)
 }
 
 /// Displacements are measured against the diameter of the body, times the root of the number of
@@ -292,134 +285,4 @@ pub(crate) fn look_for_limit(path: &mut Path<'_, '_>, settings: &Settings) -> Op
     path.point = kept.1;
     path.points.truncate(kept.2);
     highest
-}
-
-/// Grows the volume that pressures work on; see [`crate::Control::Volume`].
-pub(crate) fn follow_volume(
-    path: &mut Path<'_, '_>,
-    settings: &Settings,
-    ratio: f64,
-    steps: u32,
-) -> (Status, Option<f64>) {
-    let dead = Point {
-        dead: 1.0,
-        pressure: 0.0,
-    };
-    let start = path.positions.clone();
-    if let Err(failure) = path.settle(start, dead, settings, true) {
-        return (status_of(failure), None);
-    }
-    let first = volume(path, &path.positions);
-    let (mut highest, mut turned) = (0.0f64, None);
-    let mut part = 1.0 / f64::from(steps.max(1));
-    let least = part / 256.0;
-    let mut done = 0.0;
-    let mut before: Option<(Vec<Vec3>, f64)> = None;
-    while done < 1.0 - 1e-12 {
-        let next = (done + part).min(1.0);
-        let target = first * (1.0 + (ratio - 1.0) * next);
-        let kept = (path.positions.clone(), path.point.pressure);
-        match volume_step(path, target, before.as_ref(), settings) {
-            Ok(()) => {
-                before = Some(kept);
-                done = next;
-                let now = path.point.pressure;
-                if now < highest - 1e-9 && turned.is_none() {
-                    turned = Some(highest);
-                }
-                // Past the limit only the volume holds the state; its pressure alone would not.
-                if let Some(point) = path.points.last_mut() {
-                    point.stable = turned.is_none();
-                }
-                highest = highest.max(now);
-                part = (1.5 * part).min(1.0 / f64::from(steps.max(1)));
-            }
-            Err(failure @ (Failure::Lost | Failure::Singular)) => {
-                path.equilibrium.back_offs += 1;
-                before = None;
-                part /= 3.0;
-                if part < least {
-                    return (status_of(failure), turned);
-                }
-            }
-            Err(failure) => return (status_of(failure), turned),
-        }
-    }
-    (Status::AtRest, turned)
-}
-
-/// The volume that the pressures work on, weighted with them.
-fn volume(path: &Path<'_, '_>, positions: &[Vec3]) -> f64 {
-    let mut sum = 0.0;
-    for load in path.equilibrium.problem.loads() {
-        if let LoadKind::Pressure {
-            triangles,
-            voids,
-            pressure,
-        } = &load.kind
-        {
-            let weight = pressure * load.history.at(f64::INFINITY);
-            sum += weight * enclosed_volume(triangles, voids, positions);
-        }
-    }
-    sum
-}
-
-fn volume_step(
-    path: &mut Path<'_, '_>,
-    target: f64,
-    before: Option<&(Vec<Vec3>, f64)>,
-    settings: &Settings,
-) -> Result<(), Failure> {
-    let unknown = Unknown::Pressure;
-    let mut positions = path.positions.clone();
-    let mut factor = path.point.pressure;
-    if let Some((earlier, pressure)) = before {
-        // A straight look ahead, as far as the last step went.
-        for (x, e) in positions.iter_mut().zip(earlier) {
-            *x = add(*x, sub(*x, *e));
-        }
-        factor += factor - pressure;
-    }
-    let size = path.equilibrium.problem.body().size();
-    for iteration in 1..=2 * BORDERED_ITERATIONS {
-        let point = unknown.with(path.point, factor);
-        let forces = path.equilibrium.forces(&positions, point);
-        let missing = target - volume(path, &positions);
-        let relative = forces.relative();
-        let progress = Progress {
-            iterations: path.equilibrium.iterations,
-            factor,
-            residual: relative,
-            positions: &positions,
-            converged: false,
-        };
-        if let ControlFlow::Break(()) = (path.observer)(&progress) {
-            return Err(Failure::Cancelled);
-        }
-        if !relative.is_finite() {
-            return Err(Failure::Lost);
-        }
-        if relative <= settings.tolerance && missing.abs() <= 1e-9 * target.abs() {
-            path.accept(positions, point, iteration, relative);
-            return Ok(());
-        }
-        let (a, b) = two_solutions(path, &positions, point, unknown, &forces.free)?;
-        // The gradient of the weighted volume is the load direction itself.
-        let gradient = load_direction(path, &positions, unknown);
-        let change = (missing - product(&gradient, &a)) / product(&gradient, &b);
-        let moves: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();
-        let spread = path.equilibrium.system.spread(&moves);
-        let largest = spread.iter().map(|m| norm(*m)).fold(0.0, f64::max);
-        if !largest.is_finite() {
-            return Err(Failure::Singular);
-        }
-        // Far from the path a full step overshoots.
-        let part = (0.1 * size / largest).min(1.0);
-        for (x, m) in positions.iter_mut().zip(spread) {
-            *x = add(*x, scale(part, m));
-        }
-        factor += part * change;
-    }
-    Err(Failure::Lost)
 }

@@ -123,7 +123,12 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Net forces on free coordinates with the elastic ones that `strains` predict.
-    fn predicted_forces(&self, strains: &Strains, positions: &[Vec3], point: Point) -> Vec<f64> {
+    pub fn predicted_forces(
+        &self,
+        strains: &Strains,
+        positions: &[Vec3],
+        point: Point,
+    ) -> Vec<f64> {
         let mut net = vec![[0.0; 3]; positions.len()];
         self.problem
             .add_scaled_loads(positions, &point.factor_of(), &mut net);
@@ -131,7 +136,7 @@ impl<'a> Equilibrium<'a> {
         self.system.gather(&net)
     }
 
-    fn potential(&self, positions: &[Vec3], point: Point) -> (f64, f64) {
+    pub fn potential(&self, positions: &[Vec3], point: Point) -> (f64, f64) {
         let elastic = elastic::energy(self.problem.body(), positions);
         let loads = self.problem.load_potential(positions, &point.factor_of());
         (elastic + loads, elastic.abs() + loads.abs())
@@ -418,7 +423,7 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// No voxel is inside out or nearly so.
-    fn is_sound(&self, positions: &[Vec3]) -> bool {
+    pub fn is_sound(&self, positions: &[Vec3]) -> bool {
         self.problem
             .body()
             .bricks()

@@ -42,6 +42,7 @@ mod path;
 mod point;
 mod settings;
 mod system;
+mod volume;
 
 pub use adjoint::{AdjointError, adjoint};
 pub use path::solve;

@@ -8,6 +8,7 @@ use crate::equilibrium::{Equilibrium, Failure, Found};
 use crate::point::Point;
 use crate::settings::{Answer, Control, Observer, PathPoint, Progress, Settings, Status};
 use crate::system::FactorError;
+use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
 const EASY: u32 = 6;
@@ -16,6 +17,28 @@ const EASY: u32 = 6;
 const SAFE_STEP: f64 = 0.05;
 /// How often the floor may change its mind at one point.
 const FLOOR_ROUNDS: usize = 40;
+
+/// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
+/// is left after that lies past a bifurcation, not beside the path.
+pub(crate) const UNSTABLE_CUTS: u32 = 5;
+
+/// How a path ended.
+pub(crate) struct Ending {
+    status: Status,
+    limit: Option<f64>,
+    /// See [`Answer::reached`].
+    reached: f64,
+}
+
+impl Ending {
+    pub fn new(status: Status, limit: Option<f64>, reached: f64) -> Self {
+        Self {
+            status,
+            limit,
+            reached,
+        }
+    }
+}
 
 /// A path under way.
 pub(crate) struct Path<'a, 'b> {
@@ -50,14 +73,14 @@ pub fn solve(
         observer,
         looking: false,
     };
-    let (status, limit) = match settings.control {
+    let ending = match settings.control {
         Control::Load => path.follow_load(settings, start.is_some()),
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
-            control::follow_volume(&mut path, settings, ratio, steps)
+            volume::follow_volume(&mut path, settings, ratio, steps)
         }
     };
-    path.answer(status, limit)
+    path.answer(ending, settings)
 }
 
 fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
@@ -68,6 +91,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
             FactorError::NotPositive | FactorError::Singular => Status::Mechanism,
         },
         factor: 0.0,
+        reached: 0.0,
         residual: f64::INFINITY,
         iterations: 0,
         back_offs: 0,
@@ -87,19 +111,24 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 }
 
 impl Path<'_, '_> {
-    fn answer(mut self, status: Status, limit: Option<f64>) -> Answer {
-        let stable = self.equilibrium.is_stable(&self.positions, self.point);
+    fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
+        // Load control has asked at each point; with the load as an unknown, a point knows only its turn.
+        let stable = match self.points.last() {
+            Some(last) if settings.control == Control::Load => last.stable,
+            _ => self.equilibrium.is_stable(&self.positions, self.point),
+        };
         let residual = self
             .equilibrium
             .forces(&self.positions, self.point)
             .relative();
         Answer {
-            status,
+            status: ending.status,
             factor: self.point.pressure,
+            reached: ending.reached,
             residual,
             iterations: self.equilibrium.iterations,
             back_offs: self.equilibrium.back_offs,
-            limit,
+            limit: ending.limit,
             stable,
             positions: self.positions,
             path: self.points,
@@ -113,16 +142,28 @@ impl Path<'_, '_> {
         point: Point,
         settings: &Settings,
         safe: bool,
-    ) -> Result<Found, Failure> {
+    ) -> Result<(), Failure> {
         let mut positions = trial;
+        let found = self.find(&mut positions, point, settings, safe)?;
+        self.accept(positions, point, found.iterations, found.residual);
+        Ok(())
+    }
+
+    /// The same without going there.
+    fn find(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        safe: bool,
+    ) -> Result<Found, Failure> {
         let mut iterations = 0;
         for _ in 0..FLOOR_ROUNDS {
-            let found =
-                self.equilibrium
-                    .newton(&mut positions, point, settings, safe, self.observer)?;
+            let found = self
+                .equilibrium
+                .newton(positions, point, settings, safe, self.observer)?;
             iterations += found.iterations;
-            if !self.equilibrium.update_floor(&positions, point)? {
-                self.accept(positions, point, iterations, found.residual);
+            if !self.equilibrium.update_floor(positions, point)? {
                 return Ok(Found {
                     iterations,
                     residual: found.residual,
@@ -152,39 +193,54 @@ impl Path<'_, '_> {
     }
 
     /// Load control. From a given start the full load is tried first.
-    fn follow_load(&mut self, settings: &Settings, warm: bool) -> (Status, Option<f64>) {
+    fn follow_load(&mut self, settings: &Settings, warm: bool) -> Ending {
         let mut step = if warm {
             1.0
         } else {
             settings.first_step.clamp(settings.least_step, 1.0)
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
+        let mut cuts = 0;
         loop {
             let now = self.point.pressure;
             let next = (now + step).min(1.0);
-            let trial = self.positions.clone();
-            match self.settle(trial, Point::all(next), settings, step <= SAFE_STEP) {
+            let point = Point::all(next);
+            let mut trial = self.positions.clone();
+            let found = self.find(&mut trial, point, settings, step <= SAFE_STEP);
+            let failure = match found {
                 Ok(found) => {
-                    if next == 1.0 {
-                        return (Status::AtRest, None);
+                    let stable = self.equilibrium.is_stable(&trial, point);
+                    if stable || cuts == UNSTABLE_CUTS {
+                        self.accept(trial, point, found.iterations, found.residual);
+                        if let Some(point) = self.points.last_mut() {
+                            point.stable = stable;
+                        }
+                        if next == 1.0 {
+                            return Ending::new(Status::AtRest, None, 1.0);
+                        }
+                        if found.iterations <= EASY {
+                            step *= 2.0;
+                        }
+                        continue;
                     }
-                    if found.iterations <= EASY {
-                        step *= 2.0;
-                    }
+                    // A long step may come upon a branch that the path does not lead to.
+                    cuts += 1;
+                    Failure::Lost
                 }
-                Err(failure @ (Failure::Lost | Failure::Singular)) => {
-                    self.equilibrium.back_offs += 1;
-                    if self.points.is_empty() && warm {
-                        self.positions.clone_from(&cold);
-                    }
-                    step = (next - now) / 4.0;
-                    if step < settings.least_step {
-                        let limit = control::look_for_limit(self, settings);
-                        let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
-                        return (status, limit);
-                    }
-                }
-                Err(failure) => return (status_of(failure), None),
+                Err(failure) => failure,
+            };
+            if !matches!(failure, Failure::Lost | Failure::Singular) {
+                return Ending::new(status_of(failure), None, now);
+            }
+            self.equilibrium.back_offs += 1;
+            if self.points.is_empty() && warm {
+                self.positions.clone_from(&cold);
+            }
+            step = (next - now) / 4.0;
+            if step < settings.least_step {
+                let limit = control::look_for_limit(self, settings);
+                let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
+                return Ending::new(status, limit, now);
             }
         }
     }

@@ -90,6 +90,9 @@ pub struct Answer {
     pub status: Status,
     /// The factor on loads at `positions`: one if all of the load is carried.
     pub factor: f64,
+    /// How much of the way that was asked for lies behind: of the load, or with [`Control::Volume`] of
+    /// the growth in volume. One at the end of it.
+    pub reached: f64,
     /// The relative residual.
     pub residual: f64,
     /// Newton iterations in all.

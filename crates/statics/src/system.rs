@@ -5,7 +5,8 @@ use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::perm::PermRef;
 use faer::prelude::*;
 use faer::sparse::linalg::cholesky::{
-    LdltRef, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    LdltRef, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
@@ -283,6 +284,36 @@ impl System {
             )
             .map_err(|_| FactorError::Singular)?;
         Ok(Factor::Indefinite(entries))
+    }
+
+    /// How many negative eigenvalues the factorised matrix has: as many as negative pivots (Sylvester's
+    /// law of inertia). Unknown where it is not symmetric.
+    pub fn negative_pivots(&self, factor: &Factor) -> Option<usize> {
+        let entries = match factor {
+            Factor::Cholesky(_) => return Some(0),
+            Factor::General(_) => return None,
+            Factor::Indefinite(entries) => entries,
+        };
+        let mut negative = 0;
+        match self.symbolic.as_ref()?.raw() {
+            SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                let starts = symbolic.col_ptr();
+                let pivots = starts[..self.size].iter().map(|&first| entries[first]);
+                negative += pivots.filter(|pivot| *pivot < 0.0).count();
+            }
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                // Each block of columns is dense, with its pivots on the diagonal.
+                for block in 0..symbolic.n_supernodes() {
+                    let columns =
+                        symbolic.supernode_end()[block] - symbolic.supernode_begin()[block];
+                    let rows = columns + symbolic.supernode(block).pattern().len();
+                    let first = symbolic.col_ptr_for_val()[block];
+                    let pivots = (0..columns).map(|column| entries[first + column * (rows + 1)]);
+                    negative += pivots.filter(|pivot| *pivot < 0.0).count();
+                }
+            }
+        }
+        Some(negative)
     }
 
     fn shifted(&self, shift: f64) -> Vec<f64> {

@@ -87,6 +87,7 @@ def find_equilibrium(
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,
     )
+    report["way"] = control
     if report["status"] == "not-converged" and report["factor"] == 0.0 and moves_freely(setup):
         # Singular up to rounding is all that the factor shows of it.
         report["status"] = "mechanism"
@@ -114,7 +115,11 @@ def sentence(report: dict[str, Any]) -> str:
             words = f"equilibrium after {iterations}, {residual}"
             if report["limit"] is not None:
                 words += f"; the path has a limit at {100 * report['limit']:.4g} % of the load"
-            return words if report["stable"] else f"{words}; under constant loads it is not stable"
+            if report["stable"]:
+                return words
+            if report["way"] == "load":
+                words += ", and shorter load steps led past a point where the body can buckle"
+            return f"{words}; under constant loads it is not stable"
         case "limit-reached" if not report["stable"]:
             return (
                 f"the path has a limit at {100 * report['limit']:.4g} % of the load; its steps "
@@ -132,6 +137,15 @@ def sentence(report: dict[str, Any]) -> str:
                 "it, or join voxels that meet only along edges or corners (`voxsoft check` shows "
                 "such hinges)"
             )
+        case _ if report["way"] == "volume" and report["reached"] > 0.0:
+            words = (
+                f"followed for {100 * report['reached']:.4g} % of the growth in volume, to "
+                f"{carried}, and lost there after {iterations}; kept are the path so far and its "
+                "last state. Ask for more steps, or for a smaller volume_ratio"
+            )
+            if report["limit"] is not None:
+                words += f"; the path has a limit at {100 * report['limit']:.4g} % of the load"
+            return words
         case _:
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
