@@ -35,6 +35,8 @@ _ORDER = {"length": 0, "angle": 1, "volume": 2, "force": 3}
 _NARROWEST = 0.02
 # A number that changes by less than this share from size to size has nothing to show.
 _LEVEL = 1e-4
+# Distance of error bars that stand side by side, as a share of the largest voxel.
+_ASIDE = 0.03
 
 
 def plot_agreement(comparison: Comparison) -> Figure:
@@ -199,12 +201,14 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
             axes.plot(
                 edges, values, marker=_MARKERS[index], color=color, label=each.series, linewidth=1.2
             )
-            finest = [edges[-1]], [values[-1]]
+            # Series end at the same size: side by side, their bars can be told apart.
+            place = edges[-1] + _ASIDE * edges[0] * (index - (len(chosen) - 1) / 2)
             bar = estimate.error * unit.factor
-            axes.errorbar(*finest, yerr=bar, color=color, capsize=4, linewidth=1.2)
+            axes.errorbar([place], [values[-1]], yerr=bar, color=color, capsize=4, linewidth=1.2)
         axes.set_xlim(left=0.0)
         plain_axes(axes, x="edge of voxels or bricks (mm)", y=unit.label(name))
-    plain_legend(panels[0], loc="best")
+    lines = panels[0].get_legend_handles_labels()
+    figure.legend(*lines, loc="outside upper left", ncols=3, frameon=False, fontsize=9)
     return figure
 
 
