@@ -98,3 +98,23 @@ def test_the_weight_hangs_on_the_upper_edge(eth, swing):
     # The row outside is rubber where the beam has none: 3.2 g of 52 stand half a voxel off.
     assert center[0] == pytest.approx(0.0, abs=0.5e-3)
     assert center[1] == pytest.approx(15e-3, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_the_decay_with_a_weight_is_foretold_from_that_without(eth, swing):
+    """The share of one Prony branch is that which the script fits to the bare beam, 0.180.
+
+    -7 % was seen with the weight, where the two runs are 13 % apart; Kelvin-Voigt damping, whose
+    loss factor falls with the frequency, is 51 % short.
+    """
+    branch = swing.dampings([7.52, 4.13])[1]
+    young = swing.coarse(269.3e3)
+    decay, frequency = {}, {}
+    for case, mass in eth.MASSES.items():
+        found = eth.oscillation(*swing.released(mass, young, branch, 0.180))
+        real = [each.decay for each in eth.swings(case)]
+        decay[case] = found.decay / np.mean(real) - 1
+        frequency[case] = found.frequency / np.mean([s.frequency for s in eth.swings(case)]) - 1
+    assert abs(decay["gravity"]) < 0.02  # the fit stops at 0.5 %, of a share of three digits
+    assert abs(decay["load52"]) < 0.13
+    assert max(map(abs, frequency.values())) < 0.05  # +3.9 % and +0.5 % were seen
