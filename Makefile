@@ -66,6 +66,7 @@ format:
 
 bench: install
 	$(BIN)/python benchmarks/pipeline.py
+	$(BIN)/python benchmarks/step_rate.py
 
 docs: install
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs

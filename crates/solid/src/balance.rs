@@ -52,12 +52,22 @@ impl Balance {
 
 /// The balance of a body at `positions` under its loads at `time` (s).
 pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
-    let count = positions.len();
-    let mut external = vec![[0.0; 3]; count];
+    let mut external = vec![[0.0; 3]; positions.len()];
     problem.add_loads(positions, time, &mut external);
     let mut net = external.clone();
     elastic::add_forces(problem.body(), positions, &mut net);
+    balance_of_forces(problem, positions, &external, net)
+}
 
+/// The balance of a body at `positions` under external forces (N) and forces that are elastic plus
+/// external (N), for callers that have them.
+pub fn balance_of_forces(
+    problem: &Problem,
+    positions: &[Vec3],
+    external: &[Vec3],
+    net: Vec<Vec3>,
+) -> Balance {
+    let count = positions.len();
     let mut reactions = vec![[0.0; 3]; count];
     let (mut residual, mut applied, mut supported) = (0.0, 0.0, 0.0);
     for vertex in 0..count {

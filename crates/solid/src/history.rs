@@ -38,6 +38,11 @@ impl History {
         Ok(Self { times, factors })
     }
 
+    /// Whether the factor is the same at all times.
+    pub fn is_constant(&self) -> bool {
+        self.factors.iter().all(|factor| *factor == self.factors[0])
+    }
+
     /// The factor at `time` (s); `f64::INFINITY` gives the final factor.
     pub fn at(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|&t| t <= time);

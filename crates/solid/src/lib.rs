@@ -53,6 +53,7 @@ mod membrane;
 pub mod mixed;
 mod problem;
 mod state;
+pub mod strips;
 pub mod vector;
 
 pub use body::{Body, Edge, Mesh, Tet};

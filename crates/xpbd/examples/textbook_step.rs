@@ -3,13 +3,18 @@
 //!
 //! `cargo run --release -p voxsoft-xpbd --example textbook_step`
 
+#[expect(dead_code, reason = "this example takes the order of the body")]
+mod textbook;
+
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
+use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Problem, State};
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Relaxation, relax};
+
+use textbook::Textbook;
 
 const DAMPING_RATE: f64 = 20.0;
 const END_TIME: f64 = 1.5;
@@ -32,45 +37,6 @@ fn beam() -> Result<Problem, Box<dyn std::error::Error>> {
     let body = Body::new(&mesh, &[material])?;
     let gravity = Load::gravity([0.0, 0.0, -9.81]);
     Ok(Problem::new(body, vec![clamp], vec![gravity], None)?)
-}
-
-/// One substep of length `h` with one sweep, multipliers starting from zero.
-fn textbook_substep(body: &Body, weights: &[f64], state: &mut State, start: &mut [Vec3], h: f64) {
-    start.copy_from_slice(&state.positions);
-    for (vertex, weight) in weights.iter().enumerate() {
-        if *weight > 0.0 {
-            state.velocities[vertex] = scale((-DAMPING_RATE * h).exp(), state.velocities[vertex]);
-            state.velocities[vertex][2] -= h * 9.81;
-            axpy(&mut state.positions[vertex], h, state.velocities[vertex]);
-        }
-    }
-    for edge in body.edges() {
-        let (constraint, gradient) = edge.evaluate(&state.positions);
-        let [a, b] = edge.vertices.map(|v| v as usize);
-        let compliance = 1.0 / (edge.stiffness * h * h);
-        let change = -constraint / (weights[a] + weights[b] + compliance);
-        axpy(&mut state.positions[a], weights[a] * change, gradient);
-        axpy(&mut state.positions[b], -weights[b] * change, gradient);
-    }
-    for tet in body.tets() {
-        let (constraint, gradients) = tet.evaluate(&state.positions);
-        let vertices = tet.vertices.map(|v| v as usize);
-        let inertia: f64 = (0..4)
-            .map(|i| weights[vertices[i]] * dot(gradients[i], gradients[i]))
-            .sum();
-        let change = -constraint / (inertia + 1.0 / (tet.stiffness * h * h));
-        for i in 0..4 {
-            let weight = weights[vertices[i]];
-            axpy(
-                &mut state.positions[vertices[i]],
-                weight * change,
-                gradients[i],
-            );
-        }
-    }
-    for (vertex, before) in start.iter().enumerate() {
-        state.velocities[vertex] = scale(1.0 / h, sub(state.positions[vertex], *before));
-    }
 }
 
 fn tip(body: &Body, state: &State) -> Vec3 {
@@ -96,22 +62,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     });
     let [x, y, z] = tip(body, &answer.state);
     println!("energies at rest            tip {x:8.3} {y:8.3} {z:8.3} mm");
-    let held = problem.held().iter();
-    let weights: Vec<f64> = held
-        .zip(body.masses())
-        .map(|(h, m)| if h[0] { 0.0 } else { 1.0 / m })
-        .collect();
-    let mut start = vec![[0.0; 3]; weights.len()];
     for h in [1e-4, 2e-4, 4e-4, 8e-4] {
-        let mut state = rest.clone();
+        let order = (0..body.edges().len() + body.tets().len()).collect();
+        let mut run = Textbook::in_order(&problem, [0.0, 0.0, -9.81], order);
+        run.sort();
         let substeps = (END_TIME / h) as usize;
         let clock = Instant::now();
         for _ in 0..substeps {
-            textbook_substep(body, &weights, &mut state, &mut start, h);
+            run.substep(h, DAMPING_RATE);
         }
         let constraints = body.edges().len() + body.tets().len();
         let cost = clock.elapsed().as_secs_f64() * 1e9 / (substeps * constraints) as f64;
-        let [x, y, z] = tip(body, &state);
+        let [x, y, z] = tip(body, &run.state);
         let step = h * 1e3;
         println!(
             "textbook, substep {step:.1} ms    tip {x:8.3} {y:8.3} {z:8.3} mm, {cost:.1} ns a constraint"

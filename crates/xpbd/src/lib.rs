@@ -21,8 +21,12 @@
 
 mod damping;
 pub mod dynamics;
+mod motion;
 mod outcome;
 pub mod relaxation;
+#[cfg(test)]
+mod sample_problems;
+mod slots;
 mod stiffness;
 mod viscosity;
 

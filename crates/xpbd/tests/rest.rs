@@ -244,8 +244,10 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
         assert_eq!(
             answer.status,
             Status::Diverged,
-            "residual {}",
-            answer.residual
+            "residual {} steps {} back-offs {}",
+            answer.residual,
+            answer.steps,
+            answer.back_offs
         );
         let breakdown = answer.breakdown.unwrap();
         assert!(breakdown.when >= 0.0 && breakdown.rest[2] > 0.0);

@@ -1,203 +1,15 @@
-//! Algorithm 3: substeps of prediction and constraint projection in real time.
+//! Substeps of any body, constraint by constraint.
 
-use std::ops::ControlFlow;
-
-use voxsoft_solid::balance::{balance, is_still};
+use voxsoft_solid::balance::{Balance, balance};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 use voxsoft_solid::{Body, Problem, State};
 
+use super::{Arrays, Damping, Dynamics};
 use crate::damping;
-use crate::outcome::{
-    Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status, farthest, find_breakdown,
-    travel_limit,
-};
-use crate::stiffness::largest_eigenvalue;
 use crate::viscosity::Viscosity;
 
-/// How motion is damped.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Damping {
-    /// Velocities decay with this rate in 1/s.
-    Rate(f64),
-    /// Critical for the slowest motion seen, estimated as the run goes: comes to rest soonest, says
-    /// nothing about the real motion.
-    Critical,
-}
-
-/// Settings of [`simulate`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Dynamics {
-    /// Length of a step in s, divided into substeps. Larger: fewer looks at rest and breakdown.
-    pub time_step: f64,
-    /// Substeps per step; `None` takes as many as the highest frequency needs.
-    pub substeps: Option<u32>,
-    /// Sweeps over all constraints per substep. More allow longer substeps.
-    pub iterations: u32,
-    /// Damping of all motion.
-    pub damping: Damping,
-    /// Retardation time `τ` in s of Kelvin–Voigt damping: a constraint answers to `C + τ dC/dt`, and the
-    /// deviatoric stress of a hyperelastic voxel to `s + τ ds/dt`.
-    pub retardation: f64,
-    /// Run to this time in s; `None` runs until rest.
-    pub end_time: Option<f64>,
-    /// With no end time, how long to wait for rest, in s.
-    pub max_time: f64,
-    /// Rest is where the relative residual force is below this, and the kinetic energy below this
-    /// part of the elastic energy.
-    pub tolerance: f64,
-    /// Tell the observer to record at multiples of this time in s (rounded to steps).
-    pub record_interval: Option<f64>,
-}
-
-impl Default for Dynamics {
-    fn default() -> Self {
-        Self {
-            time_step: 0.01,
-            substeps: None,
-            iterations: 1,
-            damping: Damping::Critical,
-            retardation: 0.0,
-            end_time: None,
-            max_time: 60.0,
-            tolerance: 1e-4,
-            record_interval: None,
-        }
-    }
-}
-
-/// A substep of one over the highest frequency: half the explicit limit.
-const SUBSTEP_FREQUENCY: f64 = 1.0;
-/// Damping times after which an oscillation must have shrunk (by `e⁻²` at least).
-const WINDOW_DAMPING_TIMES: f64 = 4.0;
-
-/// Runs the problem from `start`.
-///
-/// When a step blows up, the last good state is taken again with twice the substeps; so also when
-/// the residual has stopped to fall although damping should have halved it several times over (an
-/// unstable step can saturate at a small amplitude).
-pub fn simulate(
-    problem: &Problem,
-    start: State,
-    settings: &Dynamics,
-    observer: &mut Observer<'_>,
-) -> Answer {
-    let limit = travel_limit(problem);
-    let mut substeps = settings
-        .substeps
-        .unwrap_or_else(|| enough_substeps(problem, settings));
-    let mut run = Stepper::new(problem, start, settings);
-    let mut checkpoint = run.state.clone();
-    let (mut steps, mut back_offs) = (0u64, 0u32);
-    let mut recorded = -1i64;
-    let mut window = Window::default();
-    let (status, residual, breakdown) = loop {
-        let now = balance(problem, &run.state.positions, run.state.time);
-        let residual = now.relative_residual();
-        let broken = find_breakdown(problem, &run.state.positions, limit, run.state.time);
-        let excess = now.excess();
-        let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
-        let stuck = !blown_up
-            && settings.end_time.is_none()
-            && window.stuck(
-                run.state.time,
-                run.damping_rate,
-                residual,
-                settings.tolerance,
-            );
-        if (blown_up || stuck) && back_offs < MAX_BACK_OFFS {
-            back_offs += 1;
-            substeps *= 2;
-            if blown_up {
-                run.restore(&checkpoint);
-            }
-            window = Window::default();
-        } else if blown_up {
-            let place =
-                broken.unwrap_or_else(|| farthest(problem, &run.state.positions, run.state.time));
-            run.restore(&checkpoint);
-            break (Status::Diverged, residual, Some(place));
-        } else {
-            checkpoint.clone_from(&run.state);
-            let slot = settings.record_interval.map_or(-1, |interval| {
-                (run.state.time / interval + 1e-9).floor() as i64
-            });
-            let record = slot > recorded;
-            recorded = recorded.max(slot);
-            let progress = Progress {
-                steps,
-                state: &run.state,
-                residual,
-                record,
-            };
-            if let ControlFlow::Break(()) = observer(&progress) {
-                break (Status::Cancelled, residual, None);
-            }
-            match settings.end_time {
-                Some(end) if run.state.time >= end * (1.0 - 1e-12) => {
-                    break (Status::EndTime, residual, None);
-                }
-                None if run.at_rest(residual) => break (Status::AtRest, residual, None),
-                None if run.state.time >= settings.max_time => {
-                    break (Status::NotAtRest, residual, None);
-                }
-                _ => {}
-            }
-        }
-        let left = settings
-            .end_time
-            .map_or(f64::INFINITY, |end| end - run.state.time);
-        let substep = settings.time_step.min(left) / f64::from(substeps);
-        for _ in 0..substeps {
-            run.substep(substep);
-        }
-        steps += u64::from(substeps);
-    };
-    Answer {
-        state: run.state,
-        status,
-        residual,
-        steps,
-        back_offs,
-        substep: settings.time_step / f64::from(substeps),
-        breakdown,
-    }
-}
-
-fn enough_substeps(problem: &Problem, settings: &Dynamics) -> u32 {
-    let highest = largest_eigenvalue(problem, problem.body().masses()).sqrt();
-    (settings.time_step * highest / SUBSTEP_FREQUENCY)
-        .ceil()
-        .max(1.0) as u32
-}
-
-/// Watches whether the residual still falls.
-#[derive(Default)]
-struct Window {
-    start: f64,
-    lowest_before: Option<f64>,
-    lowest: Option<f64>,
-}
-
-impl Window {
-    fn stuck(&mut self, time: f64, damping_rate: f64, residual: f64, tolerance: f64) -> bool {
-        self.lowest = Some(self.lowest.map_or(residual, |lowest| lowest.min(residual)));
-        if damping_rate <= 0.0 || (time - self.start) * damping_rate < 2.0 * WINDOW_DAMPING_TIMES {
-            return false;
-        }
-        let stuck = residual > tolerance
-            && matches!((self.lowest_before, self.lowest),
-                (Some(before), Some(now)) if now > 0.8 * before);
-        *self = Self {
-            start: time,
-            lowest_before: self.lowest,
-            lowest: None,
-        };
-        stuck
-    }
-}
-
 /// The state of a run and the arrays it works in; nothing is allocated in a substep.
-struct Stepper<'a> {
+pub(super) struct OnVertices<'a> {
     problem: &'a Problem,
     settings: &'a Dynamics,
     state: State,
@@ -217,8 +29,8 @@ struct Stepper<'a> {
     substep_before: f64,
 }
 
-impl<'a> Stepper<'a> {
-    fn new(problem: &'a Problem, start: State, settings: &'a Dynamics) -> Self {
+impl<'a> OnVertices<'a> {
+    pub fn new(problem: &'a Problem, settings: &'a Dynamics) -> Self {
         let body = problem.body();
         let count = body.rest().len();
         let inverse =
@@ -226,7 +38,7 @@ impl<'a> Stepper<'a> {
         Self {
             problem,
             settings,
-            state: start,
+            state: State::at_rest(body),
             inverse_masses: body
                 .masses()
                 .iter()
@@ -247,34 +59,6 @@ impl<'a> Stepper<'a> {
             },
             substep_before: 0.0,
         }
-    }
-
-    fn restore(&mut self, checkpoint: &State) {
-        self.state.clone_from(checkpoint);
-        self.viscosity.restart();
-        self.substep_before = 0.0;
-    }
-
-    fn at_rest(&self, residual: f64) -> bool {
-        let kinetic = self.state.kinetic_energy(self.problem.body().masses());
-        let tolerance = self.settings.tolerance;
-        residual <= tolerance && is_still(self.problem, &self.state.positions, kinetic, tolerance)
-    }
-
-    fn substep(&mut self, h: f64) {
-        self.predict(h);
-        for _ in 0..self.settings.iterations {
-            self.sweep(h);
-        }
-        self.problem
-            .place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
-        self.lift_to_floor();
-        for vertex in 0..self.start.len() {
-            let moved = sub(self.state.positions[vertex], self.start[vertex]);
-            self.state.velocities[vertex] = scale(1.0 / h, moved);
-        }
-        self.state.time += h;
-        self.substep_before = h;
     }
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
@@ -418,6 +202,42 @@ impl<'a> Stepper<'a> {
                 position[2] = position[2].max(floor.z);
             }
         }
+    }
+}
+
+impl Arrays for OnVertices<'_> {
+    fn load(&mut self, state: &State) {
+        self.state.clone_from(state);
+        self.viscosity.restart();
+        self.substep_before = 0.0;
+    }
+
+    fn store(&self, state: &mut State) {
+        state.clone_from(&self.state);
+    }
+
+    fn balance(&mut self, state: &State) -> Balance {
+        balance(self.problem, &state.positions, state.time)
+    }
+
+    fn substep(&mut self, h: f64) {
+        self.predict(h);
+        for _ in 0..self.settings.iterations {
+            self.sweep(h);
+        }
+        self.problem
+            .place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
+        self.lift_to_floor();
+        for vertex in 0..self.start.len() {
+            let moved = sub(self.state.positions[vertex], self.start[vertex]);
+            self.state.velocities[vertex] = scale(1.0 / h, moved);
+        }
+        self.state.time += h;
+        self.substep_before = h;
+    }
+
+    fn damping_rate(&self) -> f64 {
+        self.damping_rate
     }
 }
 

@@ -1,0 +1,181 @@
+//! Substeps of a lattice body of voxels, several constraints at a time.
+
+use voxsoft_solid::balance::{Balance, balance_of_forces};
+use voxsoft_solid::strips::{Columns, Strips, Sweep};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Problem, State};
+
+use super::{Arrays, Damping, Dynamics};
+use crate::motion::{self, Advance};
+use crate::slots::SlotProblem;
+
+/// The arrays of a run; nothing is allocated in a substep, unless dead loads vary over time.
+pub(super) struct OnStrips<'a> {
+    problem: &'a Problem,
+    settings: &'a Dynamics,
+    strips: &'a Strips,
+    slots: SlotProblem<'a>,
+    time: f64,
+    positions: Columns,
+    velocities: Columns,
+    start: Columns,
+    forces: Columns,
+    before: Columns,
+    /// Forces of a look, which must not come between those of two substeps.
+    looked: Columns,
+    masses: Vec<f64>,
+    /// 1/kg for each axis, zero where a clamp holds it and where no vertex is.
+    inverse_masses: Columns,
+    /// Whether clamps hold all axes of a vertex or none.
+    isotropic: bool,
+    multipliers: Vec<f64>,
+    /// The rate in 1/s in force.
+    damping_rate: f64,
+    /// The substep before, in s; zero at the start.
+    substep_before: f64,
+}
+
+impl<'a> OnStrips<'a> {
+    pub fn new(problem: &'a Problem, strips: &'a Strips, settings: &'a Dynamics) -> Self {
+        let empty = Columns::zeros(strips.slots());
+        let mut masses = vec![0.0; strips.slots()];
+        strips.load_scalars(problem.body().masses(), &mut masses);
+        let inverse = |(mass, held): (&f64, &[bool; 3])| -> Vec3 {
+            held.map(|h| if h { 0.0 } else { 1.0 / mass })
+        };
+        let held = problem.held();
+        let pairs = problem.body().masses().iter().zip(held);
+        let mut inverse_masses = empty.clone();
+        strips.load(&pairs.map(inverse).collect::<Vec<_>>(), &mut inverse_masses);
+        Self {
+            problem,
+            settings,
+            strips,
+            slots: SlotProblem::new(problem, strips),
+            time: 0.0,
+            positions: empty.clone(),
+            velocities: empty.clone(),
+            start: empty.clone(),
+            forces: empty.clone(),
+            before: empty.clone(),
+            looked: empty,
+            masses,
+            inverse_masses,
+            isotropic: held.iter().all(|[x, y, z]| x == y && y == z),
+            multipliers: vec![0.0; strips.places()],
+            damping_rate: match settings.damping {
+                Damping::Rate(rate) => rate,
+                Damping::Critical => 0.0,
+            },
+            substep_before: 0.0,
+        }
+    }
+
+    /// Multipliers from the elastic forces at the first position, then free flight under all forces.
+    fn predict(&mut self, h: f64) {
+        let time = self.time + h;
+        self.start.copy_from(&self.positions);
+        std::mem::swap(&mut self.forces, &mut self.before);
+        self.slots.set_loads(&self.start, time, &mut self.forces);
+        self.strips
+            .add_forces_keeping(&self.start, &mut self.forces, &mut self.multipliers);
+        self.update_damping();
+        let keep = (-self.damping_rate * h).exp();
+        let positions = self.positions.axes_mut();
+        let velocities = self.velocities.axes_mut();
+        for (axis, (position, velocity)) in positions.into_iter().zip(velocities).enumerate() {
+            let advance = Advance {
+                position,
+                velocity,
+                force: self.forces.axes()[axis],
+                inverse_masses: self.inverse_masses.axes()[axis],
+                free: &self.slots.free[axis],
+                keep,
+                gain: h,
+                step: h,
+            };
+            advance.run();
+        }
+        self.slots.place_clamps(time, 1.0, &mut self.positions);
+    }
+
+    fn update_damping(&mut self) {
+        if self.settings.damping == Damping::Critical && self.substep_before > 0.0 {
+            let frequency = motion::frequency(
+                &self.velocities,
+                &self.before,
+                &self.forces,
+                &self.masses,
+                self.substep_before,
+            );
+            self.damping_rate = 2.0 * frequency;
+        }
+    }
+
+    fn lift_to_floor(&mut self) {
+        let Some(floor) = self.slots.floor() else {
+            return;
+        };
+        let [_, _, height] = self.positions.axes_mut();
+        for (height, free) in height.iter_mut().zip(&self.slots.free[2]) {
+            if *free != 0 {
+                *height = height.max(floor);
+            }
+        }
+    }
+}
+
+impl Arrays for OnStrips<'_> {
+    fn load(&mut self, state: &State) {
+        self.time = state.time;
+        self.strips.load(&state.positions, &mut self.positions);
+        self.strips.load(&state.velocities, &mut self.velocities);
+        self.slots.forget_placed();
+        self.substep_before = 0.0;
+    }
+
+    fn store(&self, state: &mut State) {
+        self.strips.store(&self.positions, &mut state.positions);
+        self.strips.store(&self.velocities, &mut state.velocities);
+        state.time = self.time;
+    }
+
+    fn balance(&mut self, state: &State) -> Balance {
+        let count = state.positions.len();
+        let (mut external, mut net) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        self.slots
+            .set_loads(&self.positions, state.time, &mut self.looked);
+        self.strips.store(&self.looked, &mut external);
+        self.strips.add_forces(&self.positions, &mut self.looked);
+        self.strips.store(&self.looked, &mut net);
+        balance_of_forces(self.problem, &state.positions, &external, net)
+    }
+
+    fn substep(&mut self, h: f64) {
+        self.predict(h);
+        for sweep in 1..=self.settings.iterations {
+            self.strips.sweep(Sweep {
+                positions: &mut self.positions,
+                start: &self.start,
+                inverse_masses: &self.inverse_masses,
+                isotropic: self.isotropic,
+                multipliers: &mut self.multipliers,
+                keep: sweep < self.settings.iterations,
+                substep: h,
+                retardation: self.settings.retardation,
+            });
+        }
+        // Also those that never move: a run that blows up must not take them along.
+        self.slots.forget_placed();
+        self.slots
+            .place_clamps(self.time + h, 1.0, &mut self.positions);
+        self.lift_to_floor();
+        motion::difference(&self.positions, &self.start, 1.0 / h, &mut self.velocities);
+        self.time += h;
+        self.substep_before = h;
+    }
+
+    fn damping_rate(&self) -> f64 {
+        self.damping_rate
+    }
+}
