@@ -205,6 +205,7 @@ def equilibrium(
     control: str = "load",
     steps: int = 20,
     ratio: float = 1.0,
+    linear: str = "auto",
     start: NDArray[np.float64] | None = None,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
     progress: Callable[[int, float, float], None] | None = None,

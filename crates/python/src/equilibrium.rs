@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voxsoft_solid::State;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_statics::{Control, Settings};
+use voxsoft_statics::{Control, LinearSolver, Settings};
 use voxsoft_xpbd::{Answer, Status};
 
 use crate::gate;
@@ -46,9 +46,10 @@ pub fn adjoint<'py>(
     PyArray1::from_vec(py, flat).reshape([gradients.len(), count, 3])
 }
 
-/// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`).
+/// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
+/// `linear` is "auto", "direct" or "iterative".
 #[pyfunction]
-#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, start=None, sensors=vec![], progress=None))]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", start=None, sensors=vec![], progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -61,6 +62,7 @@ pub fn equilibrium<'py>(
     control: &str,
     steps: u32,
     ratio: f64,
+    linear: &str,
     start: Option<PyReadonlyArray2<'_, f64>>,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
     progress: Option<Py<PyAny>>,
@@ -75,10 +77,20 @@ pub fn equilibrium<'py>(
             return Err(PyValueError::new_err(message));
         }
     };
+    let linear = match linear {
+        "auto" => LinearSolver::Auto,
+        "direct" => LinearSolver::Direct,
+        "iterative" => LinearSolver::Iterative,
+        other => {
+            let message = format!("linear: \"{other}\" is not auto, direct or iterative");
+            return Err(PyValueError::new_err(message));
+        }
+    };
     let settings = Settings {
         tolerance,
         first_step,
         control,
+        linear,
         ..Settings::default()
     };
     let start = start.map(|start| problem.positions(&start)).transpose()?;

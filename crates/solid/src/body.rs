@@ -84,6 +84,7 @@ pub struct Body {
     masses: Vec<f64>,
     edges: Vec<Edge>,
     tets: Vec<Tet>,
+    voxels: Vec<[u32; 8]>,
     bricks: Vec<Brick>,
     hyperelastic: Vec<HyperelasticMaterial>,
     membranes: Vec<Membrane>,
@@ -118,7 +119,7 @@ impl Body {
         }
 
         let mut masses = vec![0.0; mesh.vertices.len()];
-        let mut bricks = Vec::new();
+        let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
         }
@@ -160,11 +161,12 @@ impl Body {
                                 .ok_or(ProblemError::NotVoxels { tet: t })?;
                     }
                 }
+                let cube = cube::corners(mesh, block);
+                voxels.extend(cube.map(|(corners, _)| corners));
                 if let Material::Hyperelastic(material) =
                     &materials[usize::from(mesh.tet_part[block[0]])]
                 {
-                    let (vertices, side) = cube::corners(mesh, block)
-                        .ok_or(ProblemError::NotCubes { tet: block[0] })?;
+                    let (vertices, side) = cube.ok_or(ProblemError::NotCubes { tet: block[0] })?;
                     let brick = Brick {
                         vertices,
                         material: u32::from(mesh.tet_part[block[0]]),
@@ -216,6 +218,7 @@ impl Body {
             masses,
             edges,
             tets,
+            voxels,
             bricks,
             hyperelastic,
             membranes: mesh.membranes.clone(),
@@ -249,6 +252,12 @@ impl Body {
     /// All volume constraints, chunk after chunk.
     pub fn tets(&self) -> &[Tet] {
         &self.tets
+    }
+
+    /// The corners of every block that is a cube along the axes, of any material, in the order of the
+    /// blocks' colours: corner `c` is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+    pub fn voxels(&self) -> &[[u32; 8]] {
+        &self.voxels
     }
 
     /// All hyperelastic voxels, blocks of one colour after the other.

@@ -129,47 +129,48 @@ impl Brick {
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
     }
 
-    /// Adds the elastic forces in N, minus the gradient of [`Brick::energy`].
+    /// The elastic forces on the corners in N, minus the gradient of [`Brick::energy`].
     ///
     /// With `T = ∂Φ/∂S`, `sₘ = ∂Φ/∂p̂ₘ` and `N = T S + Σ sₘ ⊗ p̂ₘ`, the gradient by `F₀` is
     /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`.
-    pub fn add_forces(
-        &self,
-        material: &HyperelasticMaterial,
-        positions: &[Vec3],
-        forces: &mut [Vec3],
-    ) {
+    pub fn forces(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> [Vec3; CORNERS] {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let stress = state.gradient(material);
-        self.spread_stress(&state, &stress, material, forces);
+        self.spread_stress(&state, &stress, material)
     }
 
-    /// Adds the elastic forces and those of a viscous stress, which `viscous` gives for the deviatoric
+    /// Adds forces on the corners to those on all vertices.
+    #[inline(always)]
+    pub fn add_to(&self, corners: &[Vec3; CORNERS], forces: &mut [Vec3]) {
+        for (&vertex, force) in self.vertices.iter().zip(corners) {
+            axpy(&mut forces[vertex as usize], 1.0, *force);
+        }
+    }
+
+    /// The elastic forces and those of a viscous stress, which `viscous` gives for the deviatoric
     /// part of the elastic one; both are in the rotated frame, so that a turn changes neither.
-    pub fn add_viscous_forces(
+    pub fn viscous_forces(
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
         viscous: impl FnOnce(&BrickStress) -> BrickStress,
-        forces: &mut [Vec3],
-    ) {
+    ) -> [Vec3; CORNERS] {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let deviatoric = state.deviatoric(material);
         let stress = state
             .gradient(material)
             .plus_scaled(1.0, &viscous(&deviatoric));
-        self.spread_stress(&state, &stress, material, forces);
+        self.spread_stress(&state, &stress, material)
     }
 
-    /// Adds the forces of the stress that `strain` predicts for `positions`:
+    /// The forces of the stress that `strain` predicts for `positions`:
     /// `Φ'(ê) + Φ''(ê)(e − ê)`; see [`crate::mixed`].
-    pub fn add_predicted_forces(
+    pub fn predicted_forces(
         &self,
         material: &HyperelasticMaterial,
         strain: &BrickStrain,
         positions: &[Vec3],
-        forces: &mut [Vec3],
-    ) {
+    ) -> [Vec3; CORNERS] {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let other = state.with_strain(strain);
         let (now, then) = (state.strain().row(), strain.row());
@@ -178,7 +179,7 @@ impl Brick {
             &std::array::from_fn(|k| now[k] - then[k]),
         );
         let stress = other.gradient(material).plus(&change);
-        self.spread_stress(&state, &stress, material, forces);
+        self.spread_stress(&state, &stress, material)
     }
 
     fn spread_stress(
@@ -186,8 +187,7 @@ impl Brick {
         state: &Rotated,
         gradient: &BrickStress,
         material: &HyperelasticMaterial,
-        forces: &mut [Vec3],
-    ) {
+    ) -> [Vec3; CORNERS] {
         let stress = to_matrix(&gradient.stress);
         let stretch = to_matrix(&state.stretch);
         let mut couple = multiply(&stress, &stretch);
@@ -203,12 +203,13 @@ impl Brick {
         }
         modes[6] = scale(material.young() / 9.0, state.bilinear);
         let factor = self.volume() / (4.0 * self.side);
-        for (corner, vertex) in self.vertices.into_iter().enumerate() {
-            let force = &mut forces[vertex as usize];
+        std::array::from_fn(|corner| {
+            let mut force = [0.0; 3];
             for k in 0..7 {
-                axpy(force, -factor * SIGNS[k][corner], modes[k]);
+                axpy(&mut force, -factor * SIGNS[k][corner], modes[k]);
             }
-        }
+            force
+        })
     }
 
     /// The Hessian of the energy in N/m, exact.

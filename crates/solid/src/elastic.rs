@@ -1,8 +1,13 @@
 //! Energy, forces and stiffness of a body: constraints, hyperelastic voxels, membranes.
 
+use crate::batches::in_order;
 use crate::body::{Body, Edge, Tet};
 use crate::matrix::cross_matrix;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
+
+/// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
+pub(crate) const FORCE_BATCH: usize = 8192;
+pub(crate) const STIFFNESS_BATCH: usize = 256;
 
 impl Edge {
     /// `C = |x_a − x_b| − ℓ` (m) and its gradient with respect to `x_a`; the gradient with respect
@@ -144,9 +149,13 @@ pub fn add_constraint_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3
 
 /// Adds the forces of hyperelastic voxels and membranes alone, which are not constraints.
 pub fn add_element_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
-    for brick in body.bricks() {
-        brick.add_forces(body.material_of(brick), positions, forces);
-    }
+    let bricks = body.bricks();
+    in_order(
+        bricks.len(),
+        FORCE_BATCH,
+        |i| bricks[i].forces(body.material_of(&bricks[i]), positions),
+        |i, corners| bricks[i].add_to(&corners, forces),
+    );
     for membrane in body.membranes() {
         membrane.add_forces(positions, forces);
     }
@@ -170,10 +179,13 @@ pub fn visit_element_stiffness(
     positions: &[Vec3],
     visit: &mut dyn FnMut(&[u32], &[f64]),
 ) {
-    for brick in body.bricks() {
-        let stiffness = brick.stiffness(body.material_of(brick), positions, None);
-        visit(&brick.vertices, stiffness.as_flattened());
-    }
+    let bricks = body.bricks();
+    in_order(
+        bricks.len(),
+        STIFFNESS_BATCH,
+        |i| bricks[i].stiffness(body.material_of(&bricks[i]), positions, None),
+        |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
+    );
     for membrane in body.membranes() {
         visit(
             &membrane.vertices(),

@@ -35,6 +35,7 @@
 //! ```
 
 pub mod balance;
+mod batches;
 pub mod body;
 pub mod brick;
 mod brick_energy;

@@ -11,7 +11,9 @@
 //! The equilibrium is the same; the way there is several times shorter (Magisano, Leonetti and Garcea
 //! 2017, doi 10.1016/j.cma.2016.09.044).
 
+use crate::batches::in_order;
 use crate::brick::BrickStrain;
+use crate::elastic::{FORCE_BATCH, STIFFNESS_BATCH};
 use crate::membrane::Plane;
 use crate::vector::{Vec3, dot, sub};
 use crate::{Body, elastic};
@@ -58,9 +60,16 @@ impl Strains {
     /// linear in their strains, so theirs are the true ones.
     pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
         elastic::add_constraint_forces(body, positions, forces);
-        for (brick, strain) in body.bricks().iter().zip(&self.bricks) {
-            brick.add_predicted_forces(body.material_of(brick), strain, positions, forces);
-        }
+        let bricks = body.bricks();
+        in_order(
+            bricks.len(),
+            FORCE_BATCH,
+            |i| {
+                let material = body.material_of(&bricks[i]);
+                bricks[i].predicted_forces(material, &self.bricks[i], positions)
+            },
+            |i, corners| bricks[i].add_to(&corners, forces),
+        );
         for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
             membrane.add_predicted_forces(*strain, positions, forces);
         }
@@ -82,10 +91,16 @@ impl Strains {
             let matrix = tet.hessian(positions, Some(*change));
             visit(&tet.vertices, matrix.as_flattened());
         }
-        for (brick, strain) in body.bricks().iter().zip(&self.bricks) {
-            let matrix = brick.stiffness(body.material_of(brick), positions, Some(strain));
-            visit(&brick.vertices, matrix.as_flattened());
-        }
+        let bricks = body.bricks();
+        in_order(
+            bricks.len(),
+            STIFFNESS_BATCH,
+            |i| {
+                let material = body.material_of(&bricks[i]);
+                bricks[i].stiffness(material, positions, Some(&self.bricks[i]))
+            },
+            |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
+        );
         for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
             let matrix = membrane.stiffness(positions, Some(*strain));
             visit(&membrane.vertices(), matrix.as_flattened());

@@ -54,7 +54,7 @@ fn moved() -> impl Strategy<Value = Vec<Vec3>> {
 
 fn forces(brick: &Brick, material: &HyperelasticMaterial, positions: &[Vec3]) -> Vec<Vec3> {
     let mut forces = vec![[0.0; 3]; 8];
-    brick.add_forces(material, positions, &mut forces);
+    brick.add_to(&brick.forces(material, positions), &mut forces);
     forces
 }
 

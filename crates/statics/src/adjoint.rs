@@ -11,7 +11,12 @@ use voxsoft_solid::vector::Vec3;
 
 use crate::equilibrium::Equilibrium;
 use crate::point::Point;
+use crate::settings::LinearSolver;
 use crate::system::FactorError;
+
+/// What an iterative solution leaves of a gradient, in energy; rounding in a slender body leaves no less
+/// than 1e-10.
+const TOLERANCE: f64 = 1e-8;
 
 /// Why there is no derivative.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +45,7 @@ pub fn adjoint(
     positions: &[Vec3],
     gradients: &[Vec<Vec3>],
 ) -> Result<Vec<Vec<Vec3>>, AdjointError> {
-    let mut equilibrium = Equilibrium::new(problem)?;
+    let mut equilibrium = Equilibrium::new(problem, LinearSolver::Auto)?;
     let full = Point::all(1.0);
     equilibrium.update_floor(positions, full)?;
     let mut unused = vec![0.0; equilibrium.system.size()];
@@ -52,14 +57,12 @@ pub fn adjoint(
         None,
         &mut unused,
     );
-    let positive = problem.is_conservative();
-    let factor = match equilibrium.system.factor(0.0, positive) {
-        Ok(factor) => factor,
-        Err(_) => equilibrium.system.factor(0.0, false)?,
-    };
+    let factor = equilibrium.system.factor(0.0)?;
     let solve = |gradient: &Vec<Vec3>| {
         let mut side = equilibrium.system.gather(gradient);
-        equilibrium.system.solve(&factor, &mut side, true);
+        equilibrium
+            .system
+            .solve(&factor, &mut side, true, TOLERANCE, &mut || false)?;
         if side.iter().all(|x| x.is_finite()) {
             Ok(equilibrium.system.spread(&side))
         } else {
@@ -73,7 +76,10 @@ impl From<FactorError> for AdjointError {
     fn from(error: FactorError) -> Self {
         match error {
             FactorError::Memory => Self::OutOfMemory,
-            FactorError::NotPositive | FactorError::Singular => Self::Singular,
+            FactorError::NotPositive
+            | FactorError::Singular
+            | FactorError::Stalled
+            | FactorError::Cancelled => Self::Singular,
         }
     }
 }

@@ -80,14 +80,12 @@ fn two_solutions(
         None,
         &mut a,
     );
-    let positive = equilibrium.problem.is_conservative();
-    let factor = match equilibrium.system.factor(0.0, positive) {
-        Ok(factor) => factor,
-        Err(_) => equilibrium.system.factor(0.0, false)?,
-    };
-    equilibrium.system.solve(&factor, &mut a, false);
+    let factor = equilibrium.system.factor(0.0)?;
+    let system = &path.equilibrium.system;
+    system.solve_directly(&factor, &mut a);
     let mut b = load_direction(path, positions, unknown);
-    path.equilibrium.system.solve(&factor, &mut b, false);
+    let system = &path.equilibrium.system;
+    system.solve_directly(&factor, &mut b);
     if a.iter().chain(&b).all(|x| x.is_finite()) {
         Ok((a, b))
     } else {

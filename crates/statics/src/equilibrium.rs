@@ -1,4 +1,5 @@
-//! Newton's method at one point of the load path.
+//! Newton's method at one point of the load path. Long because its two ways share the opening, the
+//! question where a step is only rounding, and the change from iterative to direct solutions.
 
 use std::ops::ControlFlow;
 
@@ -8,7 +9,7 @@ use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Problem, elastic};
 
 use crate::point::Point;
-use crate::settings::{Observer, Progress, Settings};
+use crate::settings::{LinearSolver, Observer, Progress, Settings};
 use crate::system::{Factor, FactorError, System};
 
 /// Why Newton's method stopped without an equilibrium.
@@ -22,6 +23,8 @@ pub(crate) enum Failure {
     Memory,
     /// The observer asked to stop.
     Cancelled,
+    /// A linear system was not solved iteratively.
+    Stalled,
 }
 
 impl From<FactorError> for Failure {
@@ -29,6 +32,8 @@ impl From<FactorError> for Failure {
         match error {
             FactorError::Memory => Self::Memory,
             FactorError::NotPositive | FactorError::Singular => Self::Singular,
+            FactorError::Stalled => Self::Stalled,
+            FactorError::Cancelled => Self::Cancelled,
         }
     }
 }
@@ -59,6 +64,8 @@ impl Forces {
 pub(crate) struct Equilibrium<'a> {
     pub problem: &'a Problem,
     pub system: System,
+    /// How linear systems were asked to be solved.
+    pub solver: LinearSolver,
     /// Held by clamps or carried by the floor.
     pub held: Vec<[bool; 3]>,
     pub iterations: u32,
@@ -73,6 +80,9 @@ const PATIENCE: u32 = 8;
 const LARGEST_SHIFT: f64 = 10.0;
 /// Armijo's condition: the part of the predicted gain that a step must bring.
 const SUFFICIENT: f64 = 1e-4;
+/// What an iterative solution of a step leaves of its error, in energy. Slender bodies, whose first
+/// steps go far, take twice the steps with 1e-3, and none fewer with 1e-5.
+const LINEAR_TOLERANCE: f64 = 1e-4;
 /// How often a step may be halved.
 const HALVINGS: u32 = 12;
 /// Potentials are sums of many terms and known to about this part of their size.
@@ -85,7 +95,7 @@ const STANDSTILL_OF_MOTION: f64 = 1e-9;
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl<'a> Equilibrium<'a> {
-    pub fn new(problem: &'a Problem) -> Result<Self, FactorError> {
+    pub fn new(problem: &'a Problem, solver: LinearSolver) -> Result<Self, FactorError> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
             for (held, point) in held.iter_mut().zip(problem.body().rest()) {
@@ -93,7 +103,8 @@ impl<'a> Equilibrium<'a> {
             }
         }
         Ok(Self {
-            system: System::new(problem, &held)?,
+            system: System::new(problem, &held, solver)?,
+            solver,
             problem,
             held,
             iterations: 0,
@@ -173,7 +184,15 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let mut trial = positions.clone();
-        match self.newton_mixed(&mut trial, point, settings, observer) {
+        let mut outcome = self.newton_mixed(&mut trial, point, settings, observer);
+        if let Err(Failure::Stalled) = outcome {
+            // From here on directly, if that fits in memory.
+            self.solver = LinearSolver::Direct;
+            self.system = System::new(self.problem, &self.held, self.solver)?;
+            trial.clone_from(positions);
+            outcome = self.newton_mixed(&mut trial, point, settings, observer);
+        }
+        match outcome {
             Ok(found) => {
                 *positions = trial;
                 Ok(found)
@@ -225,11 +244,11 @@ impl<'a> Equilibrium<'a> {
                 &mut forces.free,
             );
             // Far from equilibrium the tangent may be indefinite; this way does not go downhill anyway.
-            let factor = match self.system.factor(0.0, self.problem.is_conservative()) {
-                Err(FactorError::NotPositive) => self.system.factor(0.0, false)?,
-                other => other?,
-            };
-            self.system.solve(&factor, &mut forces.free, false);
+            let factor = self.system.factor(0.0)?;
+            let side = &mut forces.free;
+            let mut stop = || self.tell(positions, point, relative, observer).is_err();
+            self.system
+                .solve(&factor, side, false, LINEAR_TOLERANCE, &mut stop)?;
             let mut moves = self.system.spread(&forces.free);
             if let Some(jump) = &jump {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
@@ -334,7 +353,9 @@ impl<'a> Equilibrium<'a> {
             );
             let mut step = forces.free.clone();
             let factor = self.descending(&mut shift)?;
-            self.system.solve(&factor, &mut step, false);
+            let mut stop = || self.tell(positions, point, relative, observer).is_err();
+            self.system
+                .solve(&factor, &mut step, false, LINEAR_TOLERANCE, &mut stop)?;
             if !step.iter().all(|x| x.is_finite()) {
                 return Err(Failure::Singular);
             }
@@ -364,13 +385,13 @@ impl<'a> Equilibrium<'a> {
 
     /// A factor whose step goes downhill: where loads have a potential, the diagonal is lifted until
     /// the tangent is positive definite.
-    fn descending(&self, shift: &mut f64) -> Result<Factor, Failure> {
+    fn descending(&mut self, shift: &mut f64) -> Result<Factor, Failure> {
         if !self.problem.is_conservative() {
-            return Ok(self.system.factor(0.0, false)?);
+            return Ok(self.system.factor(0.0)?);
         }
         let mut trial = if *shift > 1e-6 { *shift / 10.0 } else { 0.0 };
         loop {
-            match self.system.factor(trial, true) {
+            match self.system.factor_positive(trial) {
                 Ok(factor) => {
                     *shift = trial;
                     return Ok(factor);
@@ -443,7 +464,7 @@ impl<'a> Equilibrium<'a> {
             None,
             &mut unused,
         );
-        !self.problem.is_conservative() || self.system.factor(0.0, true).is_ok()
+        !self.problem.is_conservative() || self.system.is_positive_definite()
     }
 
     /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.
@@ -471,7 +492,7 @@ impl<'a> Equilibrium<'a> {
             self.held[vertex][2] = keep;
         }
         if changed {
-            self.system = System::new(self.problem, &self.held)?;
+            self.system = System::new(self.problem, &self.held, self.solver)?;
         }
         Ok(changed)
     }

@@ -36,7 +36,10 @@
 
 mod adjoint;
 mod control;
+mod direct;
 mod equilibrium;
+mod iterative;
+mod multigrid;
 mod ordering;
 mod path;
 mod point;
@@ -46,4 +49,6 @@ mod volume;
 
 pub use adjoint::{AdjointError, adjoint};
 pub use path::solve;
-pub use settings::{Answer, Control, Observer, PathPoint, Progress, Settings, Status};
+pub use settings::{
+    Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,
+};

@@ -6,8 +6,10 @@ use voxsoft_solid::vector::Vec3;
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure, Found};
 use crate::point::Point;
-use crate::settings::{Answer, Control, Observer, PathPoint, Progress, Settings, Status};
-use crate::system::FactorError;
+use crate::settings::{
+    Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,
+};
+use crate::system::{FactorError, System};
 use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
@@ -61,7 +63,11 @@ pub fn solve(
 ) -> Answer {
     let rest = problem.body().rest();
     let positions = start.unwrap_or(rest).to_vec();
-    let equilibrium = match Equilibrium::new(problem) {
+    let linear = match settings.control {
+        Control::Load => settings.linear,
+        Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
+    };
+    let equilibrium = match Equilibrium::new(problem, linear) {
         Ok(equilibrium) => equilibrium,
         Err(error) => return refused(positions, error),
     };
@@ -88,7 +94,10 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
         positions,
         status: match error {
             FactorError::Memory => Status::OutOfMemory,
-            FactorError::NotPositive | FactorError::Singular => Status::Mechanism,
+            FactorError::Cancelled => Status::Cancelled,
+            FactorError::NotPositive | FactorError::Singular | FactorError::Stalled => {
+                Status::Mechanism
+            }
         },
         factor: 0.0,
         reached: 0.0,
@@ -103,7 +112,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
 
 pub(crate) fn status_of(failure: Failure) -> Status {
     match failure {
-        Failure::Lost => Status::NotConverged,
+        Failure::Lost | Failure::Stalled => Status::NotConverged,
         Failure::Singular => Status::Mechanism,
         Failure::Memory => Status::OutOfMemory,
         Failure::Cancelled => Status::Cancelled,
@@ -192,6 +201,18 @@ impl Path<'_, '_> {
         });
     }
 
+    /// The limit just ahead, if there is one. Beyond it the tangent is indefinite, which takes a direct
+    /// factor.
+    fn look_ahead(&mut self, settings: &Settings) -> Option<f64> {
+        let equilibrium = &mut self.equilibrium;
+        if equilibrium.system.is_iterative() {
+            let direct = LinearSolver::Direct;
+            equilibrium.system =
+                System::new(equilibrium.problem, &equilibrium.held, direct).ok()?;
+        }
+        control::look_for_limit(self, settings)
+    }
+
     /// Load control. From a given start the full load is tried first.
     fn follow_load(&mut self, settings: &Settings, warm: bool) -> Ending {
         let mut step = if warm {
@@ -238,7 +259,7 @@ impl Path<'_, '_> {
             }
             step = (next - now) / 4.0;
             if step < settings.least_step {
-                let limit = control::look_for_limit(self, settings);
+                let limit = self.look_ahead(settings);
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
                 return Ending::new(status, limit, now);
             }

@@ -23,6 +23,18 @@ pub enum Control {
     },
 }
 
+/// How the linear systems of Newton's method are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LinearSolver {
+    /// By the number of vertices: directly where that is quicker.
+    Auto,
+    /// With a sparse factor.
+    Direct,
+    /// By conjugate gradients with a multigrid preconditioner, where the body is made of equal voxels
+    /// and its loads have a potential; else directly.
+    Iterative,
+}
+
 /// Settings of [`crate::solve`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -37,6 +49,9 @@ pub struct Settings {
     pub least_step: f64,
     /// How the path is followed.
     pub control: Control,
+    /// How linear systems are solved. Arc length and volume control take the direct way: past a limit
+    /// the tangent is indefinite.
+    pub linear: LinearSolver,
 }
 
 impl Default for Settings {
@@ -47,6 +62,7 @@ impl Default for Settings {
             first_step: 1.0,
             least_step: 1e-3,
             control: Control::Load,
+            linear: LinearSolver::Auto,
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::equilibrium::{Failure, Forces};
 use crate::path::{Ending, Path, UNSTABLE_CUTS, status_of};
 use crate::point::Point;
 use crate::settings::{Progress, Settings, Status};
-use crate::system::{Factor, FactorError};
+use crate::system::Factor;
 
 /// The volume counts as reached within this part of it.
 const VOLUME_TOLERANCE: f64 = 1e-9;
@@ -122,13 +122,13 @@ fn stability(path: &mut Path<'_, '_>, positions: &[Vec3], point: Point) -> (bool
     if path.equilibrium.is_stable(positions, point) {
         return (true, true);
     }
-    let system = &path.equilibrium.system;
-    let Ok(factor) = system.factor(0.0, false) else {
+    let Ok(factor) = path.equilibrium.system.factor(0.0) else {
         return (false, false);
     };
     let gradient = load_direction(path, positions, Unknown::Pressure);
     let mut along = gradient.clone();
-    system.solve(&factor, &mut along, false);
+    let system = &path.equilibrium.system;
+    system.solve_directly(&factor, &mut along);
     let falls = product(&gradient, &along) < 0.0;
     (false, falls && system.negative_pivots(&factor) == Some(1))
 }
@@ -269,7 +269,7 @@ fn step_mixed(
             None => seen.forces.free.clone(),
         };
         assemble(path, &positions, seen.point, strains.as_ref());
-        let factor_of_tangent = factorise(path, 0.0)?;
+        let factor_of_tangent = path.equilibrium.system.factor(0.0)?;
         let found = bordered(
             path,
             &factor_of_tangent,
@@ -344,7 +344,7 @@ fn descending(
         if trial < LEAST_SHIFT {
             trial = 0.0;
         }
-        let factor = factorise(path, trial)?;
+        let factor = path.equilibrium.system.factor(trial)?;
         let step = bordered(
             path,
             &factor,
@@ -429,16 +429,6 @@ fn assemble(path: &mut Path<'_, '_>, positions: &[Vec3], point: Point, strains: 
     );
 }
 
-/// Factorises the assembled tangent with its diagonal lifted by `shift` of it, definite or not.
-fn factorise(path: &Path<'_, '_>, shift: f64) -> Result<Factor, FactorError> {
-    let system = &path.equilibrium.system;
-    let positive = path.equilibrium.problem.is_conservative();
-    match system.factor(shift, positive) {
-        Err(FactorError::NotPositive) => system.factor(shift, false),
-        other => other,
-    }
-}
-
 /// A solution of the bordered system.
 struct Bordered {
     moves: Vec<f64>,
@@ -461,8 +451,8 @@ fn bordered(
     // The gradient of the weighted volume is the load direction itself.
     let gradient = load_direction(path, positions, Unknown::Pressure);
     let (mut a, mut b) = (residual.to_vec(), gradient.clone());
-    system.solve(factor, &mut a, false);
-    system.solve(factor, &mut b, false);
+    system.solve_directly(factor, &mut a);
+    system.solve_directly(factor, &mut b);
     let compliance = product(&gradient, &b);
     let change = (missing - product(&gradient, &a)) / compliance;
     let moves: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();

@@ -71,7 +71,8 @@ impl Viscosity {
                 }
                 sum
             };
-            brick.add_viscous_forces(material, positions, viscous, forces);
+            let corners = brick.viscous_forces(material, positions, viscous);
+            brick.add_to(&corners, forces);
         }
     }
 }

@@ -1,0 +1,33 @@
+//! Work on many pieces on all threads, whose results are taken in the order of the pieces, so that sums
+//! have the same bits for any number of threads.
+
+#[cfg(feature = "threads")]
+use rayon::prelude::*;
+
+/// Bodies of fewer pieces than this are quicker on one thread.
+#[cfg(feature = "threads")]
+const WORTHWHILE: usize = 512;
+
+/// Calls `take(index, each(index))` for all indices in order; `each` runs on all threads, `batch` pieces
+/// at a time, whose results are kept in between.
+pub(crate) fn in_order<U: Send>(
+    count: usize,
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables))] batch: usize,
+    each: impl Fn(usize) -> U + Sync,
+    mut take: impl FnMut(usize, U),
+) {
+    #[cfg(feature = "threads")]
+    if count >= WORTHWHILE && rayon::current_num_threads() > 1 {
+        for start in (0..count).step_by(batch) {
+            let end = (start + batch).min(count);
+            let results: Vec<U> = (start..end).into_par_iter().map(&each).collect();
+            for (index, result) in (start..end).zip(results) {
+                take(index, result);
+            }
+        }
+        return;
+    }
+    for index in 0..count {
+        take(index, each(index));
+    }
+}

@@ -1,0 +1,312 @@
+//! The sparse tangent of a large voxel body: conjugate gradients with a multigrid preconditioner.
+//!
+//! The memory and the work of one iteration grow with the number of voxels, where those of a direct
+//! factor in three dimensions grow with its powers 4/3 and 2.
+
+use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::vector::{Vec3, axpy, dot};
+use voxsoft_solid::{Load, LoadKind, Problem, elastic};
+
+use crate::multigrid::{
+    BlockMatrix, Factors, Hierarchy, Workspace, cells_of, color, for_each, sum,
+};
+use crate::system::FactorError;
+
+/// Iterations after which a solution counts as stalled.
+const MAX_ITERATIONS: usize = 400;
+/// An error of this part is of use to Newton's method even so.
+const USEFUL: f64 = 0.1;
+/// Iterations between two questions whether to stop.
+const LOOK: usize = 5;
+/// How well the look for negative curvature solves.
+const DEFINITE_TOLERANCE: f64 = 1e-4;
+
+/// The tangent as 3 × 3 blocks by vertices, with rows and columns of held coordinates zero.
+pub(crate) struct IterativeSystem {
+    /// For each vertex its row.
+    places: Vec<u32>,
+    held: Vec<[bool; 3]>,
+    matrix: BlockMatrix,
+    hierarchy: Hierarchy,
+}
+
+/// A preconditioner, and whether solutions must go downhill.
+pub(crate) struct IterativeFactor {
+    factors: Factors,
+    downhill: bool,
+}
+
+/// How an iteration ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum End {
+    Converged,
+    /// A direction along which the tangent is not positive; the answer is the one before.
+    NegativeCurvature,
+    Stalled,
+    Cancelled,
+}
+
+impl IterativeSystem {
+    /// The pattern and its hierarchy; `None` where the body is not made of equal voxels only, or the
+    /// tangent not symmetric.
+    pub fn new(problem: &Problem, held: &[[bool; 3]]) -> Option<Self> {
+        let body = problem.body();
+        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.bricks().len();
+        if !whole || !problem.is_conservative() {
+            return None;
+        }
+        let mut cells = cells_of(body)?;
+        let draft = pattern(problem);
+        let (coloring, places) = color(&draft);
+        for cell in &mut cells {
+            cell.nodes = cell.nodes.map(|node| places[node as usize]);
+        }
+        let matrix = draft.renumbered(&places);
+        let hierarchy = Hierarchy::new(cells, &matrix, coloring);
+        Some(Self {
+            places,
+            held: held.to_vec(),
+            matrix,
+            hierarchy,
+        })
+    }
+
+    /// The length of vectors of free coordinates: all, of which the held ones are zero.
+    pub fn size(&self) -> usize {
+        3 * self.places.len()
+    }
+
+    /// See [`crate::system::System::assemble`].
+    pub fn assemble(
+        &mut self,
+        problem: &Problem,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+        strains: Option<&Strains>,
+        jump: Option<&[Vec3]>,
+        residual: &mut [f64],
+    ) {
+        let Self {
+            places,
+            held,
+            matrix,
+            ..
+        } = self;
+        matrix.values.fill([0.0; 9]);
+        let mut add = |vertices: &[u32], entries: &[f64]| {
+            let width = 3 * vertices.len();
+            for (a, &row_vertex) in vertices.iter().enumerate() {
+                let row = places[row_vertex as usize] as usize;
+                let fixed = held[row_vertex as usize];
+                for (b, &column_vertex) in vertices.iter().enumerate() {
+                    let column = places[column_vertex as usize];
+                    let place = matrix.place(row, column);
+                    let block = &mut matrix.values[place];
+                    for i in (0..3).filter(|&i| !fixed[i]) {
+                        for j in 0..3 {
+                            let k = entries[(3 * a + i) * width + 3 * b + j];
+                            if !held[column_vertex as usize][j] {
+                                block[3 * i + j] += k;
+                            } else if let Some(jump) = jump {
+                                let moved = jump[column_vertex as usize][j];
+                                residual[3 * row_vertex as usize + i] -= k * moved;
+                            }
+                        }
+                    }
+                }
+            }
+        };
+        match strains {
+            Some(strains) => strains.visit_stiffness(problem.body(), positions, &mut add),
+            None => elastic::visit_stiffness(problem.body(), positions, &mut add),
+        }
+        problem.visit_load_stiffness(positions, factor_of, &mut add);
+    }
+
+    /// A preconditioner for the assembled tangent.
+    pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
+        let values = &self.matrix.values;
+        if !values
+            .iter()
+            .all(|block| block.iter().all(|v| v.is_finite()))
+        {
+            return Err(FactorError::Singular);
+        }
+        self.hierarchy.project(&self.matrix);
+        Ok(IterativeFactor {
+            factors: self.hierarchy.factors(&self.matrix),
+            downhill,
+        })
+    }
+
+    /// Solves in place. Where the tangent turns out not to be positive definite and the solution must
+    /// go downhill, it ends with what it has by then (Steihaug 1983, doi 10.1137/0720042). Else it goes
+    /// on, which nearly always works for the few negative eigenvalues of a tangent far from equilibrium.
+    pub fn solve(
+        &self,
+        factor: &IterativeFactor,
+        side: &mut [f64],
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        let (answer, end) = self.iterate(factor, side, tolerance, stop);
+        for (vertex, &place) in self.places.iter().enumerate() {
+            side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
+        }
+        match end {
+            End::Converged | End::NegativeCurvature => Ok(()),
+            End::Stalled => Err(FactorError::Stalled),
+            End::Cancelled => Err(FactorError::Cancelled),
+        }
+    }
+
+    /// Conjugate gradients from zero look along every direction that the preconditioned side has a part
+    /// in, which one without any order has in all.
+    pub fn is_positive_definite(&mut self) -> bool {
+        let Ok(factor) = self.factor(true) else {
+            return false;
+        };
+        let mut side = vec![0.0; self.size()];
+        let mut seed = 0x9e37_79b9_7f4a_7c15u64;
+        for (coordinate, value) in side.iter_mut().enumerate() {
+            if !self.held[coordinate / 3][coordinate % 3] {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                *value = (seed >> 33) as f64 / f64::from(1u32 << 31) - 0.5;
+            }
+        }
+        let end = self
+            .iterate(&factor, &side, DEFINITE_TOLERANCE, &mut || false)
+            .1;
+        end != End::NegativeCurvature
+    }
+
+    /// The answer by rows.
+    fn iterate(
+        &self,
+        factor: &IterativeFactor,
+        side: &[f64],
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> (Vec<Vec3>, End) {
+        let count = self.places.len();
+        let mut residual = vec![[0.0; 3]; count];
+        for (vertex, &place) in self.places.iter().enumerate() {
+            residual[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
+        }
+        let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
+        let mut answer = vec![[0.0; 3]; count];
+        let mut image = vec![[0.0; 3]; count];
+        let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
+        let preconditioner = self.hierarchy.preconditioner(&self.matrix, &factor.factors);
+        preconditioner.apply(&residual, &mut work);
+        let mut direction = work.answer().to_vec();
+        let mut gain = inner(&residual, &direction);
+        // The energy of the error, as the preconditioner sees it: residual forces would say little about
+        // soft bending modes, which carry most of a slender body's displacement.
+        let goal = tolerance * tolerance * gain;
+        if gain == 0.0 {
+            return (answer, End::Converged);
+        }
+        for iteration in 0..MAX_ITERATIONS {
+            if iteration % LOOK == 0 && stop() {
+                return (answer, End::Cancelled);
+            }
+            self.matrix.multiply(&direction, &mut image);
+            let curvature = inner(&direction, &image);
+            let positive = curvature > 0.0 && gain > 0.0;
+            let lost = !(curvature.abs() > 0.0 && gain.is_finite());
+            if lost || (factor.downhill && !positive) {
+                if iteration == 0 {
+                    answer = direction;
+                }
+                return (answer, End::NegativeCurvature);
+            }
+            let step = gain / curvature;
+            for_each(&mut answer, |row, x| axpy(x, step, direction[row]));
+            for_each(&mut residual, |row, r| axpy(r, -step, image[row]));
+            preconditioner.apply(&residual, &mut work);
+            let fresh = work.answer();
+            let next = inner(&residual, fresh);
+            if next.abs() <= goal {
+                return (answer, End::Converged);
+            }
+            let keep = next / gain;
+            gain = next;
+            for_each(&mut direction, |row, d| {
+                for axis in 0..3 {
+                    d[axis] = keep * d[axis] + fresh[row][axis];
+                }
+            });
+        }
+        let useful = gain.abs() * tolerance * tolerance <= USEFUL * USEFUL * goal;
+        (answer, if useful { End::Converged } else { End::Stalled })
+    }
+
+    /// All coordinates of vectors on vertices, zero where held.
+    pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
+        let mut free = vectors.as_flattened().to_vec();
+        for (coordinate, value) in free.iter_mut().enumerate() {
+            if self.held[coordinate / 3][coordinate % 3] {
+                *value = 0.0;
+            }
+        }
+        free
+    }
+
+    /// Vectors on vertices, zero where held.
+    pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
+        free.chunks_exact(3).map(|v| [v[0], v[1], v[2]]).collect()
+    }
+}
+
+/// The columns of each vertex: the corners of its voxels, and what membranes and pressures join.
+fn pattern(problem: &Problem) -> BlockMatrix {
+    let body = problem.body();
+    let count = body.rest().len();
+    let mut pieces: Vec<&[u32]> = body.voxels().iter().map(|v| v.as_slice()).collect();
+    let membranes: Vec<[u32; 3]> = body.membranes().iter().map(|m| m.vertices()).collect();
+    pieces.extend(membranes.iter().map(|m| m.as_slice()));
+    for load in problem.loads() {
+        if let LoadKind::Pressure {
+            triangles, voids, ..
+        } = &load.kind
+        {
+            pieces.extend(triangles.iter().map(|t| t.as_slice()));
+            pieces.extend(voids.iter().map(|(t, _)| t.as_slice()));
+        }
+    }
+    // The pieces at each vertex, then the vertices of those pieces.
+    let mut starts = vec![0u32; count + 1];
+    for piece in &pieces {
+        for &vertex in *piece {
+            starts[vertex as usize + 1] += 1;
+        }
+    }
+    for vertex in 0..count {
+        starts[vertex + 1] += starts[vertex];
+    }
+    let mut next = starts.clone();
+    let mut at = vec![0u32; starts[count] as usize];
+    for (index, piece) in pieces.iter().enumerate() {
+        for &vertex in *piece {
+            at[next[vertex as usize] as usize] = index as u32;
+            next[vertex as usize] += 1;
+        }
+    }
+    let mut row_starts = Vec::with_capacity(count + 1);
+    row_starts.push(0);
+    let mut columns = Vec::with_capacity(27 * count);
+    let mut row: Vec<u32> = Vec::new();
+    for vertex in 0..count {
+        row.clear();
+        row.push(vertex as u32);
+        for &index in &at[starts[vertex] as usize..starts[vertex + 1] as usize] {
+            row.extend_from_slice(pieces[index as usize]);
+        }
+        row.sort_unstable();
+        row.dedup();
+        columns.extend_from_slice(&row);
+        row_starts.push(columns.len());
+    }
+    BlockMatrix::with_pattern(row_starts, columns)
+}

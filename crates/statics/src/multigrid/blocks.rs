@@ -1,0 +1,224 @@
+//! Sparse matrices of 3 × 3 blocks.
+
+use voxsoft_solid::vector::Vec3;
+
+use super::cells::Interpolation;
+use super::parallel;
+
+/// A block, row-major.
+pub(crate) type Block = [f64; 9];
+
+/// A sparse matrix of 3 × 3 blocks by rows, with rising columns; every row has its diagonal.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct BlockMatrix {
+    pub starts: Vec<usize>,
+    pub columns: Vec<u32>,
+    pub values: Vec<Block>,
+    /// Where the diagonal of each row is.
+    pub diagonals: Vec<usize>,
+}
+
+impl BlockMatrix {
+    /// A matrix of zeros with the given columns in each row.
+    pub fn with_pattern(starts: Vec<usize>, columns: Vec<u32>) -> Self {
+        let diagonals = starts
+            .windows(2)
+            .enumerate()
+            .map(|(row, ends)| {
+                let place = columns[ends[0]..ends[1]].partition_point(|&c| (c as usize) < row);
+                ends[0] + place
+            })
+            .collect();
+        Self {
+            values: vec![[0.0; 9]; columns.len()],
+            starts,
+            columns,
+            diagonals,
+        }
+    }
+
+    /// The pattern with node `n` renamed to `places[n]`, filled with zeros.
+    pub fn renumbered(&self, places: &[u32]) -> Self {
+        let mut order = vec![0u32; places.len()];
+        for (node, &place) in places.iter().enumerate() {
+            order[place as usize] = node as u32;
+        }
+        let mut starts = Vec::with_capacity(self.starts.len());
+        starts.push(0);
+        let mut columns = Vec::with_capacity(self.columns.len());
+        for &node in &order {
+            let first = columns.len();
+            let row = self.row(node as usize).1;
+            columns.extend(row.iter().map(|&c| places[c as usize]));
+            columns[first..].sort_unstable();
+            starts.push(columns.len());
+        }
+        Self::with_pattern(starts, columns)
+    }
+
+    pub fn rows(&self) -> usize {
+        self.diagonals.len()
+    }
+
+    /// The columns of a row and where their blocks start.
+    pub fn row(&self, row: usize) -> (usize, &[u32]) {
+        let (start, end) = (self.starts[row], self.starts[row + 1]);
+        (start, &self.columns[start..end])
+    }
+
+    /// Where the block of a row and a column of its pattern is.
+    #[inline(always)]
+    pub fn place(&self, row: usize, column: u32) -> usize {
+        let (start, columns) = self.row(row);
+        start + columns.partition_point(|&c| c < column)
+    }
+
+    /// `y = A x`.
+    pub fn multiply(&self, x: &[Vec3], y: &mut [Vec3]) {
+        parallel::for_each(y, |row, y| {
+            *y = self.product(self.starts[row]..self.starts[row + 1], |column| x[column]);
+        });
+    }
+
+    /// The sum of the given blocks of one row times what `value` says for their columns.
+    #[inline(always)]
+    pub fn product(&self, places: std::ops::Range<usize>, value: impl Fn(usize) -> Vec3) -> Vec3 {
+        let mut sum = [0.0; 3];
+        for (block, &column) in self.values[places.clone()]
+            .iter()
+            .zip(&self.columns[places])
+        {
+            add_product(&mut sum, block, value(column as usize));
+        }
+        sum
+    }
+
+    /// The pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
+    pub fn coarse_pattern(&self, p: &Interpolation, fine_of: &Interpolation) -> Self {
+        let count = fine_of.starts.len() - 1;
+        let mut rows: Vec<Vec<u32>> = vec![Vec::new(); count];
+        parallel::for_each(&mut rows, |row, columns| {
+            for &(fine, _) in fine_of.row(row) {
+                for &neighbor in self.row(fine as usize).1 {
+                    columns.extend(p.row(neighbor as usize).iter().map(|&(coarse, _)| coarse));
+                }
+                columns.sort_unstable();
+                columns.dedup();
+            }
+            if columns.is_empty() {
+                columns.push(row as u32);
+            }
+        });
+        let mut starts = Vec::with_capacity(count + 1);
+        starts.push(0);
+        let mut columns = Vec::new();
+        for row in rows {
+            columns.extend(row);
+            starts.push(columns.len());
+        }
+        Self::with_pattern(starts, columns)
+    }
+
+    /// Sets `coarse = Pᵀ A P`.
+    pub fn project(&self, p: &Interpolation, fine_of: &Interpolation, coarse: &mut Self) {
+        let Self {
+            starts,
+            columns,
+            values,
+            ..
+        } = coarse;
+        let mut rows: Vec<&mut [Block]> = Vec::with_capacity(starts.len() - 1);
+        let mut left = values.as_mut_slice();
+        for ends in starts.windows(2) {
+            let (row, rest) = left.split_at_mut(ends[1] - ends[0]);
+            rows.push(row);
+            left = rest;
+        }
+        parallel::for_each(&mut rows, |row, blocks| {
+            let columns = &columns[starts[row]..starts[row + 1]];
+            blocks.fill([0.0; 9]);
+            for &(fine, weight) in fine_of.row(row) {
+                let (start, neighbors) = self.row(fine as usize);
+                for (block, &neighbor) in self.values[start..].iter().zip(neighbors) {
+                    for &(column, share) in p.row(neighbor as usize) {
+                        let place = columns.partition_point(|&c| c < column);
+                        let factor = weight * share;
+                        for (sum, entry) in blocks[place].iter_mut().zip(block) {
+                            *sum += factor * entry;
+                        }
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// The transpose of an interpolation to `count` coarse nodes: for each the fine ones that hang on it.
+pub(crate) fn transposed(p: &Interpolation, count: usize) -> Interpolation {
+    let mut starts = vec![0u32; count + 1];
+    for &(coarse, _) in &p.entries {
+        starts[coarse as usize + 1] += 1;
+    }
+    for row in 0..count {
+        starts[row + 1] += starts[row];
+    }
+    let mut next = starts.clone();
+    let mut entries = vec![(0, 0.0); p.entries.len()];
+    for fine in 0..p.starts.len() - 1 {
+        for &(coarse, weight) in p.row(fine) {
+            let place = &mut next[coarse as usize];
+            entries[*place as usize] = (fine as u32, weight);
+            *place += 1;
+        }
+    }
+    Interpolation { starts, entries }
+}
+
+/// `sum += block · x`.
+#[inline(always)]
+pub(crate) fn add_product(sum: &mut Vec3, block: &Block, x: Vec3) {
+    for axis in 0..3 {
+        sum[axis] +=
+            block[3 * axis] * x[0] + block[3 * axis + 1] * x[1] + block[3 * axis + 2] * x[2];
+    }
+}
+
+/// The inverse of a symmetric block on the axes that have stiffness, zero on the others: coordinates
+/// that are held, or that nothing hangs on, stay where they are.
+pub(crate) fn pseudo_inverse(block: &Block) -> Block {
+    let mut a = *block;
+    let mut inverse = [0.0; 9];
+    let mut live = [false; 3];
+    // Sweeps that keep the block symmetric and end at minus the inverse; a pivot lost to cancellation
+    // counts as none.
+    for k in 0..3 {
+        let pivot = a[4 * k];
+        if !(pivot > 1e-12 * block[4 * k].abs()) {
+            continue;
+        }
+        live[k] = true;
+        let row: Vec3 = std::array::from_fn(|j| a[3 * k + j]);
+        for i in 0..3 {
+            for j in 0..3 {
+                if i != k && j != k {
+                    a[3 * i + j] -= row[i] * row[j] / pivot;
+                }
+            }
+        }
+        for i in 0..3 {
+            if i != k {
+                a[3 * k + i] = row[i] / pivot;
+                a[3 * i + k] = row[i] / pivot;
+            }
+        }
+        a[4 * k] = -1.0 / pivot;
+    }
+    for i in 0..3 {
+        for j in 0..3 {
+            if live[i] && live[j] {
+                inverse[3 * i + j] = -a[3 * i + j];
+            }
+        }
+    }
+    inverse
+}

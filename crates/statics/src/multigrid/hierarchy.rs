@@ -1,0 +1,297 @@
+//! The V-cycle: coloured Gauss–Seidel sweeps on each level, Galerkin products between them.
+//!
+//! Coarse spaces hold the trilinear functions of ever larger cubes, so rigid motions and uniform
+//! strains, the slow part of an error, are theirs exactly; coarse matrices are `Pᵀ A P`, so anything a
+//! fine matrix knows (clamps, cut voxels, layers, pressure) arrives there. A forward sweep before and
+//! a backward one after the coarse correction make the cycle symmetric, as conjugate gradients want.
+
+use faer::linalg::solvers::{Llt, Solve};
+use faer::{Mat, MatMut, Side};
+use voxsoft_solid::vector::{Vec3, add, scale};
+
+use super::blocks::{Block, BlockMatrix, add_product, pseudo_inverse, transposed};
+use super::cells::{Cell, Interpolation, coarsen};
+use super::color::{Coloring, color};
+use super::parallel;
+
+/// A level of no more nodes than this is solved directly, by a dense factor.
+const COARSEST: usize = 250;
+/// A level must have fewer nodes than this part of the level before, or coarsening has stalled.
+const STALLED: f64 = 0.7;
+/// The most nodes of a coarsest level: a dense factor of 0.3 GB.
+const LARGEST_DENSE: usize = 2000;
+
+/// What of the hierarchy does not depend on the matrix: interpolations and patterns.
+pub(crate) struct Hierarchy {
+    /// From level `i` to `i + 1`, and back.
+    down: Vec<Interpolation>,
+    up: Vec<Interpolation>,
+    colorings: Vec<Coloring>,
+    /// Of levels 1, 2, …; the finest belongs to the caller.
+    patterns: Vec<BlockMatrix>,
+}
+
+/// What a hierarchy keeps of the matrices of one tangent: inverse diagonals, and the factor of the
+/// coarsest.
+pub(crate) struct Factors {
+    inverses: Vec<Vec<Block>>,
+    last: Option<Llt<f64>>,
+}
+
+/// A V-cycle.
+pub(crate) struct Preconditioner<'a> {
+    hierarchy: &'a Hierarchy,
+    finest: &'a BlockMatrix,
+    factors: &'a Factors,
+}
+
+/// Vectors of every level.
+pub(crate) struct Workspace {
+    sides: Vec<Vec<Vec3>>,
+    answers: Vec<Vec<Vec3>>,
+    residuals: Vec<Vec<Vec3>>,
+}
+
+impl Hierarchy {
+    /// From the cells of the finest level, whose nodes are numbered as the rows of `matrix`, which its
+    /// `coloring` sorts.
+    pub fn new(mut cells: Vec<Cell>, matrix: &BlockMatrix, coloring: Coloring) -> Self {
+        let mut hierarchy = Self {
+            down: Vec::new(),
+            up: Vec::new(),
+            colorings: vec![coloring],
+            patterns: Vec::new(),
+        };
+        loop {
+            let finer = hierarchy.patterns.last().unwrap_or(matrix);
+            let nodes = finer.rows();
+            if nodes <= COARSEST {
+                break;
+            }
+            let (mut coarse, count, mut down) = coarsen(&cells, nodes);
+            if count as f64 > STALLED * nodes as f64 {
+                break;
+            }
+            let draft = finer.coarse_pattern(&down, &transposed(&down, count));
+            let (coloring, places) = color(&draft);
+            for (node, _) in &mut down.entries {
+                *node = places[*node as usize];
+            }
+            for cell in &mut coarse {
+                cell.nodes = cell.nodes.map(|node| places[node as usize]);
+            }
+            let pattern = draft.renumbered(&places);
+            hierarchy.up.push(transposed(&down, count));
+            hierarchy.down.push(down);
+            hierarchy.colorings.push(coloring);
+            hierarchy.patterns.push(pattern);
+            cells = coarse;
+        }
+        hierarchy
+    }
+
+    /// Fills the coarse matrices.
+    pub fn project(&mut self, finest: &BlockMatrix) {
+        for level in 0..self.patterns.len() {
+            let (finer, coarser) = self.patterns.split_at_mut(level);
+            let fine = finer.last().unwrap_or(finest);
+            fine.project(&self.down[level], &self.up[level], &mut coarser[0]);
+        }
+    }
+
+    /// The factors of a matrix that [`Hierarchy::project`] has seen.
+    pub fn factors(&self, finest: &BlockMatrix) -> Factors {
+        let levels = std::iter::once(finest).chain(&self.patterns);
+        let last = self.patterns.last().unwrap_or(finest);
+        Factors {
+            inverses: levels.map(inverses_of).collect(),
+            last: (last.rows() <= LARGEST_DENSE)
+                .then(|| dense_factor(last))
+                .flatten(),
+        }
+    }
+
+    /// The preconditioner with the factors of a matrix.
+    pub fn preconditioner<'a>(
+        &'a self,
+        finest: &'a BlockMatrix,
+        factors: &'a Factors,
+    ) -> Preconditioner<'a> {
+        Preconditioner {
+            hierarchy: self,
+            finest,
+            factors,
+        }
+    }
+
+    /// Vectors for [`Preconditioner::apply`].
+    pub fn workspace(&self, finest: &BlockMatrix) -> Workspace {
+        let vectors = || {
+            std::iter::once(finest)
+                .chain(&self.patterns)
+                .map(|m| vec![[0.0; 3]; m.rows()])
+                .collect()
+        };
+        Workspace {
+            sides: vectors(),
+            answers: vectors(),
+            residuals: vectors(),
+        }
+    }
+}
+
+impl Workspace {
+    /// What [`Preconditioner::apply`] found.
+    pub fn answer(&self) -> &[Vec3] {
+        &self.answers[0]
+    }
+}
+
+impl Preconditioner<'_> {
+    /// About `A⁻¹ side`.
+    pub fn apply(&self, side: &[Vec3], work: &mut Workspace) {
+        work.sides[0].copy_from_slice(side);
+        self.cycle(0, work);
+    }
+
+    fn matrix(&self, level: usize) -> &BlockMatrix {
+        if level == 0 {
+            self.finest
+        } else {
+            &self.hierarchy.patterns[level - 1]
+        }
+    }
+
+    fn cycle(&self, level: usize, work: &mut Workspace) {
+        let matrix = self.matrix(level);
+        let coloring = &self.hierarchy.colorings[level];
+        let inverses = &self.factors.inverses[level];
+        if level == self.hierarchy.down.len() {
+            let (side, x) = (&work.sides[level], &mut work.answers[level]);
+            if let Some(factor) = &self.factors.last {
+                x.copy_from_slice(side);
+                let flat = x.as_flattened_mut();
+                let size = flat.len();
+                factor.solve_in_place(MatMut::from_column_major_slice_mut(flat, size, 1));
+            } else {
+                forward_from_zero(matrix, coloring, inverses, side, x);
+                backward(matrix, coloring, inverses, side, x);
+            }
+            return;
+        }
+        let (down, up) = (&self.hierarchy.down[level], &self.hierarchy.up[level]);
+        let x = &mut work.answers[level];
+        forward_from_zero(matrix, coloring, inverses, &work.sides[level], x);
+        // A sweep from zero leaves the residual of what it has not looked at: −U x.
+        let residual = &mut work.residuals[level];
+        parallel::for_each(residual, |row, r| {
+            let after = matrix.diagonals[row] + 1..matrix.starts[row + 1];
+            *r = scale(-1.0, matrix.product(after, |column| x[column]));
+        });
+        parallel::for_each(&mut work.sides[level + 1], |row, side| {
+            *side = [0.0; 3];
+            for &(fine, weight) in up.row(row) {
+                *side = add(*side, scale(weight, residual[fine as usize]));
+            }
+        });
+        self.cycle(level + 1, work);
+        let (finer, coarser) = work.answers.split_at_mut(level + 1);
+        let x = &mut finer[level];
+        let correction = &coarser[0];
+        parallel::for_each(x, |row, x| {
+            for &(coarse, weight) in down.row(row) {
+                *x = add(*x, scale(weight, correction[coarse as usize]));
+            }
+        });
+        backward(matrix, coloring, inverses, &work.sides[level], x);
+    }
+}
+
+fn inverses_of(matrix: &BlockMatrix) -> Vec<Block> {
+    let diagonals = &matrix.diagonals;
+    let mut inverses = vec![[0.0; 9]; diagonals.len()];
+    parallel::for_each(&mut inverses, |row, inverse| {
+        *inverse = pseudo_inverse(&matrix.values[diagonals[row]]);
+    });
+    inverses
+}
+
+/// Gauss–Seidel through the colours, from zero.
+fn forward_from_zero(
+    matrix: &BlockMatrix,
+    coloring: &Coloring,
+    inverses: &[Block],
+    side: &[Vec3],
+    x: &mut [Vec3],
+) {
+    for range in coloring.ranges() {
+        let first = range.start;
+        let (before, rest) = x.split_at_mut(first);
+        parallel::for_each(&mut rest[..range.len()], |place, x| {
+            let row = first + place;
+            let seen = matrix.starts[row]..matrix.diagonals[row];
+            let known = matrix.product(seen, |column| before[column]);
+            *x = [0.0; 3];
+            add_product(x, &inverses[row], add(side[row], scale(-1.0, known)));
+        });
+    }
+}
+
+/// Gauss–Seidel back through the colours.
+fn backward(
+    matrix: &BlockMatrix,
+    coloring: &Coloring,
+    inverses: &[Block],
+    side: &[Vec3],
+    x: &mut [Vec3],
+) {
+    for range in coloring.ranges().rev() {
+        let (before, rest) = x.split_at_mut(range.start);
+        let (own, after) = rest.split_at_mut(range.len());
+        parallel::for_each(own, |place, x| {
+            let row = range.start + place;
+            let diagonal = matrix.diagonals[row];
+            let below = matrix.product(matrix.starts[row]..diagonal, |column| before[column]);
+            let above = matrix.product(diagonal + 1..matrix.starts[row + 1], |column| {
+                after[column - range.end]
+            });
+            let left = add(side[row], scale(-1.0, add(below, above)));
+            let mut new = [0.0; 3];
+            add_product(&mut new, &inverses[row], left);
+            // Axes without stiffness keep their value, which is zero.
+            *x = new;
+        });
+    }
+}
+
+/// The dense Cholesky factor of the coarsest matrix, lifted on its diagonal as far as it must be.
+fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
+    let size = 3 * matrix.rows();
+    let mut dense = Mat::<f64>::zeros(size, size);
+    for row in 0..matrix.rows() {
+        let (start, columns) = matrix.row(row);
+        for (block, &column) in matrix.values[start..].iter().zip(columns) {
+            for i in 0..3 {
+                for j in 0..3 {
+                    dense[(3 * row + i, 3 * column as usize + j)] = block[3 * i + j];
+                }
+            }
+        }
+    }
+    for i in 0..size {
+        if !(dense[(i, i)] > 0.0) {
+            dense[(i, i)] = 1.0;
+        }
+    }
+    // Corners that hang on few nodes can depend on each other; rounding decides their sign.
+    for lift in [1e-13, 1e-10, 1e-7, 1e-4, 1e-2, 1.0] {
+        let mut lifted = dense.clone();
+        for i in 0..size {
+            lifted[(i, i)] *= 1.0 + lift;
+        }
+        if let Ok(factor) = Llt::new(lifted.as_ref(), Side::Lower) {
+            return Some(factor);
+        }
+    }
+    None
+}

@@ -1,0 +1,13 @@
+//! Geometric multigrid for the tangents of voxel bodies too large for a direct factor.
+
+mod blocks;
+mod cells;
+mod color;
+mod hierarchy;
+mod parallel;
+
+pub(crate) use blocks::BlockMatrix;
+pub(crate) use cells::cells_of;
+pub(crate) use color::color;
+pub(crate) use hierarchy::{Factors, Hierarchy, Workspace};
+pub(crate) use parallel::{for_each, sum};

@@ -1,0 +1,196 @@
+//! The iterative way must find what the direct one finds, with the same bits for any number of threads.
+
+mod common;
+
+use common::{block, cantilever, mesh_of, rubber, settled, vertices_where};
+use voxsoft_solid::vector::{norm, sub};
+use voxsoft_solid::{
+    Body, Clamp, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind, Material,
+    Membrane, MembraneMaterial, Motion, Problem,
+};
+use voxsoft_statics::{Answer, LinearSolver, Settings, Status, adjoint};
+use voxsoft_voxel::{Grid, tet_mesh};
+
+fn with(linear: LinearSolver) -> Settings {
+    Settings {
+        linear,
+        ..Settings::default()
+    }
+}
+
+fn both(problem: &Problem) -> [Answer; 2] {
+    [LinearSolver::Direct, LinearSolver::Iterative].map(|way| settled(problem, &with(way)))
+}
+
+/// The largest distance between two answers over the largest displacement.
+fn difference(problem: &Problem, [a, b]: &[Answer; 2]) -> f64 {
+    let largest = |x: &Answer, y: &[[f64; 3]]| {
+        let pairs = x.positions.iter().zip(y);
+        pairs.map(|(x, y)| norm(sub(*x, *y))).fold(0.0, f64::max)
+    };
+    largest(a, &b.positions) / largest(a, problem.body().rest())
+}
+
+/// Two chambers with a wall one voxel thick between and around them, blown up; a film covers what lies
+/// below.
+fn chambers(material: impl Into<Material>, film: bool) -> Problem {
+    let side = 0.004;
+    let mut grid = Grid::empty([12, 7, 7], [0.0; 3], side, u64::MAX).unwrap();
+    let corner = |cells: [usize; 3]| cells.map(|n| n as f64 * side);
+    grid.fill_box([0.0; 3], corner([12, 7, 7]), 1);
+    grid.fill_box(corner([2, 1, 1]), corner([6, 6, 6]), 0);
+    grid.fill_box(corner([7, 1, 1]), corner([11, 6, 6]), 0);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let corners_of = |triangle: &[i32; 3]| triangle.map(|v| v as u32);
+    let triangles: Vec<[u32; 3]> = tets
+        .cavities
+        .iter()
+        .flat_map(|cavity| cavity.triangles.iter().map(corners_of))
+        .collect();
+    let mut mesh = mesh_of(&grid);
+    if film {
+        let silk = MembraneMaterial {
+            young: 40e6,
+            poisson: 0.3,
+            thickness: 1e-4,
+            density: 1300.0,
+        };
+        let bottom = tets.triangles.iter().map(corners_of).filter_map(|t| {
+            let places = t.map(|v| mesh.vertices[v as usize]);
+            let below = places.iter().all(|x| x[2] < 1e-9);
+            below.then(|| Membrane::new(t, places, silk).unwrap())
+        });
+        mesh.membranes = bottom.collect();
+    }
+    let body = Body::new(&mesh, &[material.into()]).unwrap();
+    let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
+    let loads = vec![
+        Load::gravity([0.0, 0.0, -9.81]),
+        Load::constant(LoadKind::Pressure {
+            triangles,
+            voids: vec![],
+            pressure: 2e3,
+        }),
+    ];
+    Problem::new(body, vec![Clamp::fixed(wall)], loads, None).unwrap()
+}
+
+/// Two leaves on a common foot with a slit of one voxel between them, pulled apart by motions of their
+/// ends: coarse voxels that welded them would never let them part.
+fn leaves() -> Problem {
+    let side = 0.002;
+    let mut grid = Grid::empty([24, 6, 5], [0.0; 3], side, u64::MAX).unwrap();
+    let corner = |cells: [usize; 3]| cells.map(|n| n as f64 * side);
+    grid.fill_box([0.0; 3], corner([24, 6, 5]), 1);
+    grid.fill_box(corner([3, 0, 2]), corner([24, 6, 3]), 0);
+    let mesh = mesh_of(&grid);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let end = 24.0 * side - 1e-9;
+    let pulled = |up: f64, low: f64, high: f64| Clamp {
+        vertices: vertices_where(&mesh, |x| x[0] > end && x[2] >= low && x[2] <= high),
+        axes: [false, false, true],
+        motion: Some(Motion {
+            displacement: [0.0, 0.0, up],
+            axis: [0.0, 0.0, 1.0],
+            angle: 0.0,
+            center: [0.0; 3],
+            history: History::constant(),
+        }),
+    };
+    let clamps = vec![
+        Clamp::fixed(vertices_where(&mesh, |x| x[0] < 1e-9)),
+        pulled(0.004, 3.0 * side - 1e-9, 1.0),
+        pulled(-0.004, -1.0, 2.0 * side + 1e-9),
+    ];
+    Problem::new(body, clamps, vec![], None).unwrap()
+}
+
+#[test]
+fn it_finds_what_the_direct_way_finds() {
+    let lattice = LatticeMaterial::from_moduli(60e3, 20e3, 1070.0).unwrap();
+    let tight = HyperelasticMaterial::neo_hookean(60e3, 0.499, 1070.0).unwrap();
+    let cases = [
+        ("beam", cantilever([40, 4, 4], 0.005, rubber())),
+        ("lattice", cantilever([20, 4, 4], 0.005, lattice)),
+        (
+            "nearly incompressible",
+            cantilever([10, 5, 5], 0.005, tight),
+        ),
+        ("chambers", chambers(rubber(), false)),
+        ("chambers with a film", chambers(rubber(), true)),
+        ("leaves", leaves()),
+    ];
+    for (name, problem) in cases {
+        let answers = both(&problem);
+        for answer in &answers {
+            assert_eq!(answer.status, Status::AtRest, "{name}");
+            assert!(answer.stable, "{name}");
+        }
+        // Either way ends where Newton's method stands still: at 1e-9 of the motion at most.
+        let difference = difference(&problem, &answers);
+        assert!(difference < 1e-8, "{name}: {difference:e}");
+    }
+}
+
+#[test]
+fn bits_do_not_depend_on_the_number_of_threads() {
+    let problem = chambers(rubber(), true);
+    let answer = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let run = || settled(&problem, &with(LinearSolver::Iterative));
+        pool.build().unwrap().install(run)
+    };
+    let one = answer(1);
+    assert_eq!(one.status, Status::AtRest);
+    for threads in [2, 4, 7] {
+        assert_eq!(
+            answer(threads).positions,
+            one.positions,
+            "{threads} threads"
+        );
+    }
+}
+
+#[test]
+fn adjoints_agree() {
+    // More vertices than the switch, so that the iteration answers by itself; K⁻¹ is symmetric.
+    let problem = cantilever([24, 13, 13], 0.002, rubber());
+    assert!(problem.body().rest().len() > 4000);
+    let answer = settled(&problem, &with(LinearSolver::Auto));
+    assert_eq!(answer.status, Status::AtRest);
+    let one = |vertex: usize, axis: usize| {
+        let mut gradient = vec![[0.0; 3]; answer.positions.len()];
+        gradient[vertex][axis] = 1.0;
+        gradient
+    };
+    let last = answer.positions.len() - 1;
+    let states = adjoint(&problem, &answer.positions, &[one(last, 2), one(3000, 0)]).unwrap();
+    let (there, back) = (states[0][3000][0], states[1][last][2]);
+    assert!((there - back).abs() < 1e-6 * there.abs(), "{there} {back}");
+}
+
+#[test]
+fn an_upright_column_that_buckles_is_seen_to_be_unstable() {
+    // A column clamped below buckles under its own weight q (N/m) from q h³ = 7.84 E I on (Greenhill
+    // 1881): here from g = 0.095 m/s² on. The heavy one stands only because nothing tips it.
+    let mesh = block([4, 4, 48], 0.002);
+    let heavy = HyperelasticMaterial::neo_hookean(60e3, 0.3, 30e3).unwrap();
+    let body = Body::new(&mesh, &[heavy]).unwrap();
+    let foot = vertices_where(&mesh, |x| x[2] < 1e-9);
+    let weight = |g: f64| {
+        let gravity = Load::gravity([0.0, 0.0, -g]);
+        Problem::new(
+            body.clone(),
+            vec![Clamp::fixed(foot.clone())],
+            vec![gravity],
+            None,
+        )
+        .unwrap()
+    };
+    let (light, heavy) = (weight(0.01), weight(1.0));
+    assert!(both(&light).iter().all(|answer| answer.stable));
+    for answer in both(&heavy) {
+        assert_eq!(answer.status, Status::AtRest);
+        assert!(!answer.stable);
+    }
+}
