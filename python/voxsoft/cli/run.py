@@ -63,7 +63,7 @@ def run(
 
 def _percent(bar: ProgressBar, solver: Solver) -> Callable[[int, float, float], None]:
     """Progress in percent: of the end time, or of the digits that the residual must still lose."""
-    from voxsoft.simulation.run import DEFAULT_TOLERANCE
+    from voxsoft.simulation.rest import DEFAULT_TOLERANCE
 
     tolerance = solver.tolerance or DEFAULT_TOLERANCE
     largest = 0.0

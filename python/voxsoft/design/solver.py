@@ -22,7 +22,8 @@ class Solver(Record):
     method
         ``"xpbd"``: dynamics, run to rest; ``"statics"``: the equilibrium by Newton's method;
         ``"auto"`` (default): statics if every part is hyperelastic or there are layers, and
-        nothing asks for motion over time, else xpbd.
+        nothing asks for motion over time, else xpbd; slender bodies that its relaxation would
+        take long for are solved by statics too.
     refine
         Solve on every voxel cut into this many along each axis: the same body, smaller
         elements. Default 1.

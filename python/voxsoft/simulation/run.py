@@ -13,14 +13,13 @@ from voxsoft.design import Design, Solver
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
 from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
+from voxsoft.simulation.rest import DEFAULT_TOLERANCE, quickest_rest, relax_fully
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
 
-DEFAULT_TOLERANCE = 1e-4
-DEFAULT_MAX_STEPS = 400_000
 DEFAULT_MAX_TIME = 60.0
 DEFAULT_TIME_STEP = 0.01
 DEFAULT_RECORD_INTERVAL = 0.02
@@ -38,7 +37,8 @@ def simulate(
 
     Designs of hyperelastic parts, and those with layers, are solved by statics, Newton's method on
     the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and knows no
-    time. With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a
+    time, or, where its first 400 steps leave more than half of the load out of balance, by statics.
+    With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a
     `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
     dynamics); all come to rest in the same state. Real time is damped critically on the way to
     rest and not at all on the way to an end time, unless `damping` says otherwise.
@@ -92,8 +92,10 @@ def simulate(
     elif _wants_time(solver):
         _refuse_layers(setup.design)
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
+    elif solver.method == "auto" and solver.damping is None:
+        used, report = quickest_rest(setup, solver, progress)
     else:
-        used, report = _relaxation(setup.problem, solver, progress)
+        used, report = relax_fully(setup, solver, progress)
     return result_of(setup, used, report, time.perf_counter() - started)
 
 
@@ -169,15 +171,6 @@ def _refuse_layers(design: Design) -> None:
             "runs over time do not know layers yet",
             'find the state at rest with method = "statics", without settings of time',
         )
-
-
-def _relaxation(
-    problem: _core.Problem, solver: Solver, progress: ProgressCallback | None
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    tolerance = solver.tolerance or DEFAULT_TOLERANCE
-    report = problem.relax(tolerance=tolerance, max_steps=DEFAULT_MAX_STEPS, progress=progress)
-    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
-    return {**used, "max_steps": DEFAULT_MAX_STEPS}, report
 
 
 def _dynamics(

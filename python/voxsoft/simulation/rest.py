@@ -1,0 +1,79 @@
+"""The way to rest of designs that both relaxation and statics can solve.
+
+A step of relaxation is cheap, and how many it takes grows with the slenderness of the body: 100 for
+a squat cylinder, 30,000 for a thin plate. Statics costs about as much as some thousand steps of
+relaxation on any body (`benchmarks/time_to_rest.py`). So relaxation begins, and what is left of the
+forces after `TRIAL_STEPS` foretells how long it would take.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+from voxsoft.design import Solver
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.equilibrium import find_equilibrium
+from voxsoft.simulation.setup import Setup
+
+DEFAULT_TOLERANCE: Final = 1e-4
+DEFAULT_MAX_STEPS: Final = 400_000
+
+#: Steps of relaxation after which a body that is not at rest shows how slow it is.
+TRIAL_STEPS: Final = 400
+#: Statics takes over where more than this part of the load is still out of balance then. A mode
+#: that is damped critically, as relaxation damps the slowest, keeps (1 + ωt) exp(-ωt): half of it
+#: at ωt = 1.7, and 1e-4 at ωt = 11.8. So 400 steps to a half mean some 2,800 to rest, which is
+#: where statics was found to cost the same (2,000 to 7,000 on plates, robots and beams).
+SLOW_RESIDUAL: Final = 0.5
+
+Progress = Callable[[int, float, float], None] | None
+#: Settings as used, and the core's report.
+Answer = tuple[dict[str, Any], dict[str, Any]]
+
+
+def relax_fully(
+    setup: Setup, solver: Solver, progress: Progress, report: dict[str, Any] | None = None
+) -> Answer:
+    """Bring a setup to rest by relaxation, or go on where `report` ended."""
+    tolerance = solver.tolerance or DEFAULT_TOLERANCE
+    taken = report["steps"] if report else 0
+    later = setup.problem.relax(
+        tolerance=tolerance,
+        max_steps=DEFAULT_MAX_STEPS - taken,
+        start=report["positions"] if report else None,
+        progress=_counted_from(taken, progress),
+    )
+    later["steps"] += taken
+    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
+    return {**used, "max_steps": DEFAULT_MAX_STEPS}, later
+
+
+def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
+    """Bring a setup to rest by relaxation, or by statics where that would take long.
+
+    The choice depends on the body and the load alone, never on the clock: the same design gives the
+    same bits. Prescribed motions, which relaxation brings up slowly, are left to it. Where statics
+    finds no stable equilibrium relaxation goes on from where it was.
+    """
+    if any(clamp.motion is not None for clamp in setup.design.clamps):
+        return relax_fully(setup, solver, progress)
+    tolerance = solver.tolerance or DEFAULT_TOLERANCE
+    trial = setup.problem.relax(tolerance=tolerance, max_steps=TRIAL_STEPS, progress=progress)
+    if trial["status"] != "not-at-rest":
+        used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
+        return {**used, "max_steps": DEFAULT_MAX_STEPS}, trial
+    if trial["residual"] > SLOW_RESIDUAL:
+        try:
+            used, report = find_equilibrium(setup, solver, _counted_from(TRIAL_STEPS, progress))
+        except SimulationError:  # its tangent does not fit in memory
+            return relax_fully(setup, solver, progress, trial)
+        if report["status"] == "at-rest" and report["stable"]:
+            return {**used, "trial_steps": TRIAL_STEPS}, report
+    return relax_fully(setup, solver, progress, trial)
+
+
+def _counted_from(taken: int, progress: Progress) -> Progress:
+    if progress is None or taken == 0:
+        return progress
+    return lambda steps, time, residual: progress(taken + steps, time, residual)
