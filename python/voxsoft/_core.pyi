@@ -206,6 +206,7 @@ def equilibrium(
     steps: int = 20,
     ratio: float = 1.0,
     linear: str = "auto",
+    memory: int = ...,
     start: NDArray[np.float64] | None = None,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
     progress: Callable[[int, float, float], None] | None = None,

@@ -134,3 +134,12 @@ def test_check_never_raises_and_names_leaks():
     assert report.leaks
     assert any("open through" in finding.what for finding in report.findings)
     assert report.summary()["problems"][0]["severity"] == "error"
+
+
+def test_a_tangent_too_large_for_memory_is_refused_with_the_estimate(monkeypatch):
+    monkeypatch.setattr("voxsoft.simulation.equilibrium.memory_limit", lambda: 10_000)
+    rubber = vs.NeoHookean(young=60 * kPa)
+    box = design(parts=[vs.Part(shape=BOX, material=rubber)])
+    with pytest.raises(SimulationError, match="takes about .* GB, and .* are free") as refused:
+        simulate(box, method="statics")
+    assert "larger voxels" in str(refused.value)

@@ -47,9 +47,9 @@ pub fn adjoint<'py>(
 }
 
 /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
-/// `linear` is "auto", "direct" or "iterative".
+/// `linear` is "auto", "direct" or "iterative", `memory` the bytes that the tangent may take.
 #[pyfunction]
-#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", start=None, sensors=vec![], progress=None))]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, sensors=vec![], progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -63,6 +63,7 @@ pub fn equilibrium<'py>(
     steps: u32,
     ratio: f64,
     linear: &str,
+    memory: u64,
     start: Option<PyReadonlyArray2<'_, f64>>,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
     progress: Option<Py<PyAny>>,
@@ -91,6 +92,7 @@ pub fn equilibrium<'py>(
         first_step,
         control,
         linear,
+        memory,
         ..Settings::default()
     };
     let start = start.map(|start| problem.positions(&start)).transpose()?;
@@ -114,12 +116,13 @@ pub fn equilibrium<'py>(
             ]
         })
         .collect();
-    let status = match answer.status {
+    let status_of_path = answer.status;
+    let status = match status_of_path {
         voxsoft_statics::Status::AtRest => "at-rest",
         voxsoft_statics::Status::LimitReached => "limit-reached",
         voxsoft_statics::Status::NotConverged => "not-converged",
         voxsoft_statics::Status::Mechanism => "mechanism",
-        voxsoft_statics::Status::OutOfMemory => "out-of-memory",
+        voxsoft_statics::Status::OutOfMemory(_) => "out-of-memory",
         voxsoft_statics::Status::Cancelled => "cancelled",
     };
     let mut state = State::at_rest(inner.body());
@@ -135,6 +138,9 @@ pub fn equilibrium<'py>(
     };
     let report = problem.report(py, common, watch, f64::INFINITY)?;
     report.set_item("status", status)?;
+    if let voxsoft_statics::Status::OutOfMemory(bytes) = status_of_path {
+        report.set_item("needed_bytes", bytes)?;
+    }
     report.set_item("factor", factor)?;
     report.set_item("reached", answer.reached)?;
     report.set_item("limit", limit)?;

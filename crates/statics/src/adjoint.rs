@@ -12,7 +12,7 @@ use voxsoft_solid::vector::Vec3;
 use crate::equilibrium::Equilibrium;
 use crate::point::Point;
 use crate::settings::LinearSolver;
-use crate::system::FactorError;
+use crate::system::{FactorError, Means};
 
 /// What an iterative solution leaves of a gradient, in energy; rounding in a slender body leaves no less
 /// than 1e-10.
@@ -45,7 +45,11 @@ pub fn adjoint(
     positions: &[Vec3],
     gradients: &[Vec<Vec3>],
 ) -> Result<Vec<Vec<Vec3>>, AdjointError> {
-    let mut equilibrium = Equilibrium::new(problem, LinearSolver::Auto)?;
+    let means = Means {
+        solver: LinearSolver::Auto,
+        memory: u64::MAX,
+    };
+    let mut equilibrium = Equilibrium::new(problem, means)?;
     let full = Point::all(1.0);
     equilibrium.update_floor(positions, full)?;
     let mut unused = vec![0.0; equilibrium.system.size()];
@@ -75,7 +79,7 @@ pub fn adjoint(
 impl From<FactorError> for AdjointError {
     fn from(error: FactorError) -> Self {
         match error {
-            FactorError::Memory => Self::OutOfMemory,
+            FactorError::Memory(_) => Self::OutOfMemory,
             FactorError::NotPositive
             | FactorError::Singular
             | FactorError::Stalled

@@ -16,7 +16,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, LoadKind, Problem, elastic};
 
 use crate::ordering::nested_dissection;
-use crate::system::FactorError;
+use crate::system::{FactorError, Means};
 
 /// Marks a coordinate that is held.
 const HELD: u32 = u32::MAX;
@@ -51,7 +51,7 @@ pub(crate) enum DirectFactor {
 
 impl DirectSystem {
     /// The pattern for a problem whose coordinates `held` do not move.
-    pub fn new(problem: &Problem, held: &[[bool; 3]]) -> Result<Self, FactorError> {
+    pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
         let body = problem.body();
         let count = body.rest().len();
         let neighbors = adjacency(problem, count);
@@ -128,11 +128,12 @@ impl DirectSystem {
                 SymmetricOrdering::Custom(PermRef::new_checked(&identity, &identity, size)),
                 Default::default(),
             )
-            .map_err(|_| FactorError::Memory)?;
+            .map_err(|_| FactorError::Memory(0))?;
+            means.allow(symbolic.len_val() as u64 * size_of::<f64>() as u64)?;
             system.symbolic = Some(symbolic);
         } else {
             let symbolic =
-                SymbolicLu::try_new(system.pattern()).map_err(|_| FactorError::Memory)?;
+                SymbolicLu::try_new(system.pattern()).map_err(|_| FactorError::Memory(0))?;
             system.symbolic_lu = Some(symbolic);
         }
         Ok(system)
@@ -246,7 +247,7 @@ impl DirectSystem {
         let par = Par::Seq;
         if positive {
             let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default());
-            let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory)?;
+            let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
             symbolic
                 .factorize_numeric_llt::<f64>(
                     &mut entries,
@@ -261,7 +262,7 @@ impl DirectSystem {
             return Ok(DirectFactor::Cholesky(entries));
         }
         let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(par, Default::default());
-        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory)?;
+        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
         symbolic
             .factorize_numeric_ldlt::<f64>(
                 &mut entries,

@@ -10,7 +10,7 @@ use voxsoft_solid::{Problem, elastic};
 
 use crate::point::Point;
 use crate::settings::{LinearSolver, Observer, Progress, Settings};
-use crate::system::{Factor, FactorError, System};
+use crate::system::{Factor, FactorError, Means, System};
 
 /// Why Newton's method stopped without an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +19,8 @@ pub(crate) enum Failure {
     Lost,
     /// The tangent stays singular.
     Singular,
-    /// Out of memory.
-    Memory,
+    /// It takes more memory than there is, in bytes.
+    Memory(u64),
     /// The observer asked to stop.
     Cancelled,
     /// A linear system was not solved iteratively.
@@ -30,7 +30,7 @@ pub(crate) enum Failure {
 impl From<FactorError> for Failure {
     fn from(error: FactorError) -> Self {
         match error {
-            FactorError::Memory => Self::Memory,
+            FactorError::Memory(bytes) => Self::Memory(bytes),
             FactorError::NotPositive | FactorError::Singular => Self::Singular,
             FactorError::Stalled => Self::Stalled,
             FactorError::Cancelled => Self::Cancelled,
@@ -64,8 +64,8 @@ impl Forces {
 pub(crate) struct Equilibrium<'a> {
     pub problem: &'a Problem,
     pub system: System,
-    /// How linear systems were asked to be solved.
-    pub solver: LinearSolver,
+    /// How linear systems may be solved.
+    pub means: Means,
     /// Held by clamps or carried by the floor.
     pub held: Vec<[bool; 3]>,
     pub iterations: u32,
@@ -95,7 +95,7 @@ const STANDSTILL_OF_MOTION: f64 = 1e-9;
 const STANDSTILL_RESIDUAL: f64 = 1e-4;
 
 impl<'a> Equilibrium<'a> {
-    pub fn new(problem: &'a Problem, solver: LinearSolver) -> Result<Self, FactorError> {
+    pub fn new(problem: &'a Problem, means: Means) -> Result<Self, FactorError> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
             for (held, point) in held.iter_mut().zip(problem.body().rest()) {
@@ -103,8 +103,8 @@ impl<'a> Equilibrium<'a> {
             }
         }
         Ok(Self {
-            system: System::new(problem, &held, solver)?,
-            solver,
+            system: System::new(problem, &held, means)?,
+            means,
             problem,
             held,
             iterations: 0,
@@ -187,8 +187,8 @@ impl<'a> Equilibrium<'a> {
         let mut outcome = self.newton_mixed(&mut trial, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
             // From here on directly, if that fits in memory.
-            self.solver = LinearSolver::Direct;
-            self.system = System::new(self.problem, &self.held, self.solver)?;
+            self.means.solver = LinearSolver::Direct;
+            self.system = System::new(self.problem, &self.held, self.means)?;
             trial.clone_from(positions);
             outcome = self.newton_mixed(&mut trial, point, settings, observer);
         }
@@ -492,7 +492,7 @@ impl<'a> Equilibrium<'a> {
             self.held[vertex][2] = keep;
         }
         if changed {
-            self.system = System::new(self.problem, &self.held, self.solver)?;
+            self.system = System::new(self.problem, &self.held, self.means)?;
         }
         Ok(changed)
     }

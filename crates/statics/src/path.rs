@@ -9,7 +9,7 @@ use crate::point::Point;
 use crate::settings::{
     Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,
 };
-use crate::system::{FactorError, System};
+use crate::system::{FactorError, Means, System};
 use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
@@ -63,11 +63,15 @@ pub fn solve(
 ) -> Answer {
     let rest = problem.body().rest();
     let positions = start.unwrap_or(rest).to_vec();
-    let linear = match settings.control {
+    let solver = match settings.control {
         Control::Load => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
     };
-    let equilibrium = match Equilibrium::new(problem, linear) {
+    let means = Means {
+        solver,
+        memory: settings.memory,
+    };
+    let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => equilibrium,
         Err(error) => return refused(positions, error),
     };
@@ -93,7 +97,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
     Answer {
         positions,
         status: match error {
-            FactorError::Memory => Status::OutOfMemory,
+            FactorError::Memory(bytes) => Status::OutOfMemory(bytes),
             FactorError::Cancelled => Status::Cancelled,
             FactorError::NotPositive | FactorError::Singular | FactorError::Stalled => {
                 Status::Mechanism
@@ -114,7 +118,7 @@ pub(crate) fn status_of(failure: Failure) -> Status {
     match failure {
         Failure::Lost | Failure::Stalled => Status::NotConverged,
         Failure::Singular => Status::Mechanism,
-        Failure::Memory => Status::OutOfMemory,
+        Failure::Memory(bytes) => Status::OutOfMemory(bytes),
         Failure::Cancelled => Status::Cancelled,
     }
 }
@@ -206,9 +210,9 @@ impl Path<'_, '_> {
     fn look_ahead(&mut self, settings: &Settings) -> Option<f64> {
         let equilibrium = &mut self.equilibrium;
         if equilibrium.system.is_iterative() {
-            let direct = LinearSolver::Direct;
-            equilibrium.system =
-                System::new(equilibrium.problem, &equilibrium.held, direct).ok()?;
+            equilibrium.means.solver = LinearSolver::Direct;
+            let (problem, held) = (equilibrium.problem, &equilibrium.held);
+            equilibrium.system = System::new(problem, held, equilibrium.means).ok()?;
         }
         control::look_for_limit(self, settings)
     }

@@ -52,6 +52,8 @@ pub struct Settings {
     /// How linear systems are solved. Arc length and volume control take the direct way: past a limit
     /// the tangent is indefinite.
     pub linear: LinearSolver,
+    /// The bytes that the tangent may take.
+    pub memory: u64,
 }
 
 impl Default for Settings {
@@ -63,6 +65,7 @@ impl Default for Settings {
             least_step: 1e-3,
             control: Control::Load,
             linear: LinearSolver::Auto,
+            memory: u64::MAX,
         }
     }
 }
@@ -78,8 +81,9 @@ pub enum Status {
     NotConverged,
     /// The tangent stays singular: a part of the body moves freely.
     Mechanism,
-    /// The factorised tangent does not fit in memory.
-    OutOfMemory,
+    /// The tangent takes more memory than there is: about this many bytes, or zero where only the
+    /// allocation showed it.
+    OutOfMemory(u64),
     /// The observer asked to stop.
     Cancelled,
 }

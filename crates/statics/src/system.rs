@@ -32,31 +32,46 @@ pub(crate) enum FactorError {
     NotPositive,
     /// Singular, or not a number.
     Singular,
-    /// Out of memory.
-    Memory,
+    /// It takes more memory than there is, in bytes.
+    Memory(u64),
     /// The iteration does not converge; a direct factor may.
     Stalled,
     /// The caller asked to stop.
     Cancelled,
 }
 
+/// What a solution may use.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Means {
+    pub solver: LinearSolver,
+    /// Bytes.
+    pub memory: u64,
+}
+
+impl Means {
+    /// Passes an estimate that there is room for.
+    pub fn allow(self, bytes: u64) -> Result<(), FactorError> {
+        if bytes <= self.memory {
+            Ok(())
+        } else {
+            Err(FactorError::Memory(bytes))
+        }
+    }
+}
+
 impl System {
     /// The pattern for a problem whose coordinates `held` do not move.
-    pub fn new(
-        problem: &Problem,
-        held: &[[bool; 3]],
-        solver: LinearSolver,
-    ) -> Result<Self, FactorError> {
+    pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
         let large = problem.body().rest().len() >= LARGE;
-        let iterative = match solver {
+        let iterative = match means.solver {
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Auto => large,
         };
-        if iterative && let Some(system) = IterativeSystem::new(problem, held) {
+        if iterative && let Some(system) = IterativeSystem::new(problem, held, means)? {
             return Ok(Self::Iterative(Box::new(system)));
         }
-        DirectSystem::new(problem, held).map(|system| Self::Direct(Box::new(system)))
+        DirectSystem::new(problem, held, means).map(|system| Self::Direct(Box::new(system)))
     }
 
     /// Whether solutions come from an iteration.

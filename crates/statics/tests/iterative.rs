@@ -194,3 +194,19 @@ fn an_upright_column_that_buckles_is_seen_to_be_unstable() {
         assert!(!answer.stable);
     }
 }
+
+#[test]
+fn what_does_not_fit_is_refused_with_an_estimate() {
+    let problem = cantilever([8, 4, 4], 0.005, rubber());
+    for linear in [LinearSolver::Direct, LinearSolver::Iterative] {
+        let settings = Settings {
+            memory: 10_000,
+            ..with(linear)
+        };
+        let Status::OutOfMemory(bytes) = settled(&problem, &settings).status else {
+            panic!("{linear:?} was not refused");
+        };
+        // 225 vertices: the factor has about as many entries as the tangent, 27 blocks a vertex at most.
+        assert!((100_000..2_000_000).contains(&bytes), "{linear:?}: {bytes}");
+    }
+}

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from voxsoft import _core
+from voxsoft._memory import memory_limit
 from voxsoft.design import Pressure, Solver
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
@@ -84,6 +85,7 @@ def find_equilibrium(
     report = _core.equilibrium(
         problem or setup.problem,
         **asked,
+        memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,
     )
@@ -92,9 +94,12 @@ def find_equilibrium(
         # Singular up to rounding is all that the factor shows of it.
         report["status"] = "mechanism"
     if report["status"] == "out-of-memory":
+        needed = report["needed_bytes"]
+        size = f"takes about {needed / 1e9:.1f} GB, and" if needed else "does not fit:"
         raise SimulationError(
             "solver.method",
-            f"the tangent of {len(setup.mesh.vertices)} vertices does not fit in memory",
+            f"the tangent of {len(setup.mesh.vertices)} vertices {size} "
+            f"{memory_limit() / 1e9:.1f} GB of memory are free",
             'use larger voxels, or method = "xpbd"',
         )
     used = {"method": "statics", "way": control, "tolerance": asked["tolerance"]}
