@@ -9,6 +9,9 @@ STAMP := $(VENV)/.installed
 # How many tests run side by side; each of them may use a second core for a moment.
 JOBS ?= 2
 
+# What `make bench` runs, some ten minutes; JSON goes to target/bench, beside the text.
+BENCHMARKS := pipeline step_rate time_to_rest study growth peers
+
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
 .PHONY: help install demo test test-rust test-python test-all lint format bench docs clean
@@ -65,8 +68,9 @@ format:
 	$(BIN)/ruff format
 
 bench: install
-	$(BIN)/python benchmarks/pipeline.py
-	$(BIN)/python benchmarks/step_rate.py
+	@for name in $(BENCHMARKS); do \
+		$(BIN)/python benchmarks/$$name.py --save target/bench/$$name.json || exit 1; \
+	done
 
 docs: install
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs

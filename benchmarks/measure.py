@@ -68,6 +68,7 @@ class Report:
     def __init__(self, description: str, **flags: str) -> None:
         parser = argparse.ArgumentParser(description=description)
         parser.add_argument("--json", action="store_true", help="print one JSON object")
+        parser.add_argument("--save", type=Path, help="write that object to a file beside the text")
         for flag, meaning in flags.items():
             parser.add_argument(f"--{flag}", action="store_true", help=meaning)
         self.options = vars(parser.parse_args())
@@ -82,9 +83,13 @@ class Report:
             print(f"{name}: {value:.4g} {unit}", file=sys.stderr, flush=True)
 
     def show(self) -> None:
-        """Print everything."""
+        """Print everything, and save it if asked to."""
+        text = json.dumps({"machine": machine(), "rows": self.rows}, indent=2)
+        if self.options["save"] is not None:
+            self.options["save"].parent.mkdir(parents=True, exist_ok=True)
+            self.options["save"].write_text(text + "\n", encoding="utf-8")
         if self._json:
-            print(json.dumps({"machine": machine(), "rows": self.rows}, indent=2))
+            print(text)
             return
         table = Table(title=self._title, title_justify="left")
         table.add_column("figure")

@@ -140,6 +140,6 @@ def test_a_tangent_too_large_for_memory_is_refused_with_the_estimate(monkeypatch
     monkeypatch.setattr("voxsoft.simulation.equilibrium.memory_limit", lambda: 10_000)
     rubber = vs.NeoHookean(young=60 * kPa)
     box = design(parts=[vs.Part(shape=BOX, material=rubber)])
-    with pytest.raises(SimulationError, match="takes about .* GB, and .* are free") as refused:
+    with pytest.raises(SimulationError, match=r"takes about .* GB, and .* are free") as refused:
         simulate(box, method="statics")
     assert "larger voxels" in str(refused.value)
