@@ -24,7 +24,6 @@ Examples
 from __future__ import annotations
 
 from importlib import import_module
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -121,6 +120,8 @@ _HOME_OF: Final = {name: home for home, names in _HOMES.items() for name in name
 
 def __getattr__(name: str) -> Any:  # noqa: ANN401 - any public object
     if name == "__version__":
+        from importlib.metadata import version  # as slow to load as all else here together
+
         return version("voxsoft")
     if name.startswith("_"):
         raise AttributeError(name)
