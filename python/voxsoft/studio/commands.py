@@ -1,0 +1,335 @@
+"""Commands: what the page asks of the server. All quantities are SI."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from msgspec import Meta, field
+
+from voxsoft.studio.message import Entry, Json, Message, Triple
+
+Count = Annotated[int, Meta(ge=0)]
+OneOrMore = Annotated[int, Meta(ge=1)]
+Positive = Annotated[float, Meta(gt=0)]
+ShortText = Annotated[str, Meta(max_length=300)]
+#: Keys and indices from the top of a design document: ["parts", 0, "material"].
+Path = Annotated[list[str | int], Meta(min_length=1, max_length=50)]
+
+
+class Command(Message):
+    """Base of all commands; `seq` grows with each, and frames and errors echo it."""
+
+    seq: int
+
+
+class Hello(Command):
+    """First message of a tab: the protocol that it speaks, and its token where it has no cookie."""
+
+    protocol: int
+    version: str = ""
+    token: str = ""
+
+
+class Open(Command):
+    """Open a document: a template, a file or run folder, an uploaded file, or a study's trial.
+
+    A trial is named "ID/INDEX"; a run by its id in the list of runs.
+    """
+
+    what: Literal["template", "file", "run", "upload", "trial"]
+    name: ShortText
+
+
+class Text(Command):
+    """Replace the text of the document; `rev` is the revision that was edited."""
+
+    rev: int
+    text: Annotated[str, Meta(max_length=10_000_000)]
+
+
+class Edit(Command):
+    """Set one value of the document, keeping its comments; `null` removes the key."""
+
+    rev: int
+    path: Path
+    value: Json = None
+
+
+class Undo(Command):
+    """Take back the last change of the document."""
+
+
+class Redo(Command):
+    """Make the change again that was taken back last."""
+
+
+class Save(Command):
+    """Write the document to its file, or to another."""
+
+    path: ShortText | None = None
+
+
+class Play(Command):
+    """Let time run."""
+
+
+class Pause(Command):
+    """Stop time."""
+
+
+class Step(Command):
+    """Take `n` frames of time and stop."""
+
+    n: Annotated[int, Meta(ge=1, le=10_000)] = 1
+
+
+class Reset(Command):
+    """Go back to the unloaded shape at time zero."""
+
+
+class Rest(Command):
+    """Solve for the state at rest with the chosen solver."""
+
+
+class Solver(Command):
+    """Choose the solver of `rest`."""
+
+    method: Literal["auto", "xpbd", "statics"]
+
+
+class Load(Command):
+    """Change a load while time runs: its value in the unit of `BodyLoad`, or as a factor."""
+
+    index: Count
+    value: float | None = None
+    factor: float | None = None
+
+
+class Grab(Command):
+    """Pull a vertex of the surface toward a point by a spring; the same id moves the point."""
+
+    id: Count
+    vertex: Count
+    target: Triple
+    stiffness: Positive = 50.0
+
+
+class Release(Command):
+    """Take the spring away."""
+
+    id: Count
+
+
+class Seek(Command):
+    """Show a stored frame; time stops."""
+
+    frame: Count
+
+
+class Live(Command):
+    """Go back from a stored frame to the present."""
+
+
+class View(Command):
+    """What this tab shows: the field, the surface or the tetrahedra, and whether it is visible."""
+
+    field: Annotated[int, Meta(ge=0, le=8)] = 0
+    mode: Literal["surface", "tets"] = "surface"
+    visible: bool = True
+
+
+class Pick(Command):
+    """Ask for all values at a vertex of the surface."""
+
+    vertex: Count
+
+
+class Probe(Command):
+    """Plot the displacement of a vertex of the surface over time."""
+
+    vertex: Count
+
+
+class Ack(Command):
+    """Say that a frame was shown; allows one more."""
+
+    frame: int
+
+
+class RunSpec(Entry, tag_field="kind", tag="run"):
+    """Bring the design to rest, or to its end time, and keep the result as a run folder.
+
+    `solver` replaces settings of the design's solver.
+    """
+
+    name: ShortText | None = None
+    solver: dict[str, Json] = field(default_factory=dict)
+
+
+class SpaceRange(Entry):
+    """A range of a parameter: every `step` of it, or any value."""
+
+    low: float
+    high: float
+    step: float | None = None
+    log: bool = False
+
+
+class StudySpec(Entry, tag_field="kind", tag="study"):
+    """Solve many designs. What is left out is as the design has it.
+
+    `space` holds, by parameter, a range or a list of choices. `objectives` and `constraints` are
+    written as in a design file.
+    """
+
+    name: ShortText | None = None
+    sampler: ShortText = "grid"
+    budget: OneOrMore = 100
+    batch: OneOrMore | None = None
+    seed: int = 0
+    workers: OneOrMore | None = None
+    space: dict[str, SpaceRange | list[Json]] | None = None
+    objectives: dict[str, dict[str, Json]] | None = None
+    constraints: dict[str, dict[str, Json]] | None = None
+
+
+class ColumnMap(Entry):
+    """What a column of a table holds: a quantity ("s", "dz", "x", ...; "" for nothing), a unit."""
+
+    column: str
+    quantity: str
+    unit: str = ""
+
+
+class MeasuredData(Entry):
+    """A measured table: the name of a measurement that was sent, and how to read it.
+
+    `select` names the material to take, where a table holds several.
+    """
+
+    name: ShortText
+    columns: list[ColumnMap] | None = None
+    select: ShortText | None = None
+
+
+class CalibrateSpec(Entry, tag_field="kind", tag="calibrate"):
+    """Fit the design's material to measurements. `bounds` holds (low, high) by constant."""
+
+    data: Annotated[list[MeasuredData], Meta(min_length=1, max_length=50)]
+    name: ShortText | None = None
+    method: ShortText = "genetic"
+    generations: OneOrMore = 50
+    population: Annotated[int, Meta(ge=4)] = 30
+    bounds: dict[str, tuple[float, float]] | None = None
+    free_scale: bool = False
+    refine: bool = True
+    identify: bool = True
+    seed: int = 0
+    workers: OneOrMore | None = None
+
+
+class JobStart(Command):
+    """Start a job on the document as it stands."""
+
+    spec: RunSpec | StudySpec | CalibrateSpec
+
+
+class JobPause(Command):
+    """Hold a job; what is being solved is finished first."""
+
+    id: ShortText
+
+
+class JobResume(Command):
+    """Go on with a job that was paused or stopped, or with a study of the list of runs."""
+
+    id: ShortText
+
+
+class JobStop(Command):
+    """Stop a job; what is finished is kept."""
+
+    id: ShortText
+
+
+class Runs(Command):
+    """Ask for the list of runs."""
+
+
+class RunRename(Command):
+    """Give a run folder another name."""
+
+    id: ShortText
+    name: ShortText
+
+
+class RunDelete(Command):
+    """Move a run folder to the trash."""
+
+    id: ShortText
+
+
+class RunRestore(Command):
+    """Take a run folder out of the trash."""
+
+    id: ShortText
+
+
+class Compare(Command):
+    """Set two runs, or trials written "ID/INDEX", side by side."""
+
+    a: ShortText
+    b: ShortText
+
+
+class Measurement(Command):
+    """Read a measured table and say what its columns hold."""
+
+    name: ShortText
+    text: Annotated[str, Meta(max_length=10_000_000)]
+    columns: list[ColumnMap] | None = None
+    select: ShortText | None = None
+
+
+class CardSave(Command):
+    """Keep the material of a calibration as a card beside the document."""
+
+    job: ShortText
+    name: ShortText
+
+
+AnyCommand = (
+    Hello
+    | Open
+    | Text
+    | Edit
+    | Undo
+    | Redo
+    | Save
+    | Play
+    | Pause
+    | Step
+    | Reset
+    | Rest
+    | Solver
+    | Load
+    | Grab
+    | Release
+    | Seek
+    | Live
+    | View
+    | Pick
+    | Probe
+    | Ack
+    | JobStart
+    | JobPause
+    | JobResume
+    | JobStop
+    | Runs
+    | RunRename
+    | RunDelete
+    | RunRestore
+    | Compare
+    | Measurement
+    | CardSave
+)

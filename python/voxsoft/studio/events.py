@@ -1,0 +1,539 @@
+"""Events: what the server tells the page. All quantities are SI.
+
+Long because all events stand in one list, as the page reads them.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from msgspec import field
+
+from voxsoft.studio.message import Entry, Json, Message, Triple
+
+Severity = Literal["error", "warning", "note"]
+JobKind = Literal["run", "study", "calibrate"]
+JobState = Literal["running", "paused", "stopping", "stopped", "done", "failed", "interrupted"]
+SimulationState = Literal[
+    "empty", "meshing", "playing", "paused", "at-rest", "diverged", "solving", "past"
+]
+
+
+class Event(Message):
+    """Base of all events."""
+
+
+class Template(Entry):
+    """A design to start from."""
+
+    name: str
+    title: str
+    text: str
+
+
+class MaterialCard(Entry):
+    """A material card that designs can name; `young` is that of a large block, Pa."""
+
+    name: str
+    title: str
+    source: str
+    model: str
+    young: float | None = None
+
+
+class Sampler(Entry):
+    """A way to choose trials."""
+
+    name: str
+    title: str
+    single_objective: bool
+
+
+class Field(Entry):
+    """A quantity that colors the body; `signed` ones have zero in the middle of their range."""
+
+    id: int
+    name: str
+    title: str
+    unit: str
+    signed: bool
+
+
+class Metric(Entry):
+    """What an objective or constraint may measure."""
+
+    name: str
+    kind: str
+    needs_probe: bool
+    needs_cavity: bool
+
+
+class Hello(Event):
+    """First event: what this server can do. `design_schema` is the JSON Schema of a design."""
+
+    version: str
+    protocol: int
+    design_schema: dict[str, Json]
+    templates: list[Template]
+    materials: list[MaterialCard]
+    samplers: list[Sampler]
+    calibration_methods: list[str]
+    methods: list[str]
+    metrics: list[Metric]
+    fields: list[Field]
+    runs_folder: str
+    cores: int
+
+
+class Parameter(Entry):
+    """A parameter of the document; numbers are SI, `text` is the value as it is written.
+
+    `display_unit` and `factor`: value / factor is the number to show with that unit.
+    """
+
+    name: str
+    value: float
+    kind: str
+    text: str
+    min: float | None = None
+    max: float | None = None
+    step: float | None = None
+    display_unit: str = ""
+    factor: float = 1.0
+    formula: bool = False
+    description: str = ""
+
+
+class Diagnostic(Entry):
+    """Something wrong with the text. Lines and columns count from 1; columns may be unknown (0)."""
+
+    line: int
+    column: int
+    end_column: int
+    severity: Severity
+    where: str
+    what: str
+    hint: str = ""
+
+
+class Document(Event):
+    """The document as it stands; `design` is that of the last text that was good (or null)."""
+
+    rev: int
+    text: str
+    name: str
+    path: str | None
+    dirty: bool
+    valid: bool
+    parameters: list[Parameter]
+    design: dict[str, Json] | None
+    source: dict[str, Json] | None
+    diagnostics: list[Diagnostic]
+    can_undo: bool
+    can_redo: bool
+
+
+class Cavity(Entry):
+    """An enclosed space: volume in m³, area in m²."""
+
+    volume: float
+    area: float
+    center: Triple
+    leaks: int = 0
+
+
+class Leak(Entry):
+    """A chamber that is open: its volume in m³, the place of the opening."""
+
+    volume: float
+    point: Triple
+
+
+class Finding(Entry):
+    """What a check of the body found."""
+
+    severity: Severity
+    where: str
+    what: str
+    hint: str = ""
+
+
+class BodyClamp(Entry):
+    """A clamp: how many vertices it holds, their center, and some of them."""
+
+    name: str
+    vertices: int
+    center: Triple
+    points: list[Triple]
+
+
+class BodyLoad(Entry):
+    """A load with the range of its slider; value / factor is the number to show with `unit`."""
+
+    index: int
+    kind: str
+    label: str
+    value: float
+    unit: str
+    factor: float
+    min: float
+    max: float
+    at: Triple
+    direction: Triple
+
+
+class BodyProbe(Entry):
+    """A named place of measurement, with the surface vertices of it."""
+
+    name: str
+    center: Triple
+    vertices: list[int]
+
+
+class BodyPart(Entry):
+    """A part; `color` is a CSS color."""
+
+    name: str
+    material: str
+    color: str
+
+
+class Body(Event):
+    """A new body: its topology follows as a binary message with the same id.
+
+    `smooth` says that the smooth surface of the shapes follows as well (kind 3).
+    """
+
+    topology: int
+    rev: int
+    voxels: int
+    vertices: int
+    tets: int
+    surface_vertices: int
+    triangles: int
+    voxel_size: float
+    cavities: list[Cavity]
+    leaks: list[Leak]
+    mass: float
+    volume: float
+    bounds: tuple[Triple, Triple]
+    findings: list[Finding]
+    clamps: list[BodyClamp]
+    loads: list[BodyLoad]
+    probes: list[BodyProbe]
+    parts: list[BodyPart]
+    seconds: float
+    memory: float
+    smooth: bool = False
+
+
+class GrabState(Entry):
+    """A spring that pulls: force in N on the body, distance to its target in m."""
+
+    id: int
+    vertex: int
+    target: Triple
+    stiffness: float
+    force: Triple
+    stretch: float
+
+
+class Stat(Event):
+    """Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
+
+    `real_time_factor` is simulated over wall-clock time. Stored frames run from `first_frame`
+    to `last_frame`.
+    """
+
+    topology: int
+    state: SimulationState
+    sentence: str
+    time: float = 0.0
+    step_ms: float = 0.0
+    substeps: int = 0
+    real_time_factor: float = 0.0
+    residual: float | None = None
+    elastic: float | None = None
+    kinetic: float | None = None
+    frame: int = 0
+    first_frame: int = 0
+    last_frame: int = 0
+    frames_stored: int = 0
+    bytes_stored: int = 0
+    solver: str = "auto"
+    progress: float | None = None
+    loads: list[float] = field(default_factory=list)
+    grabs: list[GrabState] = field(default_factory=list)
+
+
+class Plot(Event):
+    """Rows to append to the plots: time, residual, elastic and kinetic energy, then each probe.
+
+    `names` and `units` name all columns. Values that are not finite come as null.
+    """
+
+    topology: int
+    names: list[str]
+    units: list[str]
+    rows: list[list[float | None]]
+    clear: bool = False
+
+
+class Value(Entry):
+    """A field's value at a vertex."""
+
+    field: int
+    name: str
+    value: float | None
+    unit: str
+
+
+class Picked(Event):
+    """All values at a vertex of the surface; positions in m."""
+
+    vertex: int
+    rest: Triple
+    position: Triple
+    values: list[Value]
+
+
+class Job(Event):
+    """Where a job stands; `left` is the time it will still take in s, `best` a short text."""
+
+    id: str
+    kind: JobKind
+    name: str
+    state: JobState
+    done: int
+    total: int
+    elapsed: float
+    left: float | None
+    best: str
+    folder: str
+    message: str
+    stage: str = ""
+    parameters: list[str] = field(default_factory=list)
+    objectives: list[str] = field(default_factory=list)
+    directions: list[str] = field(default_factory=list)
+
+
+class Trial(Event):
+    """A trial of a study; `objectives` is null where it has no result."""
+
+    job: str
+    index: int
+    parameters: dict[str, Json]
+    objectives: dict[str, float] | None
+    metrics: dict[str, float | None]
+    status: str
+    seconds: float
+    feasible: bool = True
+    front: bool = False
+    message: str = ""
+
+
+class Trials(Event):
+    """All trials of a study so far, replacing those sent before; kinds by name tell the units."""
+
+    job: str
+    parameters: list[str]
+    objectives: list[str]
+    directions: list[str]
+    kinds: dict[str, str]
+    trials: list[Trial]
+
+
+class Generation(Event):
+    """A generation of a calibration: fitness, and error in m."""
+
+    job: str
+    index: int
+    best: float
+    mean: float
+    error: float | None
+    parameters: dict[str, float]
+    spread: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+
+class OverlayExperiment(Entry):
+    """Measured and simulated stations of one experiment in m; errors in m."""
+
+    name: str
+    measured: list[Triple]
+    simulated: list[Triple]
+    error: list[float]
+    percent: list[float]
+
+
+class Overlay(Event):
+    """The best candidate of a calibration over the measurements."""
+
+    job: str
+    experiments: list[OverlayExperiment]
+
+
+class FittedParameter(Entry):
+    """A constant that was fitted; `sentence` tells what the data say about it."""
+
+    name: str
+    value: float
+    kind: str
+    text: str
+    low: float
+    high: float
+    identifiable: bool | None
+    sentence: str
+
+
+class StationError(Entry):
+    """The error at one station, in m and in percent of the sag."""
+
+    experiment: str
+    station: str
+    measured: list[float]
+    simulated: list[float]
+    error: float
+    percent: float
+
+
+class Calibrated(Event):
+    """The result of a calibration; errors in m. `card` is the text of the material card."""
+
+    job: str
+    parameters: list[FittedParameter]
+    table: list[StationError]
+    quantities: list[str]
+    identifiable: dict[str, bool]
+    fitness: float
+    mean_error: float
+    max_error: float
+    material: dict[str, Json]
+    card: str
+
+
+class RunRow(Entry):
+    """A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address."""
+
+    id: str
+    kind: Literal["run", "study", "calibrate", "unknown"]
+    name: str
+    status: str
+    best: str
+    when: str
+    seconds: float | None
+    folder: str
+    thumbnail: str | None
+    message: str = ""
+    trials: int | None = None
+
+
+class Runs(Event):
+    """The list of runs, newest first; `trash` holds what can be restored."""
+
+    rows: list[RunRow]
+    trash: list[RunRow]
+    folder: str
+
+
+class Side(Entry):
+    """One side of a comparison."""
+
+    id: str
+    name: str
+    status: str
+    parameters: dict[str, Json]
+    metrics: dict[str, float | None]
+    thumbnail: str | None
+    text: str
+
+
+class Difference(Entry):
+    """A value of the design in which two sides differ."""
+
+    where: str
+    a: Json
+    b: Json
+
+
+class Compared(Event):
+    """Two runs or trials side by side."""
+
+    a: Side
+    b: Side
+    differences: list[Difference]
+
+
+class MeasuredColumn(Entry):
+    """A column of a measured table as it is understood."""
+
+    column: str
+    quantity: str
+    unit: str
+    sample: list[str]
+
+
+class Measured(Event):
+    """A measured table as it is understood; `problems` tell why it cannot be used as it is."""
+
+    name: str
+    columns: list[MeasuredColumn]
+    quantities: list[str]
+    stations: int
+    materials: list[str]
+    arcs: list[float]
+    points: list[Triple]
+    problems: list[Finding]
+
+
+class Exported(Event):
+    """A file that is ready to be fetched at `url`."""
+
+    format: str
+    url: str
+    name: str
+
+
+class Saved(Event):
+    """A file that was written."""
+
+    what: Literal["document", "card", "run"]
+    path: str
+
+
+class Error(Event):
+    """What could not be done, and what to try. `seq` is the command's, or 0."""
+
+    seq: int
+    where: str
+    what: str
+    hint: str = ""
+
+
+class Log(Event):
+    """A line for the log."""
+
+    level: Literal["info", "warning", "error"]
+    text: str
+
+
+AnyEvent = (
+    Hello
+    | Document
+    | Body
+    | Stat
+    | Plot
+    | Picked
+    | Job
+    | Trial
+    | Trials
+    | Generation
+    | Overlay
+    | Calibrated
+    | Runs
+    | Compared
+    | Measured
+    | Exported
+    | Saved
+    | Error
+    | Log
+)

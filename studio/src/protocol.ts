@@ -1,0 +1,856 @@
+// Written by `python -m voxsoft.studio.typescript`; change python/voxsoft/studio instead.
+
+export const PROTOCOL = 1;
+
+/** Frames that the server sends before it waits for an `ack`. */
+export const CREDITS = 2;
+
+export type Triple = [number, number, number];
+
+/** First message of a tab: the protocol that it speaks, and its token where it has no cookie. */
+export interface HelloCommand {
+  t: "hello";
+  seq: number;
+  protocol: number;
+  version?: string;
+  token?: string;
+}
+
+/**
+ * Open a document: a template, a file or run folder, an uploaded file, or a study's trial.
+ *
+ * A trial is named "ID/INDEX"; a run by its id in the list of runs.
+ */
+export interface OpenCommand {
+  t: "open";
+  seq: number;
+  what: "file" | "run" | "template" | "trial" | "upload";
+  name: string;
+}
+
+/** Replace the text of the document; `rev` is the revision that was edited. */
+export interface TextCommand {
+  t: "text";
+  seq: number;
+  rev: number;
+  text: string;
+}
+
+/** Set one value of the document, keeping its comments; `null` removes the key. */
+export interface EditCommand {
+  t: "edit";
+  seq: number;
+  rev: number;
+  path: (string | number)[];
+  value?: unknown;
+}
+
+/** Take back the last change of the document. */
+export interface UndoCommand {
+  t: "undo";
+  seq: number;
+}
+
+/** Make the change again that was taken back last. */
+export interface RedoCommand {
+  t: "redo";
+  seq: number;
+}
+
+/** Write the document to its file, or to another. */
+export interface SaveCommand {
+  t: "save";
+  seq: number;
+  path?: string | null;
+}
+
+/** Let time run. */
+export interface PlayCommand {
+  t: "play";
+  seq: number;
+}
+
+/** Stop time. */
+export interface PauseCommand {
+  t: "pause";
+  seq: number;
+}
+
+/** Take `n` frames of time and stop. */
+export interface StepCommand {
+  t: "step";
+  seq: number;
+  n?: number;
+}
+
+/** Go back to the unloaded shape at time zero. */
+export interface ResetCommand {
+  t: "reset";
+  seq: number;
+}
+
+/** Solve for the state at rest with the chosen solver. */
+export interface RestCommand {
+  t: "rest";
+  seq: number;
+}
+
+/** Choose the solver of `rest`. */
+export interface SolverCommand {
+  t: "solver";
+  seq: number;
+  method: "auto" | "statics" | "xpbd";
+}
+
+/** Change a load while time runs: its value in the unit of `BodyLoad`, or as a factor. */
+export interface LoadCommand {
+  t: "load";
+  seq: number;
+  index: number;
+  value?: number | null;
+  factor?: number | null;
+}
+
+/** Pull a vertex of the surface toward a point by a spring; the same id moves the point. */
+export interface GrabCommand {
+  t: "grab";
+  seq: number;
+  id: number;
+  vertex: number;
+  target: Triple;
+  stiffness?: number;
+}
+
+/** Take the spring away. */
+export interface ReleaseCommand {
+  t: "release";
+  seq: number;
+  id: number;
+}
+
+/** Show a stored frame; time stops. */
+export interface SeekCommand {
+  t: "seek";
+  seq: number;
+  frame: number;
+}
+
+/** Go back from a stored frame to the present. */
+export interface LiveCommand {
+  t: "live";
+  seq: number;
+}
+
+/** What this tab shows: the field, the surface or the tetrahedra, and whether it is visible. */
+export interface ViewCommand {
+  t: "view";
+  seq: number;
+  field?: number;
+  mode?: "surface" | "tets";
+  visible?: boolean;
+}
+
+/** Ask for all values at a vertex of the surface. */
+export interface PickCommand {
+  t: "pick";
+  seq: number;
+  vertex: number;
+}
+
+/** Plot the displacement of a vertex of the surface over time. */
+export interface ProbeCommand {
+  t: "probe";
+  seq: number;
+  vertex: number;
+}
+
+/** Say that a frame was shown; allows one more. */
+export interface AckCommand {
+  t: "ack";
+  seq: number;
+  frame: number;
+}
+
+/**
+ * Bring the design to rest, or to its end time, and keep the result as a run folder.
+ *
+ * `solver` replaces settings of the design's solver.
+ */
+export interface RunSpec {
+  kind: "run";
+  name?: string | null;
+  solver?: Record<string, unknown>;
+}
+
+/** A range of a parameter: every `step` of it, or any value. */
+export interface SpaceRange {
+  low: number;
+  high: number;
+  step?: number | null;
+  log?: boolean;
+}
+
+/**
+ * Solve many designs. What is left out is as the design has it.
+ *
+ * `space` holds, by parameter, a range or a list of choices. `objectives` and `constraints` are
+ * written as in a design file.
+ */
+export interface StudySpec {
+  kind: "study";
+  name?: string | null;
+  sampler?: string;
+  budget?: number;
+  batch?: number | null;
+  seed?: number;
+  workers?: number | null;
+  space?: Record<string, SpaceRange | unknown[]> | null;
+  objectives?: Record<string, Record<string, unknown>> | null;
+  constraints?: Record<string, Record<string, unknown>> | null;
+}
+
+/** What a column of a table holds: a quantity ("s", "dz", "x", ...; "" for nothing), a unit. */
+export interface ColumnMap {
+  column: string;
+  quantity: string;
+  unit?: string;
+}
+
+/**
+ * A measured table: the name of a measurement that was sent, and how to read it.
+ *
+ * `select` names the material to take, where a table holds several.
+ */
+export interface MeasuredData {
+  name: string;
+  columns?: ColumnMap[] | null;
+  select?: string | null;
+}
+
+/** Fit the design's material to measurements. `bounds` holds (low, high) by constant. */
+export interface CalibrateSpec {
+  kind: "calibrate";
+  data: MeasuredData[];
+  name?: string | null;
+  method?: string;
+  generations?: number;
+  population?: number;
+  bounds?: Record<string, [number, number]> | null;
+  free_scale?: boolean;
+  refine?: boolean;
+  identify?: boolean;
+  seed?: number;
+  workers?: number | null;
+}
+
+/** Start a job on the document as it stands. */
+export interface JobStartCommand {
+  t: "job_start";
+  seq: number;
+  spec: RunSpec | StudySpec | CalibrateSpec;
+}
+
+/** Hold a job; what is being solved is finished first. */
+export interface JobPauseCommand {
+  t: "job_pause";
+  seq: number;
+  id: string;
+}
+
+/** Go on with a job that was paused or stopped, or with a study of the list of runs. */
+export interface JobResumeCommand {
+  t: "job_resume";
+  seq: number;
+  id: string;
+}
+
+/** Stop a job; what is finished is kept. */
+export interface JobStopCommand {
+  t: "job_stop";
+  seq: number;
+  id: string;
+}
+
+/** Ask for the list of runs. */
+export interface RunsCommand {
+  t: "runs";
+  seq: number;
+}
+
+/** Give a run folder another name. */
+export interface RunRenameCommand {
+  t: "run_rename";
+  seq: number;
+  id: string;
+  name: string;
+}
+
+/** Move a run folder to the trash. */
+export interface RunDeleteCommand {
+  t: "run_delete";
+  seq: number;
+  id: string;
+}
+
+/** Take a run folder out of the trash. */
+export interface RunRestoreCommand {
+  t: "run_restore";
+  seq: number;
+  id: string;
+}
+
+/** Set two runs, or trials written "ID/INDEX", side by side. */
+export interface CompareCommand {
+  t: "compare";
+  seq: number;
+  a: string;
+  b: string;
+}
+
+/** Read a measured table and say what its columns hold. */
+export interface MeasurementCommand {
+  t: "measurement";
+  seq: number;
+  name: string;
+  text: string;
+  columns?: ColumnMap[] | null;
+  select?: string | null;
+}
+
+/** Keep the material of a calibration as a card beside the document. */
+export interface CardSaveCommand {
+  t: "card_save";
+  seq: number;
+  job: string;
+  name: string;
+}
+
+/** A design to start from. */
+export interface Template {
+  name: string;
+  title: string;
+  text: string;
+}
+
+/** A material card that designs can name; `young` is that of a large block, Pa. */
+export interface MaterialCard {
+  name: string;
+  title: string;
+  source: string;
+  model: string;
+  young: number | null;
+}
+
+/** A way to choose trials. */
+export interface Sampler {
+  name: string;
+  title: string;
+  single_objective: boolean;
+}
+
+/** What an objective or constraint may measure. */
+export interface Metric {
+  name: string;
+  kind: string;
+  needs_probe: boolean;
+  needs_cavity: boolean;
+}
+
+/** A quantity that colors the body; `signed` ones have zero in the middle of their range. */
+export interface Field {
+  id: number;
+  name: string;
+  title: string;
+  unit: string;
+  signed: boolean;
+}
+
+/** First event: what this server can do. `design_schema` is the JSON Schema of a design. */
+export interface HelloEvent {
+  t: "hello";
+  version: string;
+  protocol: number;
+  design_schema: Record<string, unknown>;
+  templates: Template[];
+  materials: MaterialCard[];
+  samplers: Sampler[];
+  calibration_methods: string[];
+  methods: string[];
+  metrics: Metric[];
+  fields: Field[];
+  runs_folder: string;
+  cores: number;
+}
+
+/**
+ * A parameter of the document; numbers are SI, `text` is the value as it is written.
+ *
+ * `display_unit` and `factor`: value / factor is the number to show with that unit.
+ */
+export interface Parameter {
+  name: string;
+  value: number;
+  kind: string;
+  text: string;
+  min: number | null;
+  max: number | null;
+  step: number | null;
+  display_unit: string;
+  factor: number;
+  formula: boolean;
+  description: string;
+}
+
+/** Something wrong with the text. Lines and columns count from 1; columns may be unknown (0). */
+export interface Diagnostic {
+  line: number;
+  column: number;
+  end_column: number;
+  severity: "error" | "note" | "warning";
+  where: string;
+  what: string;
+  hint: string;
+}
+
+/** The document as it stands; `design` is that of the last text that was good (or null). */
+export interface DocumentEvent {
+  t: "document";
+  rev: number;
+  text: string;
+  name: string;
+  path: string | null;
+  dirty: boolean;
+  valid: boolean;
+  parameters: Parameter[];
+  design: Record<string, unknown> | null;
+  source: Record<string, unknown> | null;
+  diagnostics: Diagnostic[];
+  can_undo: boolean;
+  can_redo: boolean;
+}
+
+/** An enclosed space: volume in m³, area in m². */
+export interface Cavity {
+  volume: number;
+  area: number;
+  center: Triple;
+  leaks: number;
+}
+
+/** A chamber that is open: its volume in m³, the place of the opening. */
+export interface Leak {
+  volume: number;
+  point: Triple;
+}
+
+/** What a check of the body found. */
+export interface Finding {
+  severity: "error" | "note" | "warning";
+  where: string;
+  what: string;
+  hint: string;
+}
+
+/** A clamp: how many vertices it holds, their center, and some of them. */
+export interface BodyClamp {
+  name: string;
+  vertices: number;
+  center: Triple;
+  points: Triple[];
+}
+
+/** A load with the range of its slider; value / factor is the number to show with `unit`. */
+export interface BodyLoad {
+  index: number;
+  kind: string;
+  label: string;
+  value: number;
+  unit: string;
+  factor: number;
+  min: number;
+  max: number;
+  at: Triple;
+  direction: Triple;
+}
+
+/** A named place of measurement, with the surface vertices of it. */
+export interface BodyProbe {
+  name: string;
+  center: Triple;
+  vertices: number[];
+}
+
+/** A part; `color` is a CSS color. */
+export interface BodyPart {
+  name: string;
+  material: string;
+  color: string;
+}
+
+/**
+ * A new body: its topology follows as a binary message with the same id.
+ *
+ * `smooth` says that the smooth surface of the shapes follows as well (kind 3).
+ */
+export interface BodyEvent {
+  t: "body";
+  topology: number;
+  rev: number;
+  voxels: number;
+  vertices: number;
+  tets: number;
+  surface_vertices: number;
+  triangles: number;
+  voxel_size: number;
+  cavities: Cavity[];
+  leaks: Leak[];
+  mass: number;
+  volume: number;
+  bounds: [Triple, Triple];
+  findings: Finding[];
+  clamps: BodyClamp[];
+  loads: BodyLoad[];
+  probes: BodyProbe[];
+  parts: BodyPart[];
+  seconds: number;
+  memory: number;
+  smooth: boolean;
+}
+
+/** A spring that pulls: force in N on the body, distance to its target in m. */
+export interface GrabState {
+  id: number;
+  vertex: number;
+  target: Triple;
+  stiffness: number;
+  force: Triple;
+  stretch: number;
+}
+
+/**
+ * Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
+ *
+ * `real_time_factor` is simulated over wall-clock time. Stored frames run from `first_frame`
+ * to `last_frame`.
+ */
+export interface StatEvent {
+  t: "stat";
+  topology: number;
+  state: "at-rest" | "diverged" | "empty" | "meshing" | "past" | "paused" | "playing" | "solving";
+  sentence: string;
+  time: number;
+  step_ms: number;
+  substeps: number;
+  real_time_factor: number;
+  residual: number | null;
+  elastic: number | null;
+  kinetic: number | null;
+  frame: number;
+  first_frame: number;
+  last_frame: number;
+  frames_stored: number;
+  bytes_stored: number;
+  solver: string;
+  progress: number | null;
+  loads: number[];
+  grabs: GrabState[];
+}
+
+/**
+ * Rows to append to the plots: time, residual, elastic and kinetic energy, then each probe.
+ *
+ * `names` and `units` name all columns. Values that are not finite come as null.
+ */
+export interface PlotEvent {
+  t: "plot";
+  topology: number;
+  names: string[];
+  units: string[];
+  rows: ((number | null)[])[];
+  clear: boolean;
+}
+
+/** A field's value at a vertex. */
+export interface Value {
+  field: number;
+  name: string;
+  value: number | null;
+  unit: string;
+}
+
+/** All values at a vertex of the surface; positions in m. */
+export interface PickedEvent {
+  t: "picked";
+  vertex: number;
+  rest: Triple;
+  position: Triple;
+  values: Value[];
+}
+
+/** Where a job stands; `left` is the time it will still take in s, `best` a short text. */
+export interface JobEvent {
+  t: "job";
+  id: string;
+  kind: "calibrate" | "run" | "study";
+  name: string;
+  state: "done" | "failed" | "interrupted" | "paused" | "running" | "stopped" | "stopping";
+  done: number;
+  total: number;
+  elapsed: number;
+  left: number | null;
+  best: string;
+  folder: string;
+  message: string;
+  stage: string;
+  parameters: string[];
+  objectives: string[];
+  directions: string[];
+}
+
+/** A trial of a study; `objectives` is null where it has no result. */
+export interface TrialEvent {
+  t: "trial";
+  job: string;
+  index: number;
+  parameters: Record<string, unknown>;
+  objectives: Record<string, number> | null;
+  metrics: Record<string, number | null>;
+  status: string;
+  seconds: number;
+  feasible: boolean;
+  front: boolean;
+  message: string;
+}
+
+/** All trials of a study so far, replacing those sent before; kinds by name tell the units. */
+export interface TrialsEvent {
+  t: "trials";
+  job: string;
+  parameters: string[];
+  objectives: string[];
+  directions: string[];
+  kinds: Record<string, string>;
+  trials: TrialEvent[];
+}
+
+/** A generation of a calibration: fitness, and error in m. */
+export interface GenerationEvent {
+  t: "generation";
+  job: string;
+  index: number;
+  best: number;
+  mean: number;
+  error: number | null;
+  parameters: Record<string, number>;
+  spread: Record<string, [number, number]>;
+}
+
+/** Measured and simulated stations of one experiment in m; errors in m. */
+export interface OverlayExperiment {
+  name: string;
+  measured: Triple[];
+  simulated: Triple[];
+  error: number[];
+  percent: number[];
+}
+
+/** The best candidate of a calibration over the measurements. */
+export interface OverlayEvent {
+  t: "overlay";
+  job: string;
+  experiments: OverlayExperiment[];
+}
+
+/** A constant that was fitted; `sentence` tells what the data say about it. */
+export interface FittedParameter {
+  name: string;
+  value: number;
+  kind: string;
+  text: string;
+  low: number;
+  high: number;
+  identifiable: boolean | null;
+  sentence: string;
+}
+
+/** The error at one station, in m and in percent of the sag. */
+export interface StationError {
+  experiment: string;
+  station: string;
+  measured: number[];
+  simulated: number[];
+  error: number;
+  percent: number;
+}
+
+/** The result of a calibration; errors in m. `card` is the text of the material card. */
+export interface CalibratedEvent {
+  t: "calibrated";
+  job: string;
+  parameters: FittedParameter[];
+  table: StationError[];
+  quantities: string[];
+  identifiable: Record<string, boolean>;
+  fitness: number;
+  mean_error: number;
+  max_error: number;
+  material: Record<string, unknown>;
+  card: string;
+}
+
+/** A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address. */
+export interface RunRow {
+  id: string;
+  kind: "calibrate" | "run" | "study" | "unknown";
+  name: string;
+  status: string;
+  best: string;
+  when: string;
+  seconds: number | null;
+  folder: string;
+  thumbnail: string | null;
+  message: string;
+  trials: number | null;
+}
+
+/** The list of runs, newest first; `trash` holds what can be restored. */
+export interface RunsEvent {
+  t: "runs";
+  rows: RunRow[];
+  trash: RunRow[];
+  folder: string;
+}
+
+/** One side of a comparison. */
+export interface Side {
+  id: string;
+  name: string;
+  status: string;
+  parameters: Record<string, unknown>;
+  metrics: Record<string, number | null>;
+  thumbnail: string | null;
+  text: string;
+}
+
+/** A value of the design in which two sides differ. */
+export interface Difference {
+  where: string;
+  a: unknown;
+  b: unknown;
+}
+
+/** Two runs or trials side by side. */
+export interface ComparedEvent {
+  t: "compared";
+  a: Side;
+  b: Side;
+  differences: Difference[];
+}
+
+/** A column of a measured table as it is understood. */
+export interface MeasuredColumn {
+  column: string;
+  quantity: string;
+  unit: string;
+  sample: string[];
+}
+
+/** A measured table as it is understood; `problems` tell why it cannot be used as it is. */
+export interface MeasuredEvent {
+  t: "measured";
+  name: string;
+  columns: MeasuredColumn[];
+  quantities: string[];
+  stations: number;
+  materials: string[];
+  arcs: number[];
+  points: Triple[];
+  problems: Finding[];
+}
+
+/** A file that is ready to be fetched at `url`. */
+export interface ExportedEvent {
+  t: "exported";
+  format: string;
+  url: string;
+  name: string;
+}
+
+/** A file that was written. */
+export interface SavedEvent {
+  t: "saved";
+  what: "card" | "document" | "run";
+  path: string;
+}
+
+/** What could not be done, and what to try. `seq` is the command's, or 0. */
+export interface ErrorEvent {
+  t: "error";
+  seq: number;
+  where: string;
+  what: string;
+  hint: string;
+}
+
+/** A line for the log. */
+export interface LogEvent {
+  t: "log";
+  level: "error" | "info" | "warning";
+  text: string;
+}
+
+export type AnyCommand =
+  | HelloCommand
+  | OpenCommand
+  | TextCommand
+  | EditCommand
+  | UndoCommand
+  | RedoCommand
+  | SaveCommand
+  | PlayCommand
+  | PauseCommand
+  | StepCommand
+  | ResetCommand
+  | RestCommand
+  | SolverCommand
+  | LoadCommand
+  | GrabCommand
+  | ReleaseCommand
+  | SeekCommand
+  | LiveCommand
+  | ViewCommand
+  | PickCommand
+  | ProbeCommand
+  | AckCommand
+  | JobStartCommand
+  | JobPauseCommand
+  | JobResumeCommand
+  | JobStopCommand
+  | RunsCommand
+  | RunRenameCommand
+  | RunDeleteCommand
+  | RunRestoreCommand
+  | CompareCommand
+  | MeasurementCommand
+  | CardSaveCommand;
+
+export type AnyEvent =
+  | HelloEvent
+  | DocumentEvent
+  | BodyEvent
+  | StatEvent
+  | PlotEvent
+  | PickedEvent
+  | JobEvent
+  | TrialEvent
+  | TrialsEvent
+  | GenerationEvent
+  | OverlayEvent
+  | CalibratedEvent
+  | RunsEvent
+  | ComparedEvent
+  | MeasuredEvent
+  | ExportedEvent
+  | SavedEvent
+  | ErrorEvent
+  | LogEvent;
