@@ -14,7 +14,7 @@ BENCHMARKS := pipeline step_rate time_to_rest study growth peers
 
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
-.PHONY: help install demo test test-rust test-python test-all lint format bench docs clean
+.PHONY: help install demo test test-rust test-python test-all lint format bench docs studio clean
 
 help:
 	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
@@ -23,6 +23,7 @@ help:
 	@echo "make lint      formatters, linters, types, layers"
 	@echo "make bench     benchmarks"
 	@echo "make docs      the documentation as web pages in target/docs"
+	@echo "make studio    check, test and build the studio's page (needs Node 20.19 or newer; its built form is in the repository)"
 	@echo "make install   only the environment: .venv/bin/voxsoft"
 
 install: $(STAMP)
@@ -75,6 +76,10 @@ bench: install
 docs: install
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group docs
 	$(BIN)/mkdocs build --strict
+
+studio:
+	@command -v npm >/dev/null || { echo "Building the studio's page needs Node 20.19 or newer. Users do not: the built page is part of the package." >&2; exit 1; }
+	cd studio && npm ci && npm run check && npm test && npm run build
 
 clean:
 	rm -rf $(VENV) target runs dist

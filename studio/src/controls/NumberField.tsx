@@ -1,0 +1,149 @@
+import { type PointerEvent as ReactPointerEvent, useEffect, useId, useRef, useState } from "react";
+import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "./units";
+
+export interface NumberFieldProps {
+  label: string;
+  /** SI value. */
+  value: number;
+  /** SI unit, such as "m"; the field shows millimeters by itself. */
+  unit?: string;
+  min?: number | null | undefined;
+  max?: number | null | undefined;
+  step?: number | null | undefined;
+  /** What a double click on the label gives back. */
+  fallback?: number;
+  /** Adds a slider where `min` and `max` are known. */
+  slider?: boolean;
+  disabled?: boolean;
+  problem?: string | undefined;
+  title?: string;
+  /** Called with SI values; `settled` is false while a slider or label is being dragged. */
+  onChange(value: number, settled: boolean): void;
+}
+
+/** A number with its unit: type "5 mm" or "0.5 cm", arrow keys, drag the label, or slide. */
+export function NumberField(props: NumberFieldProps) {
+  const { label, value, min, max, onChange } = props;
+  const id = useId();
+  const unit = shownUnit(props.unit ?? "1");
+  const factor = factorOf(unit);
+  const shown = `${formatNumber(value / factor, 6)}${unit === "1" ? "" : ` ${unitText(unit)}`}`;
+  const [draft, setDraft] = useState<string | null>(null);
+  const [problem, setProblem] = useState<string | null>(null);
+  const drag = useRef<{ x: number; start: number } | null>(null);
+  const step = props.step ?? stepFor(value, min, max, factor);
+
+  useEffect(() => {
+    if (draft === null) setProblem(null);
+  }, [draft]);
+
+  const clamp = (x: number) => Math.min(max ?? Infinity, Math.max(min ?? -Infinity, x));
+  const round = (x: number) => Number((Math.round(x / step) * step).toPrecision(12));
+
+  const commit = (text: string) => {
+    const read = parseQuantity(text.replaceAll("−", "-"), unit);
+    if ("problem" in read) {
+      setProblem(read.problem);
+      return;
+    }
+    setDraft(null);
+    setProblem(null);
+    if (read.value !== value) onChange(read.value, true);
+  };
+
+  const nudge = (count: number) => {
+    setDraft(null);
+    onChange(clamp(round(value + count * step)), true);
+  };
+
+  const scrub = {
+    onPointerDown(event: ReactPointerEvent<HTMLElement>) {
+      if (props.disabled || event.button !== 0) return;
+      event.currentTarget.setPointerCapture(event.pointerId);
+      drag.current = { x: event.clientX, start: value };
+    },
+    onPointerMove(event: ReactPointerEvent<HTMLElement>) {
+      if (!drag.current) return;
+      const pixels = (event.clientX - drag.current.x) * (event.shiftKey ? 0.1 : 1);
+      const next = clamp(round(drag.current.start + Math.round(pixels / 4) * step));
+      if (next !== value) onChange(next, false);
+    },
+    onPointerUp() {
+      if (drag.current && drag.current.start !== value) onChange(value, true);
+      drag.current = null;
+    },
+  };
+
+  const changed = props.fallback !== undefined && props.fallback !== value;
+  const note = problem ?? props.problem;
+  return (
+    <div className="field" title={props.title}>
+      <label
+        className={`field-label scrub${changed ? " changed" : ""}`}
+        htmlFor={id}
+        onDoubleClick={() => props.fallback !== undefined && onChange(props.fallback, true)}
+        {...scrub}
+      >
+        {label}
+      </label>
+      <div className="field-value">
+        {props.slider && min != null && max != null && max > min && (
+          <input
+            className="slider"
+            type="range"
+            aria-label={`${label} slider`}
+            min={min / factor}
+            max={max / factor}
+            step={step / factor}
+            value={value / factor}
+            disabled={props.disabled}
+            onChange={(event) =>
+              onChange(clamp(Number((Number(event.target.value) * factor).toPrecision(12))), false)
+            }
+            onPointerUp={() => onChange(value, true)}
+            onKeyUp={() => onChange(value, true)}
+          />
+        )}
+        <span className="number">
+          <input
+            id={id}
+            className="input"
+            aria-label={label}
+            aria-invalid={note ? true : undefined}
+            inputMode="decimal"
+            autoComplete="off"
+            spellCheck={false}
+            disabled={props.disabled}
+            value={draft ?? shown}
+            onChange={(event) => setDraft(event.target.value)}
+            onFocus={(event) => event.target.select()}
+            onBlur={() => draft !== null && commit(draft)}
+            onKeyDown={(event) => {
+              if (event.key === "Enter") commit(draft ?? shown);
+              else if (event.key === "Escape") setDraft(null);
+              else if (event.key === "ArrowUp") nudge(event.shiftKey ? 10 : 1);
+              else if (event.key === "ArrowDown") nudge(event.shiftKey ? -10 : -1);
+              else return;
+              event.preventDefault();
+              event.stopPropagation();
+            }}
+          />
+        </span>
+      </div>
+      {note && <span className="field-note">{note}</span>}
+    </div>
+  );
+}
+
+function stepFor(
+  value: number,
+  min: number | null | undefined,
+  max: number | null | undefined,
+  factor: number,
+): number {
+  if (min != null && max != null && max > min) {
+    return 10 ** Math.floor(Math.log10((max - min) / 50));
+  }
+  const size = Math.abs(value) || factor;
+  return 10 ** Math.floor(Math.log10(size / 10));
+}

@@ -1,0 +1,103 @@
+import { type ReactNode, useMemo, useState } from "react";
+
+export interface Column<Row> {
+  readonly key: string;
+  readonly title: ReactNode;
+  readonly right?: boolean;
+  /** What the cell shows. */
+  cell(row: Row): ReactNode;
+  /** What the column sorts by; without it the column does not sort. */
+  sort?(row: Row): number | string | null;
+}
+
+export interface TableProps<Row> {
+  label: string;
+  columns: readonly Column<Row>[];
+  rows: readonly Row[];
+  rowKey(row: Row): string;
+  selected?: ReadonlySet<string>;
+  onChoose?(row: Row, extend: boolean): void;
+  onHover?(row: Row | null): void;
+  empty?: ReactNode;
+  testId?: string;
+}
+
+/** A table that sorts by a click on its heads; rows can be chosen by mouse and keyboard. */
+export function Table<Row>(props: TableProps<Row>) {
+  const [order, setOrder] = useState<{ key: string; down: boolean } | null>(null);
+  const sorted = useMemo(() => {
+    const by = order && props.columns.find((column) => column.key === order.key)?.sort;
+    if (!by || !order) return props.rows;
+    const sign = order.down ? -1 : 1;
+    return [...props.rows].sort((a, b) => sign * compare(by(a), by(b)));
+  }, [props.rows, props.columns, order]);
+  if (props.rows.length === 0 && props.empty) return <>{props.empty}</>;
+  return (
+    <div className="table-wrap" data-testid={props.testId}>
+      <table className="table" aria-label={props.label}>
+        <thead>
+          <tr>
+            {props.columns.map((column) => (
+              <th
+                key={column.key}
+                className={column.right ? "right" : undefined}
+                aria-sort={
+                  order?.key === column.key ? (order.down ? "descending" : "ascending") : undefined
+                }
+              >
+                {column.sort ? (
+                  <button
+                    type="button"
+                    onClick={() =>
+                      setOrder({
+                        key: column.key,
+                        down: order?.key === column.key ? !order.down : false,
+                      })
+                    }
+                  >
+                    {column.title}
+                    {order?.key === column.key ? (order.down ? " ↓" : " ↑") : ""}
+                  </button>
+                ) : (
+                  column.title
+                )}
+              </th>
+            ))}
+          </tr>
+        </thead>
+        <tbody>
+          {sorted.map((row) => {
+            const key = props.rowKey(row);
+            return (
+              <tr
+                key={key}
+                className={props.onChoose ? "choosable" : undefined}
+                aria-selected={props.selected?.has(key)}
+                tabIndex={props.onChoose ? 0 : undefined}
+                onClick={(event) => props.onChoose?.(row, event.shiftKey || event.ctrlKey)}
+                onKeyDown={(event) => {
+                  if (event.key === "Enter") props.onChoose?.(row, event.shiftKey);
+                }}
+                onMouseEnter={() => props.onHover?.(row)}
+                onMouseLeave={() => props.onHover?.(null)}
+              >
+                {props.columns.map((column) => (
+                  <td key={column.key} className={column.right ? "right" : undefined}>
+                    {column.cell(row)}
+                  </td>
+                ))}
+              </tr>
+            );
+          })}
+        </tbody>
+      </table>
+    </div>
+  );
+}
+
+function compare(a: number | string | null, b: number | string | null): number {
+  if (a === b) return 0;
+  if (a === null) return 1; // what has no value stands last
+  if (b === null) return -1;
+  return a < b ? -1 : 1;
+}

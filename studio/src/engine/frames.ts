@@ -1,0 +1,140 @@
+// Binary messages of the engine: a 64-byte header, then arrays that go to the GPU as they are.
+
+const MAGIC = 0x31465856; // "VXF1", little-endian
+const HEADER = 64;
+
+export type Triple = readonly [number, number, number];
+
+/** A body's surface at rest, once for each new body or kind of view. */
+export interface Topology {
+  readonly kind: "topology";
+  readonly id: number;
+  /** Each tet has its own four vertices, to be drawn shrunk. */
+  readonly tets: boolean;
+  readonly voxelSize: number;
+  /** x, y, z of each vertex, m. */
+  readonly rest: Float32Array;
+  readonly triangles: Uint32Array;
+  /** Edges of voxels, without face diagonals. */
+  readonly edges: Uint32Array;
+  /** Of each triangle the part's index, or 128 + the cavity's index. */
+  readonly owners: Uint8Array;
+}
+
+/** Where the vertices are at one time, with one field's value at each. */
+export interface Frame {
+  readonly kind: "frame";
+  readonly topology: number;
+  readonly number: number;
+  readonly time: number;
+  /** Last command that the frame knows of. */
+  readonly seq: number;
+  readonly field: number;
+  readonly paused: boolean;
+  readonly diverged: boolean;
+  readonly atRest: boolean;
+  readonly origin: Triple;
+  readonly scale: Triple;
+  readonly min: number;
+  readonly max: number;
+  /** x, y, z, field of each vertex: position = origin + scale q / 65535. */
+  readonly packed: Uint16Array;
+}
+
+/** The smooth surface of the shapes, at rest. */
+export interface Smooth {
+  readonly kind: "smooth";
+  readonly topology: number;
+  readonly vertices: Float32Array;
+  readonly triangles: Uint32Array;
+}
+
+export class FrameError extends Error {}
+
+/** Read a binary message. Throws a FrameError where lengths and header disagree. */
+export function decode(buffer: ArrayBuffer): Topology | Frame | Smooth {
+  if (buffer.byteLength < HEADER) throw new FrameError(`message of ${buffer.byteLength} bytes`);
+  const view = new DataView(buffer);
+  if (view.getUint32(0, true) !== MAGIC) throw new FrameError("not a message of VoxSoft");
+  const kind = view.getUint8(4);
+  if (kind === 1) return topology(buffer, view);
+  if (kind === 2) return frame(buffer, view);
+  if (kind === 3) return smooth(buffer, view);
+  throw new FrameError(`unknown kind ${kind}`);
+}
+
+function topology(buffer: ArrayBuffer, view: DataView): Topology {
+  const n = view.getUint32(24, true);
+  const t = view.getUint32(28, true);
+  const e = view.getUint32(32, true);
+  need(buffer, HEADER + 12 * n + 12 * t + 8 * e + t);
+  const trianglesAt = HEADER + 12 * n;
+  const edgesAt = trianglesAt + 12 * t;
+  return {
+    kind: "topology",
+    id: view.getUint32(8, true),
+    tets: (view.getUint8(5) & 2) !== 0,
+    voxelSize: view.getFloat64(16, true),
+    rest: new Float32Array(buffer, HEADER, 3 * n),
+    triangles: new Uint32Array(buffer, trianglesAt, 3 * t),
+    edges: new Uint32Array(buffer, edgesAt, 2 * e),
+    owners: new Uint8Array(buffer, edgesAt + 8 * e, t),
+  };
+}
+
+function frame(buffer: ArrayBuffer, view: DataView): Frame {
+  const n = view.getUint32(24, true);
+  need(buffer, HEADER + 8 * n);
+  const flags = view.getUint8(5);
+  return {
+    kind: "frame",
+    topology: view.getUint32(8, true),
+    number: view.getUint32(12, true),
+    time: view.getFloat64(16, true),
+    seq: view.getUint32(28, true),
+    field: view.getUint16(6, true),
+    paused: (flags & 1) !== 0,
+    diverged: (flags & 2) !== 0,
+    atRest: (flags & 4) !== 0,
+    origin: triple(view, 32),
+    scale: triple(view, 44),
+    min: view.getFloat32(56, true),
+    max: view.getFloat32(60, true),
+    packed: new Uint16Array(buffer, HEADER, 4 * n),
+  };
+}
+
+function smooth(buffer: ArrayBuffer, view: DataView): Smooth {
+  const n = view.getUint32(24, true);
+  const t = view.getUint32(28, true);
+  need(buffer, HEADER + 12 * n + 12 * t);
+  return {
+    kind: "smooth",
+    topology: view.getUint32(8, true),
+    vertices: new Float32Array(buffer, HEADER, 3 * n),
+    triangles: new Uint32Array(buffer, HEADER + 12 * n, 3 * t),
+  };
+}
+
+function triple(view: DataView, at: number): Triple {
+  return [view.getFloat32(at, true), view.getFloat32(at + 4, true), view.getFloat32(at + 8, true)];
+}
+
+function need(buffer: ArrayBuffer, bytes: number): void {
+  if (buffer.byteLength < bytes) {
+    throw new FrameError(`${bytes} bytes announced, ${buffer.byteLength} came`);
+  }
+}
+
+/** Position of a vertex in a frame, m. */
+export function positionIn(frame: Frame, vertex: number): [number, number, number] {
+  const at = 4 * vertex;
+  const along = (axis: 0 | 1 | 2) =>
+    frame.origin[axis] + (frame.scale[axis] * (frame.packed[at + axis] ?? 0)) / 65535;
+  return [along(0), along(1), along(2)];
+}
+
+/** The field's value at a vertex of a frame. */
+export function valueIn(frame: Frame, vertex: number): number {
+  return frame.min + ((frame.max - frame.min) * (frame.packed[4 * vertex + 3] ?? 0)) / 65535;
+}

@@ -1,0 +1,128 @@
+// The native core behind a websocket. Lost connections are opened again with growing pauses;
+// edits made meanwhile are kept and sent on the revision that the server then has.
+import type { AnyCommand, AnyEvent, EditCommand, TextCommand } from "../protocol";
+import { PROTOCOL } from "../protocol";
+import type { Draft, Engine, EngineListener, Link } from "./engine";
+import { decode } from "./frames";
+
+const FIRST_PAUSE = 250;
+const LONGEST_PAUSE = 4000;
+// Codes of the server: the handshake was refused, or page and server disagree on the protocol.
+const POLICY = 1008;
+const PROTOCOL_MISMATCH = 4001;
+
+type Unsent = Omit<TextCommand, "seq"> | Omit<EditCommand, "seq">;
+
+/** How long to wait before attempt `n` (from 1), ms; up to a quarter is chance. */
+export function pauseBefore(attempt: number, chance = Math.random()): number {
+  const pause = Math.min(LONGEST_PAUSE, FIRST_PAUSE * 2 ** (attempt - 1));
+  return pause * (1 - 0.25 * chance);
+}
+
+/** Keep an edit made without a connection; a whole text replaces all that came before it. */
+export function keep(unsent: readonly Unsent[], draft: Unsent): Unsent[] {
+  return draft.t === "text" ? [draft] : [...unsent, draft];
+}
+
+export class ServerEngine implements Engine {
+  readonly kind = "server";
+  private socket: WebSocket | null = null;
+  private listener: EngineListener | null = null;
+  private seq = 0;
+  private attempt = 0;
+  private timer: ReturnType<typeof setTimeout> | null = null;
+  private unsent: Unsent[] = [];
+  private greeted = false;
+
+  constructor(private readonly address: string) {}
+
+  start(listener: EngineListener): void {
+    this.listener = listener;
+    this.open();
+  }
+
+  stop(): void {
+    this.listener = null;
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.socket?.close();
+    this.socket = null;
+  }
+
+  send(draft: Draft): number {
+    if (this.socket?.readyState === WebSocket.OPEN && (this.greeted || draft.t === "hello")) {
+      this.seq += 1;
+      const command = { ...draft, seq: this.seq } as AnyCommand;
+      this.socket.send(JSON.stringify(command));
+      return this.seq;
+    }
+    if (draft.t === "text" || draft.t === "edit") this.unsent = keep(this.unsent, draft);
+    return 0;
+  }
+
+  acknowledge(frame: number): void {
+    this.send({ t: "ack", frame });
+  }
+
+  /** Try again at once instead of at the end of the pause. */
+  retry(): void {
+    if (this.timer === null) return;
+    clearTimeout(this.timer);
+    this.open();
+  }
+
+  private open(): void {
+    this.timer = null;
+    this.attempt += 1;
+    this.report({ state: "connecting", retryAt: null, reason: "" });
+    const socket = new WebSocket(this.address);
+    socket.binaryType = "arraybuffer";
+    this.socket = socket;
+    this.greeted = false;
+    socket.onopen = () => {
+      this.send({ t: "hello", protocol: PROTOCOL, version: "studio" });
+    };
+    socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) => {
+      if (typeof message.data === "string") this.receive(JSON.parse(message.data) as AnyEvent);
+      else this.receiveBinary(message.data);
+    };
+    socket.onclose = (event) => this.closed(socket, event);
+  }
+
+  private receive(event: AnyEvent): void {
+    if (event.t === "hello") {
+      this.greeted = true;
+      this.attempt = 0;
+      this.report({ state: "open", retryAt: null, reason: "" });
+    }
+    this.listener?.event(event);
+    if (event.t === "document" && this.unsent.length > 0) {
+      const unsent = this.unsent;
+      this.unsent = [];
+      for (const draft of unsent) this.send({ ...draft, rev: event.rev });
+    }
+  }
+
+  private receiveBinary(buffer: ArrayBuffer): void {
+    const message = decode(buffer);
+    if (message.kind === "frame") this.listener?.frame(message);
+    else if (message.kind === "topology") this.listener?.topology(message);
+    else this.listener?.smooth(message);
+  }
+
+  private closed(socket: WebSocket, event: CloseEvent): void {
+    if (socket !== this.socket || this.listener === null) return;
+    this.socket = null;
+    this.greeted = false;
+    if (event.code === POLICY || event.code === PROTOCOL_MISMATCH) {
+      this.report({ state: "refused", retryAt: null, reason: event.reason });
+      return;
+    }
+    const pause = pauseBefore(Math.max(1, this.attempt));
+    this.report({ state: "lost", retryAt: Date.now() + pause, reason: event.reason });
+    this.timer = setTimeout(() => this.open(), pause);
+  }
+
+  private report(link: Omit<Link, "attempt">): void {
+    this.listener?.link({ ...link, attempt: this.attempt });
+  }
+}

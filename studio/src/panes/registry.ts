@@ -1,0 +1,26 @@
+// All panes of the studio. A pane is a React component in a file of its own, loaded when it is
+// first shown; the layouts (shell/layouts.ts) name panes by id.
+import { type ComponentType, type LazyExoticComponent, lazy } from "react";
+
+export interface PaneDefinition {
+  readonly id: string;
+  readonly title: string;
+  readonly component: LazyExoticComponent<ComponentType>;
+}
+
+function pane(
+  id: string,
+  title: string,
+  load: () => Promise<{ default: ComponentType }>,
+): PaneDefinition {
+  return { id, title, component: lazy(load) };
+}
+
+export const PANES: readonly PaneDefinition[] = [
+  pane("body", "Body", () => import("./body/BodyPane")),
+  pane("log", "Log", () => import("./log/LogPane")),
+];
+
+export function paneById(id: string): PaneDefinition | undefined {
+  return PANES.find((one) => one.id === id);
+}

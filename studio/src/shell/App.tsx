@@ -1,0 +1,38 @@
+import { useEffect } from "react";
+import { openSheet } from "../store/page";
+import { useStudio } from "../store/studio";
+import { listenForKeys, provideDock } from "./actions";
+import { Dock, resetLayout, showPane } from "./Dock";
+import { DropZone } from "./DropZone";
+import { LinkBand } from "./LinkLamp";
+import { Sheets } from "./Sheets";
+import { StatusLine } from "./StatusLine";
+import { TopBar } from "./TopBar";
+import { wantsTour } from "./tour";
+import "./shell.css";
+
+provideDock({ show: showPane, reset: resetLayout });
+
+export function App() {
+  useEffect(listenForKeys, []);
+  useEffect(() => {
+    if (wantsTour()) openSheet("tour");
+    const warn = (event: BeforeUnloadEvent) => {
+      const { document, link } = useStudio.getState();
+      // The server keeps a draft of each edit; without a connection nobody does.
+      if (document?.dirty && link.state !== "open") event.preventDefault();
+    };
+    addEventListener("beforeunload", warn);
+    return () => removeEventListener("beforeunload", warn);
+  }, []);
+  return (
+    <div className="app">
+      <TopBar />
+      <LinkBand />
+      <Dock />
+      <StatusLine />
+      <Sheets />
+      <DropZone />
+    </div>
+  );
+}

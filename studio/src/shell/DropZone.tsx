@@ -1,0 +1,82 @@
+import { useEffect, useState } from "react";
+import { toast } from "../store/studio";
+import { openDocument } from "./actions";
+
+const MOST = 64 * 1024 * 1024;
+const TAKEN = [".toml", ".stl", ".obj", ".npy", ".zip"];
+
+/** Send a file to the server and open it; tables of measurements are taken by their own pane. */
+export async function upload(file: File): Promise<void> {
+  const kind = file.name.slice(file.name.lastIndexOf(".")).toLowerCase();
+  if (!TAKEN.includes(kind)) {
+    toast({
+      level: "warning",
+      what: `${file.name} is nothing that can be opened`,
+      hint: `Drop ${TAKEN.join(", ")}; a .csv of measurements goes on the Calibrate pane.`,
+    });
+    return;
+  }
+  if (file.size > MOST) {
+    toast({
+      level: "error",
+      what: `${file.name} has ${Math.round(file.size / 1e6)} MB; at most 64 MB can be sent`,
+      hint: "Start the studio with it instead: voxsoft studio FILE.",
+    });
+    return;
+  }
+  try {
+    const reply = await fetch(`/upload?name=${encodeURIComponent(file.name)}`, {
+      method: "POST",
+      body: file,
+    });
+    const body: unknown = await reply.json().catch(() => null);
+    const said = body as { name?: string; what?: string; hint?: string } | null;
+    if (reply.ok) openDocument({ t: "open", what: "upload", name: said?.name ?? file.name });
+    else {
+      toast({
+        level: "error",
+        what: said?.what ?? `${file.name} was not taken (${reply.status})`,
+        hint: said?.hint ?? "",
+      });
+    }
+  } catch {
+    toast({
+      level: "error",
+      what: `${file.name} could not be sent`,
+      hint: "VoxSoft does not answer; drop the file again when it does.",
+    });
+  }
+}
+
+export function DropZone() {
+  const [over, setOver] = useState(false);
+  useEffect(() => {
+    const hasFiles = (event: DragEvent) => event.dataTransfer?.types.includes("Files") ?? false;
+    const onOver = (event: DragEvent) => {
+      if (!hasFiles(event)) return;
+      event.preventDefault();
+      setOver(true);
+    };
+    const onLeave = (event: DragEvent) => {
+      if (event.relatedTarget === null) setOver(false);
+    };
+    const onDrop = (event: DragEvent) => {
+      setOver(false);
+      // A pane that takes files itself has prevented the default before.
+      if (!hasFiles(event) || event.defaultPrevented) return;
+      event.preventDefault();
+      for (const file of event.dataTransfer?.files ?? []) void upload(file);
+    };
+    addEventListener("dragover", onOver);
+    addEventListener("dragleave", onLeave);
+    addEventListener("drop", onDrop);
+    return () => {
+      removeEventListener("dragover", onOver);
+      removeEventListener("dragleave", onLeave);
+      removeEventListener("drop", onDrop);
+    };
+  }, []);
+  return over ? (
+    <div className="drop-here">Drop a design, a mesh, voxels or a run folder (.zip)</div>
+  ) : null;
+}

@@ -1,0 +1,39 @@
+import { formatNumber, formatQuantity } from "../controls/units";
+import { useStudio } from "../store/studio";
+
+export function StatusLine() {
+  const stat = useStudio((state) => state.stat);
+  const body = useStudio((state) => state.body);
+  const version = useStudio((state) => state.hello?.version);
+  const running = useStudio(
+    (state) => Object.values(state.jobs).filter((job) => job.state === "running").length,
+  );
+  return (
+    <footer className="status-line" data-testid="status-line">
+      <span
+        className={`sentence is-${stat?.state ?? "empty"}`}
+        data-testid="sentence"
+        aria-live="polite"
+      >
+        {stat?.sentence ?? "Open a design to begin."}
+      </span>
+      {running > 0 && (
+        <span className="badge good">{running === 1 ? "1 job runs" : `${running} jobs run`}</span>
+      )}
+      {body && (
+        <>
+          <span>{body.voxels.toLocaleString("en")} voxels</span>
+          <span>{body.tets.toLocaleString("en")} tets</span>
+          <span>{formatQuantity(body.mass, "kg", 3)}</span>
+        </>
+      )}
+      {stat && stat.state === "playing" && (
+        <>
+          <span>{formatNumber(stat.step_ms, 2)} ms/substep</span>
+          <span>{formatNumber(stat.real_time_factor, 2)}× real time</span>
+        </>
+      )}
+      {version && <span className="muted">VoxSoft {version}</span>}
+    </footer>
+  );
+}

@@ -1,0 +1,103 @@
+import { Button } from "../controls/Choice";
+import { MODE_TITLES, MODES, openSheet, setMode, themeInForce, usePage } from "../store/page";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+import { save, setTheme, showPane } from "./actions";
+import { Icon } from "./icons";
+import { LinkLamp } from "./LinkLamp";
+
+export function TopBar() {
+  const mode = usePage((page) => page.mode);
+  const theme = usePage((page) => page.theme);
+  const document = useStudio((state) => state.document);
+  return (
+    <header className="top-bar" data-testid="top-bar">
+      <span className="brand">
+        <img src="icon.svg" alt="" width="18" height="18" />
+        VoxSoft
+      </span>
+      <nav className="modes" aria-label="Modes">
+        {MODES.map((one) => (
+          <button
+            key={one}
+            type="button"
+            className="mode"
+            data-testid={`mode-${one}`}
+            aria-current={one === mode ? "page" : undefined}
+            onClick={() => setMode(one)}
+          >
+            {MODE_TITLES[one]}
+          </button>
+        ))}
+      </nav>
+      <div
+        className="document-name"
+        data-testid="document-name"
+        title={document?.path ?? undefined}
+      >
+        {document ? (
+          <>
+            <strong>{document.name || "untitled"}</strong>
+            {document.dirty && <span className="muted">edited</span>}
+            {!document.valid && <span className="badge bad">has errors</span>}
+          </>
+        ) : (
+          <span className="muted">no design open</span>
+        )}
+      </div>
+      <Button
+        icon
+        kind="quiet"
+        label="Undo (Ctrl+Z)"
+        disabled={!document?.can_undo}
+        onClick={() => send({ t: "undo" })}
+      >
+        <Icon name="undo" />
+      </Button>
+      <Button
+        icon
+        kind="quiet"
+        label="Redo (Ctrl+Shift+Z)"
+        disabled={!document?.can_redo}
+        onClick={() => send({ t: "redo" })}
+      >
+        <Icon name="redo" />
+      </Button>
+      <Button icon kind="quiet" label="Save (Ctrl+S)" disabled={!document} onClick={save}>
+        <Icon name="save" />
+      </Button>
+      <button
+        type="button"
+        className="find"
+        data-testid="find"
+        onClick={() => openSheet("palette")}
+      >
+        <Icon name="search" />
+        <span>Find an action</span>
+        <kbd>Ctrl K</kbd>
+      </button>
+      <Button disabled={!document} testId="export" onClick={() => showPane("export")}>
+        <Icon name="export" /> Export
+      </Button>
+      <Button
+        icon
+        kind="quiet"
+        label={themeInForce(theme) === "dark" ? "Light theme" : "Dark theme"}
+        testId="theme"
+        onClick={() => setTheme(themeInForce(theme) === "dark" ? "light" : "dark")}
+      >
+        <Icon name="theme" />
+      </Button>
+      <Button
+        icon
+        kind="quiet"
+        label="Keyboard shortcuts (?)"
+        testId="help"
+        onClick={() => openSheet("shortcuts")}
+      >
+        <Icon name="help" />
+      </Button>
+      <LinkLamp />
+    </header>
+  );
+}

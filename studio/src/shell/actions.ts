@@ -1,0 +1,253 @@
+// Every action with a name: the palette lists them, keys start them, the help sheet shows them.
+
+import { PANES } from "../panes/registry";
+import { MODE_TITLES, MODES, openSheet, setMode, type ThemeChoice, usePage } from "../store/page";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+
+export interface Action {
+  readonly id: string;
+  readonly title: string;
+  readonly group: "Document" | "Simulation" | "View" | "Panes" | "Page" | "Templates";
+  /** Such as "Ctrl+K", "Shift+ArrowRight", "f". */
+  readonly keys?: readonly string[];
+  readonly hint?: string;
+  run(): void;
+}
+
+let viewActions: readonly Action[] = [];
+let dockActions: { show(id: string): void; reset(): void } = { show: () => {}, reset: () => {} };
+
+/** The view brings its own actions when it is loaded. */
+export function provideViewActions(actions: readonly Action[]): void {
+  viewActions = actions;
+}
+
+export function provideDock(actions: typeof dockActions): void {
+  dockActions = actions;
+}
+
+/** Bring a pane to the front. */
+export function showPane(id: string): void {
+  dockActions.show(id);
+}
+
+export function togglePlay(): void {
+  const state = useStudio.getState().stat?.state;
+  send({ t: state === "playing" ? "pause" : "play" });
+}
+
+/** Move by `count` frames: through stored ones where a past one is shown, else forward in time. */
+export function stepFrames(count: number): void {
+  const stat = useStudio.getState().stat;
+  if (!stat) return;
+  if (stat.state !== "past" && count > 0) {
+    send({ t: "step", n: count });
+    return;
+  }
+  const next = Math.min(stat.last_frame, Math.max(stat.first_frame, stat.frame + count));
+  send({ t: "seek", frame: next });
+}
+
+export function setTheme(theme: ThemeChoice): void {
+  usePage.setState({ theme });
+}
+
+export function save(): void {
+  const document = useStudio.getState().document;
+  if (!document) return;
+  if (document.path) {
+    send({ t: "save" });
+    return;
+  }
+  const path = prompt("Save the design as", `${document.name || "design"}.toml`);
+  if (path) send({ t: "save", path });
+}
+
+function simple(): Action[] {
+  return [
+    { id: "save", title: "Save the design", group: "Document", keys: ["Ctrl+S"], run: save },
+    {
+      id: "undo",
+      title: "Undo",
+      group: "Document",
+      keys: ["Ctrl+Z"],
+      run: () => send({ t: "undo" }),
+    },
+    {
+      id: "redo",
+      title: "Redo",
+      group: "Document",
+      keys: ["Ctrl+Shift+Z", "Ctrl+Y"],
+      run: () => send({ t: "redo" }),
+    },
+    { id: "play", title: "Play or pause", group: "Simulation", keys: [" "], run: togglePlay },
+    {
+      id: "step",
+      title: "One frame forward",
+      group: "Simulation",
+      keys: ["ArrowRight"],
+      run: () => stepFrames(1),
+    },
+    {
+      id: "back",
+      title: "One frame back",
+      group: "Simulation",
+      keys: ["ArrowLeft"],
+      run: () => stepFrames(-1),
+    },
+    {
+      id: "step10",
+      title: "Ten frames forward",
+      group: "Simulation",
+      keys: ["Shift+ArrowRight"],
+      run: () => stepFrames(10),
+    },
+    {
+      id: "back10",
+      title: "Ten frames back",
+      group: "Simulation",
+      keys: ["Shift+ArrowLeft"],
+      run: () => stepFrames(-10),
+    },
+    {
+      id: "live",
+      title: "Back to the present",
+      group: "Simulation",
+      keys: ["l"],
+      run: () => send({ t: "live" }),
+    },
+    {
+      id: "reset",
+      title: "Back to the unloaded shape",
+      group: "Simulation",
+      keys: ["0"],
+      run: () => send({ t: "reset" }),
+    },
+    {
+      id: "rest",
+      title: "Solve for the state at rest",
+      group: "Simulation",
+      keys: ["r"],
+      run: () => send({ t: "rest" }),
+    },
+    {
+      id: "palette",
+      title: "Find an action",
+      group: "Page",
+      keys: ["Ctrl+K", "Ctrl+Shift+P"],
+      run: () => openSheet("palette"),
+    },
+    {
+      id: "shortcuts",
+      title: "Keyboard shortcuts",
+      group: "Page",
+      keys: ["?"],
+      run: () => openSheet("shortcuts"),
+    },
+    { id: "tour", title: "Take the tour", group: "Page", run: () => openSheet("tour") },
+    {
+      id: "layout",
+      title: "Reset the layout of this mode",
+      group: "Page",
+      run: () => dockActions.reset(),
+    },
+    { id: "theme-dark", title: "Dark theme", group: "Page", run: () => setTheme("dark") },
+    { id: "theme-light", title: "Light theme", group: "Page", run: () => setTheme("light") },
+    {
+      id: "theme-system",
+      title: "Theme of the system",
+      group: "Page",
+      run: () => setTheme("system"),
+    },
+  ];
+}
+
+/** All actions that make sense now. */
+export function actions(): Action[] {
+  const modes = MODES.map(
+    (mode, i): Action => ({
+      id: `mode-${mode}`,
+      title: `Go to ${MODE_TITLES[mode]}`,
+      group: "Page",
+      keys: [`Alt+${i + 1}`],
+      run: () => setMode(mode),
+    }),
+  );
+  const panes = PANES.map(
+    (pane): Action => ({
+      id: `pane-${pane.id}`,
+      title: `Show ${pane.title}`,
+      group: "Panes",
+      run: () => dockActions.show(pane.id),
+    }),
+  );
+  const templates = (useStudio.getState().hello?.templates ?? []).map(
+    (template): Action => ({
+      id: `template-${template.name}`,
+      title: `New from template: ${template.title}`,
+      group: "Templates",
+      run: () => openDocument({ t: "open", what: "template", name: template.name }),
+    }),
+  );
+  return [...simple(), ...viewActions, ...modes, ...panes, ...templates];
+}
+
+type OpenDraft = {
+  t: "open";
+  what: "file" | "run" | "template" | "trial" | "upload";
+  name: string;
+};
+
+/** Open a document; asks first where unsaved work would be lost. */
+export function openDocument(draft: OpenDraft): void {
+  const document = useStudio.getState().document;
+  const lost = document?.dirty && !document.can_undo;
+  if (lost && !confirm(`Leave “${document.name}” without saving its changes?`)) return;
+  send(draft);
+}
+
+/** The name of a key press as actions spell it, such as "Ctrl+Shift+Z". */
+export function keyName(
+  event: Pick<KeyboardEvent, "key" | "code" | "ctrlKey" | "metaKey" | "altKey" | "shiftKey">,
+): string {
+  const digit = event.altKey && /^Digit\d$/.test(event.code) ? event.code.slice(5) : null;
+  const key =
+    digit ?? (event.key.length === 1 && event.ctrlKey ? event.key.toUpperCase() : event.key);
+  const single = key.length === 1 && !event.ctrlKey && !event.metaKey && !event.altKey;
+  return [
+    event.ctrlKey || event.metaKey ? "Ctrl+" : "",
+    event.altKey ? "Alt+" : "",
+    // A single character says by itself whether Shift was held.
+    event.shiftKey && !single ? "Shift+" : "",
+    key,
+  ].join("");
+}
+
+/** Whether keys belong to the element that has the focus, and not to the page. */
+export function isTyping(target: EventTarget | null): boolean {
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.isContentEditable || target.closest(".cm-editor")) return true;
+  if (target instanceof HTMLInputElement)
+    return target.type !== "checkbox" && target.type !== "button";
+  return target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
+}
+
+/** Start actions by their keys, wherever the focus is outside of text fields. */
+export function listenForKeys(): () => void {
+  const onKey = (event: KeyboardEvent) => {
+    const name = keyName(event);
+    const typing = isTyping(event.target);
+    const global = name === "Ctrl+K" || name === "Ctrl+S" || name === "Ctrl+Shift+P";
+    if (typing && !global) return;
+    if (usePage.getState().sheet !== null && !global) return;
+    if (event.target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter"))
+      return;
+    const action = actions().find((one) => one.keys?.includes(name));
+    if (!action) return;
+    event.preventDefault();
+    action.run();
+  };
+  addEventListener("keydown", onKey);
+  return () => removeEventListener("keydown", onKey);
+}

@@ -1,0 +1,155 @@
+// The five modes are layouts of the same panes around the same view; the model stays loaded.
+import type { DockviewApi } from "dockview-react";
+import { paneById } from "../panes/registry";
+import type { Mode } from "../store/page";
+
+/** Panes that share one group, as tabs. */
+type Tabs = readonly string[];
+
+export interface Layout {
+  readonly left: readonly Tabs[];
+  readonly main: Tabs;
+  readonly bottom: readonly Tabs[];
+  readonly right: readonly Tabs[];
+  /** Share of the width that the left column takes. */
+  readonly leftShare: number;
+}
+
+export const LAYOUTS: Readonly<Record<Mode, Layout>> = {
+  design: {
+    left: [["design"], ["text"]],
+    main: ["view"],
+    bottom: [],
+    right: [["body", "export", "log"]],
+    leftShare: 0.25,
+  },
+  simulate: {
+    left: [["run", "design"]],
+    main: ["view"],
+    bottom: [["probes"], ["energy", "log"]],
+    right: [["body", "export"]],
+    leftShare: 0.21,
+  },
+  calibrate: {
+    left: [["calibrate"]],
+    main: ["view", "overlay"],
+    bottom: [["generations"], ["errors", "log"]],
+    right: [],
+    leftShare: 0.26,
+  },
+  optimize: {
+    left: [["study"]],
+    main: ["view"],
+    bottom: [["trials", "log"]],
+    right: [["history"], ["scatter", "pareto"], ["parallel"]],
+    leftShare: 0.22,
+  },
+  runs: {
+    left: [],
+    main: ["runs"],
+    bottom: [],
+    right: [["view"], ["compare", "export", "log"]],
+    leftShare: 0.2,
+  },
+};
+
+// Below this width a column at the right becomes tabs of the row at the bottom.
+const NARROW = 1400;
+
+/** Leave out panes that are not there, and groups that are then empty. */
+export function present(groups: readonly Tabs[]): string[][] {
+  return groups
+    .map((tabs) => tabs.filter((id) => paneById(id)))
+    .filter((tabs) => tabs.length > 0) as string[][];
+}
+
+/** Build the default layout of a mode in an empty dock. */
+export function build(api: DockviewApi, mode: Mode, width: number, height: number): void {
+  const layout = LAYOUTS[mode];
+  const left = present(layout.left);
+  let bottom = present(layout.bottom);
+  let right = present(layout.right);
+  const main = present([layout.main])[0] ?? ["log"];
+  if (width < NARROW && right.length > 0 && mode !== "runs") {
+    bottom =
+      bottom.length > 0
+        ? [...bottom.slice(0, -1), [...(bottom.at(-1) ?? []), ...right.flat()]]
+        : [];
+    if (bottom.length > 0) right = [];
+    else right = [right.flat()];
+  }
+  addTabs(api, main, undefined);
+  const anchor = main[0] as string;
+  const leftWidth = Math.round(Math.max(280, width * layout.leftShare));
+  const rightWidth = Math.round(mode === "runs" ? width * 0.45 : Math.max(260, width * 0.23));
+  const bottomHeight = Math.round(Math.max(170, height * 0.27));
+  column(api, right, anchor, "right", rightWidth);
+  column(api, left, anchor, "left", leftWidth);
+  for (const [i, tabs] of bottom.entries()) {
+    const first = bottom[0]?.[0] as string;
+    const previous = bottom[i - 1]?.[0];
+    addTabs(
+      api,
+      tabs,
+      i === 0
+        ? { referencePanel: anchor, direction: "below" }
+        : { referencePanel: previous ?? first, direction: "right" },
+      i === 0 ? { initialHeight: bottomHeight } : {},
+    );
+  }
+  api.getPanel(anchor)?.api.setActive();
+}
+
+interface Position {
+  readonly referencePanel: string;
+  readonly direction: "left" | "right" | "above" | "below" | "within";
+}
+
+function column(
+  api: DockviewApi,
+  groups: string[][],
+  anchor: string,
+  direction: "left" | "right",
+  width: number,
+): void {
+  for (const [i, tabs] of groups.entries()) {
+    const above = groups[i - 1]?.[0];
+    addTabs(
+      api,
+      tabs,
+      above ? { referencePanel: above, direction: "below" } : { referencePanel: anchor, direction },
+      above ? {} : { initialWidth: width },
+    );
+  }
+}
+
+function addTabs(
+  api: DockviewApi,
+  tabs: readonly string[],
+  position: Position | undefined,
+  size: { initialWidth?: number; initialHeight?: number } = {},
+): void {
+  const [first, ...others] = tabs;
+  if (!first) return;
+  add(api, first, position, size);
+  for (const id of others) add(api, id, { referencePanel: first, direction: "within" }, {}, true);
+}
+
+export function add(
+  api: DockviewApi,
+  id: string,
+  position: Position | undefined,
+  size: { initialWidth?: number; initialHeight?: number } = {},
+  inactive = false,
+): void {
+  const pane = paneById(id);
+  if (!pane || api.getPanel(id)) return;
+  api.addPanel({
+    id,
+    component: "pane",
+    title: pane.title,
+    ...(position ? { position } : {}),
+    ...size,
+    inactive,
+  });
+}

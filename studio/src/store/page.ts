@@ -1,0 +1,98 @@
+// What belongs to this page alone: mode, theme, open sheets. Kept between visits; the mode
+// stands in the address, so that a reload or a copied address shows the same.
+import { create } from "zustand";
+
+export const MODES = ["design", "simulate", "calibrate", "optimize", "runs"] as const;
+export type Mode = (typeof MODES)[number];
+
+export const MODE_TITLES: Readonly<Record<Mode, string>> = {
+  design: "Design",
+  simulate: "Simulate",
+  calibrate: "Calibrate",
+  optimize: "Optimize",
+  runs: "Runs",
+};
+
+export type ThemeChoice = "system" | "dark" | "light";
+export type Sheet = "palette" | "shortcuts" | "tour" | null;
+
+export interface Page {
+  mode: Mode;
+  theme: ThemeChoice;
+  sheet: Sheet;
+  /** The study or calibration that the panes speak of. */
+  job: string | null;
+}
+
+const KEY = "voxsoft.page";
+
+function readAddress(): Partial<Page> {
+  const given = new URLSearchParams(globalThis.location?.hash.slice(1) ?? "");
+  const mode = given.get("mode") as Mode | null;
+  const job = given.get("job");
+  return {
+    ...(mode && MODES.includes(mode) ? { mode } : {}),
+    ...(job ? { job } : {}),
+  };
+}
+
+/** What was kept under `key`, or an empty object where nothing readable was. */
+export function kept<T extends object>(key: string): Partial<T> {
+  try {
+    const value: unknown = JSON.parse(localStorage.getItem(key) ?? "{}");
+    return typeof value === "object" && value !== null ? (value as Partial<T>) : {};
+  } catch {
+    return {}; // storage is switched off, or holds something else
+  }
+}
+
+export function keepAs(key: string, value: unknown): void {
+  try {
+    localStorage.setItem(key, JSON.stringify(value));
+  } catch {
+    // storage is switched off or full: the page works without its memory
+  }
+}
+
+export const usePage = create<Page>(() => ({
+  mode: "design",
+  theme: "system",
+  sheet: null,
+  job: null,
+  ...kept<Pick<Page, "theme">>(KEY),
+  ...readAddress(),
+}));
+
+export function setMode(mode: Mode): void {
+  usePage.setState({ mode });
+}
+
+export function openSheet(sheet: Sheet): void {
+  usePage.setState({ sheet });
+}
+
+/** The theme that is in force. */
+export function themeInForce(choice: ThemeChoice): "dark" | "light" {
+  if (choice !== "system") return choice;
+  return matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
+}
+
+/** Keep document and storage in step with the store; called once. */
+export function watchPage(): void {
+  const show = (page: Page) => {
+    document.documentElement.dataset.theme = themeInForce(page.theme);
+    keepAs(KEY, { theme: page.theme });
+    const address = new URLSearchParams({
+      mode: page.mode,
+      ...(page.job ? { job: page.job } : {}),
+    });
+    const hash = `#${address}`;
+    if (location.hash !== hash) history.replaceState(null, "", hash);
+  };
+  show(usePage.getState());
+  usePage.subscribe(show);
+  matchMedia("(prefers-color-scheme: light)").addEventListener("change", () =>
+    show(usePage.getState()),
+  );
+  addEventListener("hashchange", () => usePage.setState(readAddress()));
+}

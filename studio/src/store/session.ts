@@ -1,0 +1,86 @@
+// The one engine of the page, and the way of commands to it and of events from it.
+import type { Draft, Engine } from "../engine/engine";
+import type { Frame, Smooth, Topology } from "../engine/frames";
+import { apply, toast, useStudio } from "./studio";
+
+/** What draws bodies; the viewport registers itself here. */
+export interface Stage {
+  topology(topology: Topology): void;
+  frame(frame: Frame): void;
+  smooth(smooth: Smooth): void;
+}
+
+let engine: Engine | null = null;
+let stage: Stage | null = null;
+let lastTopology: Topology | null = null;
+let lastFrame: Frame | null = null;
+let lastSmooth: Smooth | null = null;
+const sentAt = new Map<number, number>();
+const ready = new Set<() => void>();
+
+export function currentEngine(): Engine | null {
+  return engine;
+}
+
+/** Called whenever the engine has (again) answered, to tell it what this tab shows. */
+export function onReady(callback: () => void): () => void {
+  ready.add(callback);
+  return () => ready.delete(callback);
+}
+
+export function connect(chosen: Engine): void {
+  engine?.stop();
+  engine = chosen;
+  chosen.start({
+    event(event) {
+      apply(event);
+      if (event.t === "hello") for (const callback of ready) callback();
+    },
+    topology(topology) {
+      lastTopology = topology;
+      stage?.topology(topology);
+    },
+    frame(frame) {
+      lastFrame = frame;
+      if (stage) stage.frame(frame);
+      else chosen.acknowledge(frame.number);
+    },
+    smooth(smooth) {
+      lastSmooth = smooth;
+      stage?.smooth(smooth);
+    },
+    link(link) {
+      useStudio.setState({ link });
+    },
+  });
+}
+
+/** Let `next` draw from now on; it gets what came last at once. */
+export function present(next: Stage): void {
+  stage = next;
+  if (lastTopology) next.topology(lastTopology);
+  if (lastSmooth) next.smooth(lastSmooth);
+  if (lastFrame) next.frame(lastFrame);
+}
+
+/** Send a command; gives its number, or 0 with a message where there is no connection. */
+export function send(draft: Draft): number {
+  const seq = engine?.send(draft) ?? 0;
+  if (seq > 0) {
+    sentAt.set(seq, performance.now());
+    if (sentAt.size > 400) sentAt.delete(sentAt.keys().next().value as number);
+  } else if (draft.t !== "text" && draft.t !== "edit" && draft.t !== "view") {
+    toast({
+      level: "warning",
+      what: "Not connected to VoxSoft",
+      hint: "The page tries again by itself; edits are kept.",
+    });
+  }
+  return seq;
+}
+
+/** Milliseconds since command `seq` was sent, or null where that is not known (any more). */
+export function sinceSent(seq: number): number | null {
+  const at = sentAt.get(seq);
+  return at === undefined ? null : performance.now() - at;
+}

@@ -1,0 +1,37 @@
+import { fileURLToPath } from "node:url";
+import react from "@vitejs/plugin-react";
+import { defineConfig } from "vite";
+import { bundleSource } from "./bundle-source.ts";
+
+const root = fileURLToPath(new URL(".", import.meta.url));
+const server = process.env.VOXSOFT_STUDIO ?? "http://127.0.0.1:8765";
+
+export default defineConfig({
+  root,
+  plugins: [react(), bundleSource(root)],
+  build: {
+    outDir: "../python/voxsoft/studio/static",
+    emptyOutDir: true,
+    target: "es2022",
+    modulePreload: { polyfill: false },
+    // three.js alone is half a megabyte before compression; the test on the total size decides.
+    chunkSizeWarningLimit: 900,
+    rolldownOptions: {
+      output: {
+        // Names without hashes keep the committed bundle's history readable.
+        entryFileNames: "assets/[name].js",
+        chunkFileNames: "assets/[name].js",
+        assetFileNames: "assets/[name][extname]",
+      },
+    },
+  },
+  server: {
+    proxy: {
+      "/ws": { target: server, ws: true },
+      "/upload": server,
+      "/download": server,
+      "/thumbnail": server,
+      "/export": server,
+    },
+  },
+});
