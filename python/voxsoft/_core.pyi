@@ -212,7 +212,11 @@ def equilibrium(
     progress: Callable[[int, float, float], None] | None = None,
 ) -> dict[str, Any]: ...
 def adjoint(
-    problem: Problem, positions: NDArray[np.float64], gradients: NDArray[np.float64]
+    problem: Problem,
+    positions: NDArray[np.float64],
+    gradients: NDArray[np.float64],
+    *,
+    memory: int = ...,
 ) -> NDArray[np.float64]: ...
 
 class Problem:

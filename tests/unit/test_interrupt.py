@@ -1,15 +1,21 @@
-"""A Ctrl-C whose exception a library swallowed still stops a loop."""
+"""Ctrl-C ends long work of the core at once, and one that a library swallowed is found."""
 
 import os
 import signal
 import sys
 import threading
+import time
 from contextlib import suppress
 
+import numpy as np
 import pytest
 from pydantic import BaseModel, model_serializer
 
+import voxsoft as vs
+from voxsoft import _core
 from voxsoft._interrupt import Interrupts
+from voxsoft.simulation import Setup
+from voxsoft.units import kPa, mm
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 
@@ -77,3 +83,57 @@ def test_other_threads_are_left_alone():
     thread.start()
     thread.join()
     assert not errors
+
+
+def cube(across):
+    """A cube of rubber with so many voxels along its edges."""
+    side = (across * mm,) * 3
+    rubber = vs.NeoHookean(young=60 * kPa)
+    return vs.Design(
+        name="cube",
+        voxel_size=1 * mm,
+        parts=[vs.Part(shape=vs.Box(size=side), material=rubber)],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        loads=[vs.Gravity()],
+    )
+
+
+def checked_mesh():
+    """The count of faces and edges of a mesh, which is one long sort."""
+    mesh = Setup.of(cube(60)).mesh
+    return lambda: _core.mesh_quality(mesh.vertices, mesh.tets, mesh.edges, mesh.triangles)
+
+
+def factorized_tangent():
+    """A direct factorization, which has no place to stop at."""
+    setup = Setup.of(cube(15))
+    rest = setup.mesh.vertices
+    _ = setup.problem
+    return lambda: _core.adjoint(setup.problem, rest, np.ones((1, *rest.shape)))
+
+
+@pytest.mark.parametrize("prepare", [checked_mesh, factorized_tangent])
+def test_long_work_that_cannot_be_stopped_is_left_behind(prepare):
+    task = prepare()
+
+    def seconds(interrupt_after):
+        def press():
+            os.kill(os.getpid(), signal.SIGINT)
+
+        timer = threading.Timer(interrupt_after, press)
+        start = time.perf_counter()
+        timer.start()
+        try:
+            task()
+        except KeyboardInterrupt:
+            return time.perf_counter() - start, True
+        finally:
+            timer.cancel()
+        return time.perf_counter() - start, False
+
+    whole, interrupted = seconds(1e6)
+    assert not interrupted
+    # At a tenth of the way: the core looks for signals every 50 ms, much less than a half.
+    stopped, interrupted = seconds(whole / 10)
+    assert interrupted
+    assert stopped < whole / 2

@@ -1,5 +1,7 @@
 """What cannot be simulated says so: where, what, and what to try."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -143,3 +145,13 @@ def test_a_tangent_too_large_for_memory_is_refused_with_the_estimate(monkeypatch
     with pytest.raises(SimulationError, match=r"takes about .* GB, and .* are free") as refused:
         simulate(box, method="statics")
     assert "larger voxels" in str(refused.value)
+
+
+def test_so_is_the_tangent_of_a_gradient(monkeypatch):
+    rubber = vs.NeoHookean(young=60 * kPa)
+    box = design(parts=[vs.Part(shape=BOX, material=rubber)])
+    result = simulate(box, method="statics")
+    module = sys.modules["voxsoft.simulation.gradient"]  # Its name is that of a function, too.
+    monkeypatch.setattr(module, "memory_limit", lambda: 10_000)
+    with pytest.raises(SimulationError, match=r"takes about .* GB, and .*larger voxels"):
+        vs.gradient(result, "max_displacement", "parts.0.material.young")

@@ -1,28 +1,33 @@
 //! `_core.equilibrium` and `_core.adjoint`: the statics solver on a `_core.Problem`.
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
 use numpy::{
     PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
 };
-use pyo3::exceptions::{PyArithmeticError, PyValueError};
+use pyo3::exceptions::{PyArithmeticError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voxsoft_solid::State;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_statics::{Control, LinearSolver, Settings};
+use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings};
 use voxsoft_xpbd::{Answer, Status};
 
 use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
 use crate::watch::{Watch, collect_sensors};
 
-/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium.
+/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium. `memory` are the bytes
+/// that the tangent may take; a `MemoryError` carries those that it would.
 #[pyfunction]
+#[pyo3(signature = (problem, positions, gradients, *, memory=u64::MAX))]
 pub fn adjoint<'py>(
     problem: PyRef<'py, PyProblem>,
     py: Python<'py>,
     positions: PyReadonlyArray2<'_, f64>,
     gradients: PyReadonlyArray3<'_, f64>,
+    memory: u64,
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
-    let inner = &problem.problem;
     let positions = problem.positions(&positions)?;
     let view = gradients.as_array();
     let count = positions.len();
@@ -38,12 +43,17 @@ pub fn adjoint<'py>(
         gradient.rows().into_iter().map(row).collect()
     };
     let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
-    let states = gate::run(py, |_| {
-        voxsoft_statics::adjoint(inner, &positions, &gradients)
+    let inner = Arc::clone(&problem.problem);
+    let states = gate::run_owned(py, move |cancel| {
+        let mut stop = || cancel.load(Ordering::Relaxed);
+        voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
     })?
-    .map_err(|error| PyArithmeticError::new_err(error.to_string()))?;
+    .map_err(|error| match error {
+        AdjointError::OutOfMemory(bytes) => PyMemoryError::new_err(bytes),
+        error => PyArithmeticError::new_err(error.to_string()),
+    })?;
     let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
-    PyArray1::from_vec(py, flat).reshape([gradients.len(), count, 3])
+    PyArray1::from_vec(py, flat).reshape([states.len(), count, 3])
 }
 
 /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
@@ -97,10 +107,12 @@ pub fn equilibrium<'py>(
     };
     let start = start.map(|start| problem.positions(&start)).transpose()?;
     let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
-    let answer = gate::run(py, |cancel| {
-        voxsoft_statics::solve(inner, start.as_deref(), &settings, &mut |now| {
-            watch.see_equilibrium(now, cancel)
-        })
+    let problem_of_work = Arc::clone(inner);
+    let (answer, watch) = gate::run_owned(py, move |cancel| {
+        let mut see = |now: &voxsoft_statics::Progress<'_>| watch.see_equilibrium(now, cancel);
+        let answer =
+            voxsoft_statics::solve(&problem_of_work, start.as_deref(), &settings, &mut see);
+        (answer, watch)
     })?;
     let stable = answer.stable;
     let (factor, limit) = (answer.factor, answer.limit);

@@ -43,7 +43,8 @@ pub fn mesh_voxels<'py>(
     memory_limit: u64,
 ) -> PyResult<PyTetMesh<'py>> {
     let grid = Arc::clone(&grid.0);
-    match gate::run(py, |_| voxel::tet_mesh(&grid, memory_limit))? {
+    let work = move |cancel: &_| voxel::tet_mesh_until(&grid, memory_limit, cancel);
+    match gate::run_owned(py, work)? {
         Ok(mesh) => mesh_to_python(py, mesh),
         Err(error) => Err(stitch_error(py, &error)),
     }
@@ -58,7 +59,8 @@ pub fn mesh_tets<'py>(
 ) -> PyResult<PyTetMesh<'py>> {
     let (vertices, tets) = (rows_from(&vertices), rows_from(&tets));
     let tet_part = tet_part.as_array().to_vec();
-    match gate::run(py, |_| voxel::mesh_from_tets(vertices, tets, tet_part))? {
+    let work = move |_: &_| voxel::mesh_from_tets(vertices, tets, tet_part);
+    match gate::run_owned(py, work)? {
         Ok(mesh) => mesh_to_python(py, mesh),
         Err(error) => Err(from_tets_error(py, &error)),
     }
@@ -83,7 +85,7 @@ pub fn mesh_quality<'py>(
         voxel_size: None,
         cavities: Vec::new(),
     };
-    let quality = gate::run(py, |_| voxel::quality(&mesh))?;
+    let quality = gate::run_owned(py, move |_| voxel::quality(&mesh))?;
     Ok((
         quality.volume,
         quality.smallest_tet,
@@ -134,6 +136,7 @@ fn stitch_error(py: Python<'_>, error: &StitchError) -> PyErr {
     let hint = match error {
         StitchError::Empty => "fill some cells, or voxelize with smaller voxels",
         StitchError::TooLarge { .. } | StitchError::TooMany { .. } => "use larger voxels",
+        StitchError::Canceled => "",
     };
     exception(py, "MeshError", "mesh", &error.to_string(), hint)
 }

@@ -1,4 +1,6 @@
 //! `_core.Problem` and its two ways to an answer.
+use std::sync::Arc;
+
 use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -47,7 +49,7 @@ fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
     mesh: Mesh,
-    pub(crate) problem: Problem,
+    pub(crate) problem: Arc<Problem>,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -215,6 +217,7 @@ impl PyProblemParts {
 impl PyProblem {
     #[new]
     fn new(
+        py: Python<'_>,
         vertices: PyReadonlyArray2<'_, f64>,
         tets: PyReadonlyArray2<'_, u32>,
         tet_part: PyReadonlyArray1<'_, u8>,
@@ -244,12 +247,11 @@ impl PyProblem {
                 mesh.membranes.push(membrane);
             }
         }
-        let problem = assemble(&mesh, materials, &parts)?;
-        Ok(Self { mesh, problem })
+        Self::assemble(py, mesh, materials, &parts)
     }
 
     /// The same body and loads with other materials.
-    fn with_materials(&self, materials: Vec<MaterialArgument>) -> PyResult<Self> {
+    fn with_materials(&self, py: Python<'_>, materials: Vec<MaterialArgument>) -> PyResult<Self> {
         let parts = PyProblemParts {
             clamps: self.problem.clamps().to_vec(),
             loads: self.problem.loads().to_vec(),
@@ -258,9 +260,7 @@ impl PyProblem {
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
         };
-        let mesh = self.mesh.clone();
-        let problem = assemble(&mesh, materials, &parts)?;
-        Ok(Self { mesh, problem })
+        Self::assemble(py, self.mesh.clone(), materials, &parts)
     }
 
     #[getter]
@@ -394,18 +394,24 @@ impl PyProblem {
     }
 }
 
-fn assemble(
-    mesh: &Mesh,
-    materials: Vec<MaterialArgument>,
-    parts: &PyProblemParts,
-) -> PyResult<Problem> {
-    let materials: PyResult<Vec<Material>> = materials.into_iter().map(material).collect();
-    let body = Body::new(mesh, &materials?).map_err(to_python)?;
-    let (clamps, loads) = (parts.clamps.clone(), parts.loads.clone());
-    Problem::new(body, clamps, loads, parts.floor).map_err(to_python)
-}
-
 impl PyProblem {
+    fn assemble(
+        py: Python<'_>,
+        mesh: Mesh,
+        materials: Vec<MaterialArgument>,
+        parts: &PyProblemParts,
+    ) -> PyResult<Self> {
+        let materials: PyResult<Vec<Material>> = materials.into_iter().map(material).collect();
+        let materials = materials?;
+        let (clamps, loads, floor) = (parts.clamps.clone(), parts.loads.clone(), parts.floor);
+        gate::run_owned(py, move |_| {
+            let body = Body::new(&mesh, &materials)?;
+            let problem = Arc::new(Problem::new(body, clamps, loads, floor)?);
+            Ok(Self { mesh, problem })
+        })?
+        .map_err(to_python)
+    }
+
     pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
         let positions = rows("positions", array)?;
         let expected = self.problem.body().rest().len();

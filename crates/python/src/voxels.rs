@@ -42,6 +42,16 @@ impl PyGrid {
         })
     }
 
+    /// What `work` finds in the cells.
+    fn found<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&voxel::Grid) -> T + Send + 'static,
+    ) -> PyResult<T> {
+        let grid = Arc::clone(&self.0);
+        gate::run_owned(py, move |_| work(&grid))
+    }
+
     fn combined(
         &self,
         py: Python<'_>,
@@ -224,12 +234,12 @@ impl PyGrid {
             2 => Contact::Edge,
             _ => Contact::Corner,
         };
-        let pieces = gate::run(py, |_| voxel::components(&self.0, contact))?;
+        let pieces = self.found(py, move |grid| voxel::components(grid, contact))?;
         pieces.iter().map(|piece| region(py, piece)).collect()
     }
 
     fn cavities<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyRegion<'py>, f64, f64)>> {
-        let cavities = gate::run(py, |_| voxel::cavities(&self.0))?;
+        let cavities = self.found(py, voxel::cavities)?;
         cavities
             .iter()
             .map(|c| Ok((region(py, &c.region)?, c.volume, c.area)))
@@ -238,7 +248,7 @@ impl PyGrid {
 
     /// One row of two cells (i, j, k, i, j, k) per hinge.
     fn hinges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let hinges = gate::run(py, |_| voxel::hinges(&self.0))?;
+        let hinges = self.found(py, voxel::hinges)?;
         let count = hinges.len();
         let cells: Vec<u32> = hinges
             .iter()
@@ -249,7 +259,7 @@ impl PyGrid {
     }
 
     fn leaks<'py>(&self, py: Python<'py>, max_width: usize) -> PyResult<Vec<PyLeak<'py>>> {
-        let leaks = gate::run(py, |_| voxel::leaks(&self.0, max_width))?;
+        let leaks = self.found(py, move |grid| voxel::leaks(grid, max_width))?;
         let cells = |openings: &[[u32; 3]]| openings.iter().map(|&cell| cell.into()).collect();
         leaks
             .iter()
@@ -258,16 +268,14 @@ impl PyGrid {
     }
 
     fn wall_thickness<'py>(&self, py: Python<'py>) -> PyResult<PyWallThickness<'py>> {
-        let walls = gate::run(py, |_| voxel::wall_thickness(&self.0))?;
+        let walls = self.found(py, voxel::wall_thickness)?;
         let cells = walls.cells.into_pyarray(py).reshape(self.0.shape())?;
         Ok((cells, walls.histogram, walls.thinnest.map(wall)))
     }
 
     fn cavity_walls(&self, py: Python<'_>) -> PyResult<Vec<PyWall>> {
-        Ok(gate::run(py, |_| voxel::cavity_walls(&self.0))?
-            .into_iter()
-            .map(wall)
-            .collect())
+        let walls = self.found(py, voxel::cavity_walls)?;
+        Ok(walls.into_iter().map(wall).collect())
     }
 }
 

@@ -85,6 +85,9 @@ impl Watch {
     }
 
     fn tell(&mut self, arguments: (u64, f64, f64), cancel: &AtomicBool) -> ControlFlow<()> {
+        if cancel.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
         if let Some(progress) = &self.progress
             && self.last_call.elapsed() >= PROGRESS_PERIOD
         {
@@ -94,11 +97,7 @@ impl Watch {
                 return ControlFlow::Break(());
             }
         }
-        if cancel.load(Ordering::Relaxed) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        ControlFlow::Continue(())
     }
 
     fn record(&mut self, positions: &[Vec3], time: f64) {

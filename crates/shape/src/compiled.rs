@@ -2,39 +2,48 @@
 use std::collections::HashMap;
 
 use fidget::context::{Context, Node as Handle, Tree};
-use fidget::eval::{BulkEvaluator, TracingEvaluator};
+use fidget::eval::{BulkEvaluator, Function, MathFunction, TracingEvaluator};
 use fidget::shape::{EzShape, Shape, ShapeBulkEval, ShapeTape, ShapeTracingEval};
 use fidget::var::{Var, VarIndex};
 
 use crate::expr::{Binary, Expr, Node, Unary};
 
-/// fidget's evaluator: machine code where the `jit` feature is on, else an interpreter.
+/// fidget's interpreter, which runs on any processor.
+pub(crate) type Interpreted = fidget::vm::VmFunction;
+/// fidget's machine code.
 #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
-pub(crate) type Function = fidget::jit::JitFunction;
-/// fidget's evaluator: machine code where the `jit` feature is on, else an interpreter.
-#[cfg(not(all(feature = "jit", not(target_arch = "wasm32"))))]
-pub(crate) type Function = fidget::vm::VmFunction;
+pub(crate) type MachineCode = fidget::jit::JitFunction;
+
+/// Whether this processor runs the machine code that fidget writes, which does not ask itself.
+#[cfg(all(feature = "jit", target_arch = "x86_64"))]
+pub(crate) fn runs_machine_code() -> bool {
+    is_x86_feature_detected!("avx2")
+}
+
+/// Whether this processor runs the machine code that fidget writes: all of this kind do.
+#[cfg(all(
+    feature = "jit",
+    not(any(target_arch = "x86_64", target_arch = "wasm32"))
+))]
+pub(crate) fn runs_machine_code() -> bool {
+    true
+}
 
 /// fidget's evaluator over blocks.
-pub(crate) type IntervalEval = ShapeTracingEval<<Function as fidget::eval::Function>::IntervalEval>;
+pub(crate) type IntervalEval<F> = ShapeTracingEval<<F as Function>::IntervalEval>;
 /// fidget's evaluator of many points.
-pub(crate) type FloatEval = ShapeBulkEval<<Function as fidget::eval::Function>::FloatSliceEval>;
-/// Scratch space of fidget's simplification.
-pub(crate) type Workspace = <Function as fidget::eval::Function>::Workspace;
-type Trace = <Function as fidget::eval::Function>::Trace;
-type IntervalTape =
-    ShapeTape<<<Function as fidget::eval::Function>::IntervalEval as TracingEvaluator>::Tape>;
-type FloatTape =
-    ShapeTape<<<Function as fidget::eval::Function>::FloatSliceEval as BulkEvaluator>::Tape>;
+pub(crate) type FloatEval<F> = ShapeBulkEval<<F as Function>::FloatSliceEval>;
+type IntervalTape<F> = ShapeTape<<<F as Function>::IntervalEval as TracingEvaluator>::Tape>;
+type FloatTape<F> = ShapeTape<<<F as Function>::FloatSliceEval as BulkEvaluator>::Tape>;
 
 /// A simpler function is adopted when it has at most this part of the operations: compiling costs.
 const WORTHWHILE: f64 = 0.75;
 
 /// A function, or the part of it that matters in a block, compiled for blocks and for points.
-pub(crate) struct Part {
-    shape: Shape<Function>,
-    pub intervals: IntervalTape,
-    pub floats: FloatTape,
+pub(crate) struct Part<F: Function> {
+    shape: Shape<F>,
+    pub intervals: IntervalTape<F>,
+    pub floats: FloatTape<F>,
 }
 
 /// A subexpression of one coordinate, computed once for each cell layer along that axis.
@@ -47,7 +56,7 @@ pub(crate) struct Table {
     pub expr: Expr,
 }
 
-impl Part {
+impl<F: MathFunction> Part<F> {
     /// Compiles `expr`, or `None` when it samples a field, which fidget cannot.
     pub fn compile(expr: &Expr) -> Option<(Self, Vec<Table>)> {
         let mut context = Context::new();
@@ -59,7 +68,7 @@ impl Part {
         Some((part, tables))
     }
 
-    fn of(shape: Shape<Function>) -> Self {
+    fn of(shape: Shape<F>) -> Self {
         Self {
             intervals: shape.ez_interval_tape(),
             floats: shape.ez_float_slice_tape(),
@@ -68,7 +77,7 @@ impl Part {
     }
 
     /// The part left by the choices in `trace`, if it is markedly smaller.
-    pub fn simplify(&self, trace: &Trace, workspace: &mut Workspace) -> Option<Self> {
+    pub fn simplify(&self, trace: &F::Trace, workspace: &mut F::Workspace) -> Option<Self> {
         let simpler = self
             .shape
             .simplify(trace, Default::default(), workspace)

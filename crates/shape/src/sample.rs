@@ -10,7 +10,12 @@
 //! evaluated again in float64, so the answer is that of a float64 evaluation of every cell.
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use fidget::eval::MathFunction;
+
 use crate::block::Block;
+use crate::compiled::Interpreted;
+#[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
+use crate::compiled::{MachineCode, runs_machine_code};
 use crate::error::SampleError;
 use crate::shape::Shape;
 use crate::worker::{Classifier, Worker};
@@ -99,7 +104,20 @@ pub fn sample(
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
     lattice.check(memory_limit)?;
-    let classifier = Classifier::new(shape, lattice, TIE * lattice.voxel_size)?;
+    #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
+    if runs_machine_code() {
+        return sample_by::<MachineCode>(shape, lattice, cancel);
+    }
+    sample_by::<Interpreted>(shape, lattice, cancel)
+}
+
+/// [`sample`] with one of fidget's evaluators.
+fn sample_by<F: MathFunction>(
+    shape: &Shape,
+    lattice: &Lattice,
+    cancel: &AtomicBool,
+) -> Result<Vec<u8>, SampleError> {
+    let classifier = Classifier::<F>::new(shape, lattice, TIE * lattice.voxel_size)?;
     let tiles = Block::whole(lattice.shape).split(TILE);
     let done = for_each_tile(&tiles, |worker, tile| {
         if cancel.load(Ordering::Relaxed) {
@@ -125,22 +143,50 @@ pub fn sample(
 }
 
 #[cfg(feature = "threads")]
-fn for_each_tile<T: Send>(
+fn for_each_tile<F: MathFunction, T: Send>(
     tiles: &[Block],
-    work: impl Fn(&mut Worker, &Block) -> Result<T, SampleError> + Sync,
+    work: impl Fn(&mut Worker<F>, &Block) -> Result<T, SampleError> + Sync,
 ) -> Result<Vec<T>, SampleError> {
     use rayon::prelude::*;
     tiles
         .par_iter()
-        .map_init(Worker::default, |worker, tile| work(worker, tile))
+        .map_init(Worker::new, |worker, tile| work(worker, tile))
         .collect()
 }
 
 #[cfg(not(feature = "threads"))]
-fn for_each_tile<T>(
+fn for_each_tile<F: MathFunction, T>(
     tiles: &[Block],
-    work: impl Fn(&mut Worker, &Block) -> Result<T, SampleError>,
+    work: impl Fn(&mut Worker<F>, &Block) -> Result<T, SampleError>,
 ) -> Result<Vec<T>, SampleError> {
-    let mut worker = Worker::default();
+    let mut worker = Worker::new();
     tiles.iter().map(|tile| work(&mut worker, tile)).collect()
+}
+
+#[cfg(all(test, feature = "jit", not(target_arch = "wasm32")))]
+mod tests {
+    use super::*;
+    use crate::operators::intersection;
+    use crate::periodic::Surface;
+    use crate::primitives;
+
+    /// What a processor without the instructions of the machine code gets.
+    #[test]
+    fn the_interpreter_finds_what_machine_code_finds() {
+        let ball = primitives::sphere([0.0; 3], 0.02).unwrap();
+        let gyroid = Surface::Gyroid.solid(&0.008.into(), 0.1).unwrap();
+        let shape = intersection(&[ball, gyroid]).unwrap();
+        let lattice = Lattice {
+            origin: [-0.021; 3],
+            voxel_size: 0.0007,
+            shape: [60; 3],
+        };
+        let go_on = AtomicBool::new(false);
+        let interpreted = sample_by::<Interpreted>(&shape, &lattice, &go_on).unwrap();
+        assert!(interpreted.contains(&1) && interpreted.contains(&0));
+        if runs_machine_code() {
+            let compiled = sample_by::<MachineCode>(&shape, &lattice, &go_on).unwrap();
+            assert!(compiled == interpreted);
+        }
+    }
 }

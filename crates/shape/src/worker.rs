@@ -1,9 +1,10 @@
 //! One thread's work on one tile: prune by intervals, then evaluate what is left.
+use fidget::eval::{Function, MathFunction};
 use fidget::shape::ShapeVars;
 use fidget::types::Interval;
 
 use crate::block::{Block, TileCells, TileContent};
-use crate::compiled::{FloatEval, IntervalEval, Part, Workspace};
+use crate::compiled::{FloatEval, IntervalEval, Part};
 use crate::error::SampleError;
 use crate::layers::{Layers, spread};
 use crate::range::Range;
@@ -23,16 +24,16 @@ const SAMPLED_EDGES: [usize; 2] = [16, 4];
 const SHARP: f64 = 1e-4;
 
 /// The function of a shape in all its forms, shared by the threads.
-pub(crate) struct Classifier {
+pub(crate) struct Classifier<F: Function> {
     tape: Tape,
-    compiled: Option<Part>,
+    compiled: Option<Part<F>>,
     layers: Layers,
     lattice: Lattice,
     /// Inside means s below this
     threshold: f64,
 }
 
-impl Classifier {
+impl<F: MathFunction> Classifier<F> {
     pub fn new(shape: &Shape, lattice: &Lattice, tie: f64) -> Result<Self, SampleError> {
         let (compiled, tables) = match Part::compile(&shape.expr) {
             Some((part, tables)) => (Some(part), tables),
@@ -67,11 +68,10 @@ impl Classifier {
 }
 
 /// Evaluators and buffers of one thread.
-#[derive(Default)]
-pub(crate) struct Worker {
-    intervals: IntervalEval,
-    floats: FloatEval,
-    workspace: Workspace,
+pub(crate) struct Worker<F: Function> {
+    intervals: IntervalEval<F>,
+    floats: FloatEval<F>,
+    workspace: F::Workspace,
     ranges: Vec<Range>,
     layer_ranges: ShapeVars<Interval>,
     layer_values: ShapeVars<Vec<f32>>,
@@ -105,9 +105,28 @@ impl Canvas {
     }
 }
 
-impl Worker {
+impl<F: MathFunction> Worker<F> {
+    pub fn new() -> Self {
+        Self {
+            intervals: IntervalEval::<F>::default(),
+            floats: FloatEval::<F>::default(),
+            workspace: F::Workspace::default(),
+            ranges: Vec::new(),
+            layer_ranges: ShapeVars::default(),
+            layer_values: ShapeVars::default(),
+            singles: [const { Vec::new() }; 3],
+            doubtful: Vec::new(),
+            points: Vec::new(),
+            values: Vec::new(),
+        }
+    }
+
     /// Classifies the cells of `tile`.
-    pub fn classify(&mut self, of: &Classifier, tile: Block) -> Result<TileContent, SampleError> {
+    pub fn classify(
+        &mut self,
+        of: &Classifier<F>,
+        tile: Block,
+    ) -> Result<TileContent, SampleError> {
         let range = of.tape.range(&of.extent(&tile), &mut self.ranges)?;
         if let Some(value) = of.verdict(range.low, range.high) {
             return Ok(TileContent {
@@ -138,9 +157,9 @@ impl Worker {
     /// Decides a block by fidget's intervals, or goes on with what matters of the function there.
     fn open(
         &mut self,
-        of: &Classifier,
+        of: &Classifier<F>,
         block: &Block,
-        part: Option<&Part>,
+        part: Option<&Part<F>>,
         range: Range,
         edges: &[usize],
         canvas: &mut Canvas,
@@ -180,9 +199,9 @@ impl Worker {
     /// Splits a block, or evaluates its cells when it is of the smallest size.
     fn descend(
         &mut self,
-        of: &Classifier,
+        of: &Classifier<F>,
         block: &Block,
-        part: Option<&Part>,
+        part: Option<&Part<F>>,
         range: Range,
         edges: &[usize],
         canvas: &mut Canvas,
@@ -212,9 +231,9 @@ impl Worker {
     /// Evaluates every cell of a block: in f32 where that is certain enough, else in float64.
     fn evaluate(
         &mut self,
-        of: &Classifier,
+        of: &Classifier<F>,
         block: &Block,
-        part: Option<&Part>,
+        part: Option<&Part<F>>,
         error: f64,
         canvas: &mut Canvas,
     ) -> Result<(), SampleError> {
@@ -259,7 +278,7 @@ impl Worker {
 
     fn evaluate_doubtful(
         &mut self,
-        of: &Classifier,
+        of: &Classifier<F>,
         canvas: &mut Canvas,
     ) -> Result<(), SampleError> {
         if self.doubtful.is_empty() {

@@ -23,15 +23,18 @@ const TOLERANCE: f64 = 1e-8;
 pub enum AdjointError {
     /// The tangent is singular there: the state is at a limit, or a part moves freely.
     Singular,
-    /// The factor does not fit in memory.
-    OutOfMemory,
+    /// The tangent takes more memory than there is, in bytes; 0 where that is not known.
+    OutOfMemory(u64),
+    /// The caller asked to stop.
+    Cancelled,
 }
 
 impl fmt::Display for AdjointError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Singular => "the tangent is singular at this state, so it has no derivative",
-            Self::OutOfMemory => "the factorised tangent does not fit in memory",
+            Self::OutOfMemory(_) => "the factorised tangent does not fit in memory",
+            Self::Cancelled => "the solution was cancelled",
         })
     }
 }
@@ -39,15 +42,18 @@ impl fmt::Display for AdjointError {
 impl std::error::Error for AdjointError {}
 
 /// The adjoint states `Kᵀ μ = g` at an equilibrium under all loads, one for each gradient `g` (of a
-/// number by the positions of all vertices); zero on held coordinates.
+/// number by the positions of all vertices); zero on held coordinates. The tangent may take `memory`
+/// bytes; `stop` is asked between the steps of the work.
 pub fn adjoint(
     problem: &Problem,
     positions: &[Vec3],
     gradients: &[Vec<Vec3>],
+    memory: u64,
+    stop: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<Vec<Vec3>>, AdjointError> {
     let means = Means {
         solver: LinearSolver::Auto,
-        memory: u64::MAX,
+        memory,
     };
     let mut equilibrium = Equilibrium::new(problem, means)?;
     let full = Point::all(1.0);
@@ -61,29 +67,32 @@ pub fn adjoint(
         None,
         &mut unused,
     );
+    if stop() {
+        return Err(AdjointError::Cancelled);
+    }
     let factor = equilibrium.system.factor(0.0)?;
-    let solve = |gradient: &Vec<Vec3>| {
+    let mut solve = |gradient: &Vec<Vec3>| {
         let mut side = equilibrium.system.gather(gradient);
         equilibrium
             .system
-            .solve(&factor, &mut side, true, TOLERANCE, &mut || false)?;
+            .solve(&factor, &mut side, true, TOLERANCE, stop)?;
         if side.iter().all(|x| x.is_finite()) {
             Ok(equilibrium.system.spread(&side))
         } else {
             Err(AdjointError::Singular)
         }
     };
-    gradients.iter().map(solve).collect()
+    gradients.iter().map(&mut solve).collect()
 }
 
 impl From<FactorError> for AdjointError {
     fn from(error: FactorError) -> Self {
         match error {
-            FactorError::Memory(_) => Self::OutOfMemory,
-            FactorError::NotPositive
-            | FactorError::Singular
-            | FactorError::Stalled
-            | FactorError::Cancelled => Self::Singular,
+            FactorError::Memory(bytes) => Self::OutOfMemory(bytes),
+            FactorError::Cancelled => Self::Cancelled,
+            FactorError::NotPositive | FactorError::Singular | FactorError::Stalled => {
+                Self::Singular
+            }
         }
     }
 }

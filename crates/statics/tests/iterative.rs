@@ -8,7 +8,7 @@ use voxsoft_solid::{
     Body, Clamp, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind, Material,
     Membrane, MembraneMaterial, Motion, Problem,
 };
-use voxsoft_statics::{Answer, LinearSolver, Settings, Status, adjoint};
+use voxsoft_statics::{AdjointError, Answer, LinearSolver, Settings, Status, adjoint};
 use voxsoft_voxel::{Grid, tet_mesh};
 
 fn with(linear: LinearSolver) -> Settings {
@@ -164,7 +164,15 @@ fn adjoints_agree() {
         gradient
     };
     let last = answer.positions.len() - 1;
-    let states = adjoint(&problem, &answer.positions, &[one(last, 2), one(3000, 0)]).unwrap();
+    let gradients = [one(last, 2), one(3000, 0)];
+    let states = |memory, stop: &mut dyn FnMut() -> bool| {
+        adjoint(&problem, &answer.positions, &gradients, memory, stop)
+    };
+    let refused = states(1_000_000, &mut || false).unwrap_err();
+    assert!(matches!(refused, AdjointError::OutOfMemory(bytes) if bytes > 1_000_000));
+    let stopped = states(u64::MAX, &mut || true).unwrap_err();
+    assert_eq!(stopped, AdjointError::Cancelled);
+    let states = states(u64::MAX, &mut || false).unwrap();
     let (there, back) = (states[0][3000][0], states[1][last][2]);
     // Each solution leaves 1e-8 of its energy norm; one coordinate may hold a hundred times its share.
     assert!((there - back).abs() < 1e-6 * there.abs(), "{there} {back}");

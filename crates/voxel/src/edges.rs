@@ -32,7 +32,7 @@ impl VoxelLists<'_> {
                 .sum()
         };
         let counts: Vec<usize> = (0..planes).map(count).collect();
-        fill_planes(&counts, |i, edges| {
+        fill_planes(&counts, self.cancel, |i, edges| {
             for j in 0..rows {
                 for w in 0..words {
                     let starts = self.starts(i, j, w);

@@ -66,7 +66,7 @@ pub use grid::{Grid, GridError, MAX_CELLS_PER_AXIS};
 pub use hinges::{Hinge, hinges};
 pub use leaks::{Leak, leaks};
 pub use quality::{Quality, quality};
-pub use stitch::{StitchError, mesh_bytes, tet_mesh};
+pub use stitch::{StitchError, mesh_bytes, tet_mesh, tet_mesh_until};
 pub use tet_mesh::{CavitySurface, TetMesh};
 pub use thickness::{Wall, WallThickness, cavity_walls, wall_thickness};
 pub use unstitched::{Unstitched, unstitched};

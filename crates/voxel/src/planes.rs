@@ -1,4 +1,5 @@
 //! Work that is done plane by plane, on all cores where there are threads.
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Joins what `make` gives for plane 0, 1, …, in this order for any number of threads.
 pub(crate) fn by_plane<T: Send>(
@@ -23,13 +24,14 @@ pub(crate) fn by_plane<T: Send>(
 /// As [`by_plane`] where the number of items of each plane is known: they are written in place.
 ///
 /// A mesh is hundreds of bytes per voxel, and touching new memory is most of the time of making it,
-/// so each list is touched once.
+/// so each list is touched once. Planes that are not begun when `cancel` is set keep default items.
 ///
 /// # Panics
 ///
 /// If `fill` pushes more or fewer items than counted.
 pub(crate) fn fill_planes<T: Clone + Default + Send>(
     counts: &[usize],
+    cancel: &AtomicBool,
     fill: impl Fn(usize, &mut Slots<T>) + Sync + Send,
 ) -> Vec<T> {
     let mut list = vec![T::default(); counts.iter().sum()];
@@ -41,6 +43,9 @@ pub(crate) fn fill_planes<T: Clone + Default + Send>(
         rest = later;
     }
     let work = |(i, mut slots): (usize, Slots<'_, T>)| {
+        if cancel.load(Ordering::Relaxed) {
+            return;
+        }
         fill(i, &mut slots);
         assert_eq!(slots.0.len(), 0, "plane {i} has fewer items than counted");
     };

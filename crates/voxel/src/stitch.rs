@@ -1,6 +1,8 @@
 //! From cells to one conforming mesh: voxels share the vertices, edges and faces they meet at.
 //!
 //! Vertices are found by lattice node, never by position, in a time linear in the cells.
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use thiserror::Error;
 
 use crate::bits::BitGrid;
@@ -33,6 +35,9 @@ pub enum StitchError {
         /// Number of filled cells.
         voxels: u64,
     },
+    /// The caller asked to stop.
+    #[error("meshing was canceled")]
+    Canceled,
 }
 
 /// Bytes of a boundary triangle: in the mesh, in a cavity, and twice with the cavity it faces.
@@ -63,6 +68,19 @@ fn needed_bytes(voxels: u64, nodes: u64, exposed: u64) -> u64 {
 /// [`StitchError`] if nothing is filled, or the mesh needs more than `memory_limit` bytes
 /// (`u64::MAX` for no limit).
 pub fn tet_mesh(grid: &Grid, memory_limit: u64) -> Result<TetMesh, StitchError> {
+    tet_mesh_until(grid, memory_limit, &AtomicBool::new(false))
+}
+
+/// As [`tet_mesh`], but stops soon after `cancel` is set.
+///
+/// # Errors
+///
+/// As [`tet_mesh`], and [`StitchError::Canceled`].
+pub fn tet_mesh_until(
+    grid: &Grid,
+    memory_limit: u64,
+    cancel: &AtomicBool,
+) -> Result<TetMesh, StitchError> {
     let filled = BitGrid::filled(grid);
     let nodes = NodeIndex::new(&filled);
     check_size(&filled, &nodes, memory_limit)?;
@@ -71,8 +89,9 @@ pub fn tet_mesh(grid: &Grid, memory_limit: u64) -> Result<TetMesh, StitchError> 
         grid,
         filled: &filled,
         nodes: &nodes,
+        cancel,
     };
-    Ok(TetMesh {
+    let mesh = TetMesh {
         vertices: lists.vertices(),
         keys: lists.keys(),
         tets: lists.tets(),
@@ -82,7 +101,11 @@ pub fn tet_mesh(grid: &Grid, memory_limit: u64) -> Result<TetMesh, StitchError> 
         voxel_cells: lists.cells(),
         voxel_size: Some(grid.voxel_size()),
         cavities: cavity_surfaces(&lists),
-    })
+    };
+    if cancel.load(Ordering::Relaxed) {
+        return Err(StitchError::Canceled);
+    }
+    Ok(mesh)
 }
 
 fn check_size(filled: &BitGrid, nodes: &NodeIndex, limit: u64) -> Result<(), StitchError> {
@@ -129,7 +152,14 @@ fn cavity_surfaces(lists: &VoxelLists) -> Vec<CavitySurface> {
     if surfaces.is_empty() {
         return surfaces;
     }
-    for (cavity, triangle) in by_plane(lists.grid.shape()[0], |i| lists.facing(i, &labeled)) {
+    let facing = |i| {
+        if lists.cancel.load(Ordering::Relaxed) {
+            Vec::new()
+        } else {
+            lists.facing(i, &labeled)
+        }
+    };
+    for (cavity, triangle) in by_plane(lists.grid.shape()[0], facing) {
         surfaces[cavity as usize].triangles.push(triangle);
     }
     surfaces

@@ -1,4 +1,6 @@
 //! The lists that the mesh of a grid consists of, each in C order of its cells or nodes.
+use std::sync::atomic::AtomicBool;
+
 use crate::bits::{BitGrid, ones};
 use crate::cavities::LabeledCavities;
 use crate::five_tets::{face_triangles, is_even, tets};
@@ -11,36 +13,38 @@ pub(crate) struct VoxelLists<'a> {
     pub grid: &'a Grid,
     pub filled: &'a BitGrid,
     pub nodes: &'a NodeIndex,
+    /// Set by who does not want the lists any more; they are of no use then.
+    pub cancel: &'a AtomicBool,
 }
 
 impl VoxelLists<'_> {
     pub fn keys(&self) -> Vec<[i32; 3]> {
-        Self::list(&self.nodes.bits, 1, |keys, node| {
+        self.list(&self.nodes.bits, 1, |keys, node| {
             keys.push(self.on_lattice(node))
         })
     }
 
     pub fn vertices(&self) -> Vec<[f64; 3]> {
-        Self::list(&self.nodes.bits, 1, |vertices, node| {
+        self.list(&self.nodes.bits, 1, |vertices, node| {
             vertices.push(self.grid.node_position(self.on_lattice(node)));
         })
     }
 
     pub fn cells(&self) -> Vec<[i32; 3]> {
-        Self::list(self.filled, 1, |cells, cell| {
+        self.list(self.filled, 1, |cells, cell| {
             cells.push(self.on_lattice(cell))
         })
     }
 
     pub fn parts(&self) -> Vec<u8> {
-        Self::list(self.filled, 5, |parts, cell| {
+        self.list(self.filled, 5, |parts, cell| {
             let part = self.grid.get(cell);
             (0..5).for_each(|_| parts.push(part));
         })
     }
 
     pub fn tets(&self) -> Vec<[i32; 4]> {
-        Self::list(self.filled, 5, |list, cell| {
+        self.list(self.filled, 5, |list, cell| {
             let corners = self.corners(cell);
             for tet in tets(is_even(self.on_lattice(cell))) {
                 list.push(tet.map(|c| corners[c]));
@@ -52,7 +56,7 @@ impl VoxelLists<'_> {
     pub fn triangles(&self) -> Vec<[i32; 3]> {
         let planes = 0..self.grid.shape()[0];
         let counts: Vec<usize> = planes.map(|i| 2 * exposed_faces(self.filled, i)).collect();
-        fill_planes(&counts, |i, triangles| {
+        fill_planes(&counts, self.cancel, |i, triangles| {
             self.for_each_exposed(i, |cell, faces| {
                 let corners = self.corners(cell);
                 let even = is_even(self.on_lattice(cell));
@@ -83,6 +87,7 @@ impl VoxelLists<'_> {
 
     /// A list of `each` items per member of a set of cells or nodes.
     fn list<T: Clone + Default + Send>(
+        &self,
         bits: &BitGrid,
         each: usize,
         push: impl Fn(&mut Slots<T>, [usize; 3]) + Sync + Send,
@@ -90,7 +95,7 @@ impl VoxelLists<'_> {
         let counts: Vec<usize> = (0..bits.shape()[0])
             .map(|i| each * bits.count_in_plane(i))
             .collect();
-        fill_planes(&counts, |i, slots| {
+        fill_planes(&counts, self.cancel, |i, slots| {
             for j in 0..bits.shape()[1] {
                 for (w, &word) in bits.row(i, j).iter().enumerate() {
                     for bit in ones(word) {

@@ -94,12 +94,9 @@ def find_equilibrium(
         # Singular up to rounding is all that the factor shows of it.
         report["status"] = "mechanism"
     if report["status"] == "out-of-memory":
-        needed = report["needed_bytes"]
-        size = f"takes about {needed / 1e9:.1f} GB, and" if needed else "does not fit:"
         raise SimulationError(
             "solver.method",
-            f"the tangent of {len(setup.mesh.vertices)} vertices {size} "
-            f"{memory_limit() / 1e9:.1f} GB of memory are free",
+            too_large_a_tangent(len(setup.mesh.vertices), report["needed_bytes"]),
             'use larger voxels, or method = "xpbd"',
         )
     used = {"method": "statics", "way": control, "tolerance": asked["tolerance"]}
@@ -108,6 +105,13 @@ def find_equilibrium(
     if control == "volume":
         used["volume_ratio"] = asked["ratio"]
     return used, report
+
+
+def too_large_a_tangent(vertices: int, needed: int) -> str:
+    """Say that a tangent of so many vertices takes `needed` bytes, or is too large if that is 0."""
+    size = f"takes about {needed / 1e9:.1f} GB, and" if needed else "does not fit:"
+    free = f"{memory_limit() / 1e9:.1f} GB of memory are free"
+    return f"the tangent of {vertices} vertices {size} {free}"
 
 
 def sentence(report: dict[str, Any]) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft._memory import memory_limit
 from voxsoft.design import Design, Objective
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.variation import number_of, with_number
@@ -19,6 +20,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.simulation.differences import STENCIL, STEP
+from voxsoft.simulation.equilibrium import too_large_a_tangent
 from voxsoft.simulation.motion import held_axes, held_positions
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
@@ -127,10 +129,15 @@ def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) ->
     Raises
     ------
     SimulationError
-        The tangent is singular.
+        The tangent is singular, or does not fit in memory.
     """
     try:
-        return _core.adjoint(problem, positions, slopes)
+        return _core.adjoint(problem, positions, slopes, memory=memory_limit())
+    except MemoryError as error:
+        (needed,) = error.args
+        raise SimulationError(
+            "gradient", too_large_a_tangent(len(positions), needed), "use larger voxels"
+        ) from None
     except ArithmeticError as error:
         raise SimulationError(
             "gradient", str(error), "hold the body better, or go a little back from the limit"
