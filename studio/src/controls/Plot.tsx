@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
+import { formatNumber } from "./units";
 import "uplot/dist/uPlot.min.css";
 
 export interface Series {
@@ -103,12 +104,13 @@ function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Op
     stroke: css("--muted"),
     grid: { stroke: css("--line"), width: 1 },
     ticks: { stroke: css("--line"), width: 1, size: 4 },
+    values: (_plot, ticks) => ticks.map((tick) => (tick === null ? "" : formatNumber(tick, 3))),
   });
   return {
     ...sizeOf(element),
     padding: [20, 12, 0, 0],
     scales: { x: { time: false }, y: { distr: y.log ? 3 : 1 } },
-    axes: [axis(x.label, 28), axis(y.label, 46)],
+    axes: [axis(x.label, 28), axis(y.label, 48)],
     cursor: {
       points: { size: 6 },
       ...(group ? { sync: { key: group } } : {}),

@@ -17,6 +17,10 @@ function pane(
 }
 
 export const PANES: readonly PaneDefinition[] = [
+  pane("view", "View", () => import("../view/ViewPane")),
+  pane("run", "Run", () => import("../run/RunPane")),
+  pane("probes", "Probes", () => import("../run/ProbesPane")),
+  pane("energy", "Energy and residual", () => import("../run/EnergyPane")),
   pane("body", "Body", () => import("./body/BodyPane")),
   pane("log", "Log", () => import("./log/LogPane")),
 ];

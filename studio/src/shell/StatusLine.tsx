@@ -15,7 +15,10 @@ export function StatusLine() {
         data-testid="sentence"
         aria-live="polite"
       >
-        {stat?.sentence ?? "Open a design to begin."}
+        {stat?.sentence ||
+          (body
+            ? "Ready. Space lets time run; drag the body to pull on it."
+            : "Open a design to begin.")}
       </span>
       {running > 0 && (
         <span className="badge good">{running === 1 ? "1 job runs" : `${running} jobs run`}</span>

@@ -97,6 +97,14 @@ export function build(api: DockviewApi, mode: Mode, width: number, height: numbe
       i === 0 ? { initialHeight: bottomHeight } : {},
     );
   }
+  // Each split has taken from all columns: give them their widths again.
+  const set = (groups: string[][], size: { width?: number; height?: number }) => {
+    const id = groups[0]?.[0];
+    if (id) api.getPanel(id)?.api.setSize(size);
+  };
+  set(left, { width: leftWidth });
+  set(right, { width: rightWidth });
+  set(bottom, { height: bottomHeight });
   api.getPanel(anchor)?.api.setActive();
 }
 

@@ -7,7 +7,7 @@ import { apply, toast, useStudio } from "./studio";
 export interface Stage {
   topology(topology: Topology): void;
   frame(frame: Frame): void;
-  smooth(smooth: Smooth): void;
+  smoothSurface(smooth: Smooth): void;
 }
 
 let engine: Engine | null = null;
@@ -47,7 +47,7 @@ export function connect(chosen: Engine): void {
     },
     smooth(smooth) {
       lastSmooth = smooth;
-      stage?.smooth(smooth);
+      stage?.smoothSurface(smooth);
     },
     link(link) {
       useStudio.setState({ link });
@@ -59,7 +59,7 @@ export function connect(chosen: Engine): void {
 export function present(next: Stage): void {
   stage = next;
   if (lastTopology) next.topology(lastTopology);
-  if (lastSmooth) next.smooth(lastSmooth);
+  if (lastSmooth) next.smoothSurface(lastSmooth);
   if (lastFrame) next.frame(lastFrame);
 }
 

@@ -1,0 +1,48 @@
+import { Empty } from "../controls/Choice";
+import { Plot } from "../controls/Plot";
+import { useStudio } from "../store/studio";
+import { seekTo } from "./seek";
+
+const ENERGY = [
+  { label: "elastic", color: "--series-1" },
+  { label: "kinetic", color: "--series-2" },
+];
+const RESIDUAL = [{ label: "residual over load", color: "--series-3" }];
+
+/** How the body comes to rest: energies, and what is left of the forces over the load. */
+export default function EnergyPane() {
+  useStudio((state) => state.plotted);
+  const history = useStudio((state) => state.history);
+  const time = useStudio((state) => (state.stat?.state === "past" ? state.stat.time : null));
+  if (history.length === 0) {
+    return (
+      <Empty title="No time has passed yet">
+        <p>Let time run: energies and the residual are plotted here.</p>
+      </Empty>
+    );
+  }
+  const [times = [], residual = [], elastic = [], kinetic = []] = history.columns;
+  const positive = residual.map((x) => (x > 0 ? x : Number.NaN));
+  const milli = (column: number[]) => column.map((x) => x * 1000);
+  const common = { x: { label: "time [s]" }, group: "time", mark: time, onSeek: seekTo };
+  return (
+    <div className="energy">
+      <Plot
+        {...common}
+        label="Energies over time"
+        testId="plot-energy"
+        y={{ label: "energy [mJ]" }}
+        series={ENERGY}
+        data={[times, milli(elastic), milli(kinetic)]}
+      />
+      <Plot
+        {...common}
+        label="Residual over time"
+        testId="plot-residual"
+        y={{ label: "residual", log: true }}
+        series={RESIDUAL}
+        data={[times, positive]}
+      />
+    </div>
+  );
+}

@@ -1,0 +1,159 @@
+import { Button, Empty, Progress, Section, Select } from "../controls/Choice";
+import { NumberField } from "../controls/NumberField";
+import { factorOf, formatNumber, formatQuantity } from "../controls/units";
+import type { BodyLoad } from "../protocol";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+import { setView, useView } from "../store/view";
+import { viewport } from "../view/instance";
+import "./run.css";
+
+const METHODS = [
+  { value: "auto", label: "Automatic" },
+  { value: "statics", label: "Statics (Newton)" },
+  { value: "xpbd", label: "XPBD (relaxation)" },
+];
+
+/** The simulation by hand: loads, pulls, solver, and where it stands. */
+export default function RunPane() {
+  const body = useStudio((state) => state.body);
+  if (!body) {
+    return (
+      <Empty title="Nothing to simulate yet">
+        <p>
+          Open a design. Its loads become sliders here, and the body can be pulled with the mouse.
+        </p>
+      </Empty>
+    );
+  }
+  return (
+    <div className="pane">
+      <State />
+      <Section title="Loads">
+        {body.loads.length === 0 && (
+          <p className="muted">The design has no loads; pull on the body instead.</p>
+        )}
+        {body.loads.map((load) => (
+          <Load key={load.index} load={load} />
+        ))}
+      </Section>
+      <Pulls />
+      <Solver />
+    </div>
+  );
+}
+
+function State() {
+  const stat = useStudio((state) => state.stat);
+  if (!stat) return null;
+  const facts: [string, string][] = [
+    ["Real time", `${formatNumber(stat.real_time_factor, 3)} ×`],
+    ["Substep", `${formatNumber(stat.step_ms, 3)} ms`],
+    ["Residual", stat.residual === null ? "–" : formatNumber(stat.residual, 3)],
+    ["Elastic energy", stat.elastic === null ? "–" : formatQuantity(stat.elastic, "J", 3)],
+    ["Kinetic energy", stat.kinetic === null ? "–" : formatQuantity(stat.kinetic, "J", 3)],
+    ["Stored frames", `${stat.frames_stored} (${formatNumber(stat.bytes_stored / 1e6, 3)} MB)`],
+  ];
+  return (
+    <Section title="State">
+      <p className={`run-sentence is-${stat.state}`}>{stat.sentence}</p>
+      {stat.progress !== null && <Progress label="Solving" done={stat.progress} total={1} />}
+      <dl className="facts">
+        {facts.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+      </dl>
+    </Section>
+  );
+}
+
+function Load(props: { load: BodyLoad }) {
+  const { load } = props;
+  const value = useStudio((state) => state.stat?.loads[load.index] ?? load.value);
+  return (
+    <NumberField
+      label={load.label}
+      title={`${load.kind}; the design says ${formatNumber(load.value / load.factor, 4)} ${load.unit}`}
+      value={value}
+      unit={siOf(load)}
+      min={load.min}
+      max={load.max}
+      fallback={load.value}
+      slider
+      onChange={(next) => send({ t: "load", index: load.index, value: next })}
+    />
+  );
+}
+
+// The field speaks SI units; a load names the unit that it is shown in.
+function siOf(load: BodyLoad): string {
+  const known: Record<string, string> = {
+    kPa: "Pa",
+    N: "N",
+    mN: "N",
+    "m/s^2": "m/s^2",
+    "m/s²": "m/s^2",
+    mm: "m",
+  };
+  return known[load.unit] ?? (factorOf(load.unit) === 1 ? load.unit : "1");
+}
+
+function Pulls() {
+  const stiffness = useView((view) => view.stiffness);
+  const grabs = useStudio((state) => state.stat?.grabs);
+  return (
+    <Section title="Pulling by hand">
+      <NumberField
+        label="Spring"
+        value={stiffness}
+        unit="N/m"
+        min={1}
+        max={1000}
+        slider
+        fallback={50}
+        onChange={(value) => setView({ stiffness: Math.max(value, 1e-6) })}
+      />
+      {!grabs?.length && (
+        <p className="muted">
+          Press on the body and drag. Hold Shift when letting go to leave the spring pinned.
+        </p>
+      )}
+      {grabs?.map((grab) => (
+        <div key={grab.id} className="facts-row" data-testid="grab">
+          <span>Vertex {grab.vertex}</span>
+          <span>
+            {formatNumber(Math.hypot(...grab.force), 3)} N, {formatQuantity(grab.stretch, "m", 3)}{" "}
+            <Button kind="quiet" onClick={() => viewport().grabs.release(grab.id)}>
+              Release
+            </Button>
+          </span>
+        </div>
+      ))}
+    </Section>
+  );
+}
+
+function Solver() {
+  const solver = useStudio((state) => state.stat?.solver ?? "auto");
+  return (
+    <Section title="State at rest">
+      <Select
+        label="Solver"
+        value={solver}
+        options={METHODS}
+        onChange={(method) => send({ t: "solver", method: method as "auto" | "statics" | "xpbd" })}
+      />
+      <div className="run-buttons">
+        <Button kind="primary" onClick={() => send({ t: "rest" })}>
+          Solve for rest
+        </Button>
+        <Button onClick={() => send({ t: "job_start", spec: { kind: "run" } })}>
+          Keep as a run
+        </Button>
+      </div>
+    </Section>
+  );
+}

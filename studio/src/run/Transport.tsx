@@ -1,0 +1,104 @@
+import { useEffect, useRef } from "react";
+import { Button } from "../controls/Choice";
+import { stepFrames, togglePlay } from "../shell/actions";
+import { Icon } from "../shell/icons";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+import "./run.css";
+
+/** Time: play, step, reset, rest, and the stored frames to go back to. */
+export function Transport() {
+  const stat = useStudio((state) => state.stat);
+  const body = useStudio((state) => state.body);
+  const wanted = useRef<number | null>(null);
+  const asked = useRef<number | null>(null);
+  useEffect(
+    () => () => {
+      if (asked.current !== null) cancelAnimationFrame(asked.current);
+    },
+    [],
+  );
+  if (!body) return null;
+  const playing = stat?.state === "playing";
+  const past = stat?.state === "past";
+  const solving = stat?.state === "solving";
+  const first = stat?.first_frame ?? 0;
+  const last = stat?.last_frame ?? 0;
+  // Drags move faster than answers come: only the newest wish is sent, once for each picture.
+  const seek = (frame: number) => {
+    wanted.current = frame;
+    asked.current ??= requestAnimationFrame(() => {
+      asked.current = null;
+      if (wanted.current !== null) send({ t: "seek", frame: wanted.current });
+      wanted.current = null;
+    });
+  };
+  return (
+    <div className="transport" role="toolbar" aria-label="Time" data-testid="transport">
+      <Button
+        icon
+        kind="primary"
+        label={playing ? "Pause (Space)" : "Play (Space)"}
+        testId="play"
+        disabled={solving}
+        onClick={togglePlay}
+      >
+        <Icon name={playing ? "pause" : "play"} />
+      </Button>
+      <Button
+        icon
+        kind="quiet"
+        label="One frame forward (→)"
+        testId="step"
+        disabled={playing || solving}
+        onClick={() => stepFrames(1)}
+      >
+        <Icon name="step" />
+      </Button>
+      <Button
+        icon
+        kind="quiet"
+        label="Back to the unloaded shape (0)"
+        testId="reset"
+        disabled={solving}
+        onClick={() => send({ t: "reset" })}
+      >
+        <Icon name="reset" />
+      </Button>
+      <Button
+        kind="quiet"
+        label="Solve for the state at rest (R)"
+        testId="rest"
+        disabled={solving}
+        onClick={() => send({ t: "rest" })}
+      >
+        <Icon name="rest" /> Rest
+      </Button>
+      <input
+        className="scrubber"
+        type="range"
+        aria-label="Stored frames"
+        data-testid="scrubber"
+        min={first}
+        max={Math.max(first, last)}
+        step={1}
+        value={stat?.frame ?? 0}
+        disabled={last <= first}
+        onChange={(event) => seek(Number(event.target.value))}
+      />
+      <button
+        type="button"
+        className={`live${past ? "" : " on"}`}
+        data-testid="live"
+        aria-pressed={!past}
+        title="Back to the present (L)"
+        onClick={() => send({ t: "live" })}
+      >
+        <i /> LIVE
+      </button>
+      <output className="clock" data-testid="clock">
+        {(stat?.time ?? 0).toFixed(3)} s
+      </output>
+    </div>
+  );
+}

@@ -1,0 +1,121 @@
+// How the body is shown. Kept between visits; nothing here needs a round trip but the field
+// and the change between surface and tetrahedra.
+import { create } from "zustand";
+import type { ColormapName } from "../view/colormaps";
+import { keepAs, kept } from "./page";
+
+export type Appearance = "voxels" | "smooth" | "tets" | "wireframe";
+export type Coloring = "field" | "parts";
+export type RangeMode = "auto" | "locked" | "symmetric";
+export type SectionAxis = "off" | "x" | "y" | "z";
+
+export interface View {
+  appearance: Appearance;
+  coloring: Coloring;
+  field: number;
+  colormap: ColormapName;
+  /** Flat steps of the color map; 0 for a smooth one. */
+  bands: number;
+  range: RangeMode;
+  /** Limits of a locked range, in the field's SI unit. */
+  low: number;
+  high: number;
+  edges: boolean;
+  ghost: boolean;
+  symbols: boolean;
+  cavities: boolean;
+  extremes: boolean;
+  grid: boolean;
+  orthographic: boolean;
+  exaggeration: number;
+  section: SectionAxis;
+  /** Where the section is, as a share of the body's bounds. */
+  sectionAt: number;
+  sectionFlipped: boolean;
+  tape: boolean;
+  /** Spring by which the mouse pulls, N/m. */
+  stiffness: number;
+}
+
+const KEY = "voxsoft.view";
+// Lasting taste is kept; what belongs to one body is not.
+const KEPT = [
+  "colormap",
+  "bands",
+  "edges",
+  "symbols",
+  "grid",
+  "orthographic",
+  "stiffness",
+] as const;
+
+export const useView = create<View>(() => ({
+  appearance: "voxels",
+  coloring: "field",
+  field: 0,
+  colormap: "viridis",
+  bands: 0,
+  range: "auto",
+  low: 0,
+  high: 1,
+  edges: true,
+  ghost: false,
+  symbols: true,
+  cavities: false,
+  extremes: false,
+  grid: true,
+  orthographic: false,
+  exaggeration: 1,
+  section: "off",
+  sectionAt: 0.5,
+  sectionFlipped: false,
+  tape: false,
+  stiffness: 50,
+  ...kept<View>(KEY),
+}));
+
+useView.subscribe((view) => {
+  keepAs(KEY, Object.fromEntries(KEPT.map((key) => [key, view[key]])));
+});
+
+export function setView(change: Partial<View>): void {
+  useView.setState(change);
+}
+
+/** What the view tells the panes a few times a second: what is drawn, not how. */
+export interface Shown {
+  frame: number;
+  time: number;
+  fps: number;
+  /** Milliseconds from a command to the first picture that knows of it. */
+  latency: number | null;
+  /** Range of colors, and that of the values in the frame, SI. */
+  low: number;
+  high: number;
+  min: number;
+  max: number;
+  /** Length of the scale bar: meters, and pixels. */
+  barLength: number;
+  barPixels: number;
+  diverged: boolean;
+  tapeLength: number | null;
+  hover: { x: number; y: number; vertex: number; value: number } | null;
+  recording: "webm" | "gif" | null;
+}
+
+export const useShown = create<Shown>(() => ({
+  frame: 0,
+  time: 0,
+  fps: 0,
+  latency: null,
+  low: 0,
+  high: 1,
+  min: 0,
+  max: 1,
+  barLength: 0,
+  barPixels: 0,
+  diverged: false,
+  tapeLength: null,
+  hover: null,
+  recording: null,
+}));

@@ -1,0 +1,97 @@
+import { useState } from "react";
+import { Select } from "../controls/Choice";
+import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "../controls/units";
+import { useStudio } from "../store/studio";
+import { type RangeMode, setView, useShown, useView } from "../store/view";
+import { gradient } from "./colormaps";
+
+const SHARES = [1, 0.75, 0.5, 0.25, 0];
+const RANGES: { value: RangeMode; label: string }[] = [
+  { value: "auto", label: "auto range" },
+  { value: "symmetric", label: "symmetric" },
+  { value: "locked", label: "locked" },
+];
+
+/** The colors with their values; the ends of a locked range can be typed. */
+export function Legend() {
+  const { coloring, colormap, bands, range, field } = useView();
+  const low = useShown((shown) => shown.low);
+  const high = useShown((shown) => shown.high);
+  const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
+  const [shut, setShut] = useState(false);
+  if (coloring !== "field" || !about) return null;
+  const unit = shownUnit(about.unit);
+  const factor = factorOf(unit);
+  const lock = (mode: RangeMode) =>
+    setView(mode === "locked" ? { range: mode, low, high } : { range: mode });
+  return (
+    <aside className="legend" aria-label={`Colors: ${about.title}`} data-testid="legend">
+      <button
+        type="button"
+        className="legend-title"
+        aria-expanded={!shut}
+        onClick={() => setShut(!shut)}
+      >
+        {about.title}
+        {unitText(unit) && <span className="muted"> {unitText(unit)}</span>}
+      </button>
+      {!shut && (
+        <>
+          <div className="legend-scale">
+            <div className="legend-bar" style={{ background: gradient(colormap, bands) }} />
+            <div className="legend-ticks">
+              {SHARES.map((share) => {
+                const value = low + (high - low) * share;
+                const end = share === 0 ? "low" : share === 1 ? "high" : null;
+                if (range === "locked" && end) {
+                  return (
+                    <Limit
+                      key={share}
+                      label={end === "low" ? "Lowest value" : "Highest value"}
+                      value={value}
+                      unit={unit}
+                      onChange={(next) => setView({ [end]: next })}
+                    />
+                  );
+                }
+                return <span key={share}>{formatNumber(value / factor, 3)}</span>;
+              })}
+            </div>
+          </div>
+          <Select
+            bare
+            label="Range of colors"
+            value={range}
+            options={RANGES}
+            onChange={(mode) => lock(mode as RangeMode)}
+          />
+        </>
+      )}
+    </aside>
+  );
+}
+
+function Limit(props: {
+  label: string;
+  value: number;
+  unit: string;
+  onChange(value: number): void;
+}) {
+  const [draft, setDraft] = useState<string | null>(null);
+  const commit = () => {
+    if (draft === null) return;
+    const read = parseQuantity(draft.replaceAll("−", "-"), props.unit);
+    if ("value" in read) props.onChange(read.value);
+    setDraft(null);
+  };
+  return (
+    <input
+      className="input legend-limit"
+      aria-label={props.label}
+      value={draft ?? formatNumber(props.value / factorOf(props.unit), 4)}
+      onChange={(event) => setDraft(event.target.value)}
+      onBlur={commit}
+      onKeyDown={(event) => event.key === "Enter" && commit()}
+    />
+  );
+}

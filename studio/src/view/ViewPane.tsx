@@ -1,0 +1,181 @@
+import { useEffect, useRef } from "react";
+import { Button, Empty } from "../controls/Choice";
+import { formatNumber, formatQuantity } from "../controls/units";
+import { Transport } from "../run/Transport";
+import { openDocument } from "../shell/actions";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+import { setView, useShown, useView } from "../store/view";
+import { Cube } from "./Cube";
+import { viewport } from "./instance";
+import { Legend } from "./Legend";
+import { ViewBar } from "./ViewBar";
+import "./view.css";
+
+export default function ViewPane() {
+  const box = useRef<HTMLDivElement>(null);
+  const view = viewport();
+  const body = useStudio((state) => state.body);
+  const document = useStudio((state) => state.document);
+  useEffect(() => {
+    if (!box.current) return;
+    view.attach(box.current);
+    return () => view.detach();
+  }, [view]);
+  return (
+    <div className="view-pane">
+      <div className="view-stage" ref={box}>
+        {body ? (
+          <>
+            <ViewBar view={view} />
+            <Legend />
+            <Cube view={view} />
+            <ScaleBar />
+            <Badges />
+            <Hover />
+            <Picked />
+            <Banner />
+          </>
+        ) : (
+          !document && <Welcome />
+        )}
+      </div>
+      <Transport />
+    </div>
+  );
+}
+
+/** Before anything is open: the designs to start from. */
+function Welcome() {
+  const templates = useStudio((state) => state.hello?.templates);
+  return (
+    <div className="welcome" data-testid="welcome">
+      <Empty title="Start from a design">
+        <p>
+          Or drop a .toml, .stl, .obj or .npy file, or a run folder (.zip), anywhere on the page.
+        </p>
+        <div className="welcome-grid">
+          {templates?.map((template) => (
+            <button
+              key={template.name}
+              type="button"
+              className="welcome-card"
+              data-testid={`template-${template.name}`}
+              onClick={() => openDocument({ t: "open", what: "template", name: template.name })}
+            >
+              <strong>{template.name}</strong>
+              <span className="muted">{template.title}</span>
+            </button>
+          ))}
+        </div>
+      </Empty>
+    </div>
+  );
+}
+
+function ScaleBar() {
+  const { barLength, barPixels } = useShown();
+  if (!(barPixels > 0)) return null;
+  return (
+    <div className="scale-bar" style={{ width: barPixels }} aria-hidden="true">
+      {formatQuantity(barLength, "m", 3)}
+    </div>
+  );
+}
+
+function Badges() {
+  const exaggeration = useView((view) => view.exaggeration);
+  const tape = useView((view) => view.tape);
+  const recording = useShown((shown) => shown.recording);
+  const fps = useShown((shown) => shown.fps);
+  const latency = useShown((shown) => shown.latency);
+  const playing = useStudio((state) => state.stat?.state === "playing");
+  return (
+    <div className="badges">
+      {exaggeration !== 1 && (
+        <button
+          type="button"
+          className="badge warn"
+          data-testid="exaggeration-badge"
+          onClick={() => setView({ exaggeration: 1 })}
+        >
+          deformation × {formatNumber(exaggeration, 3)}
+        </button>
+      )}
+      {tape && <span className="badge">tape: click two points of the body, Esc ends</span>}
+      {recording && <span className="badge bad">● recording</span>}
+      {playing && fps > 0 && (
+        <span className="badge" data-testid="fps">
+          {fps} frames/s{latency !== null ? ` · ${Math.round(latency)} ms behind the mouse` : ""}
+        </span>
+      )}
+    </div>
+  );
+}
+
+function Hover() {
+  const hover = useShown((shown) => shown.hover);
+  const field = useView((view) => view.field);
+  const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
+  if (!hover || !about) return null;
+  return (
+    <div className="hover" style={{ transform: `translate(${hover.x + 14}px, ${hover.y + 16}px)` }}>
+      {formatQuantity(hover.value, about.unit)}
+    </div>
+  );
+}
+
+function Picked() {
+  const picked = useStudio((state) => state.picked);
+  const fields = useStudio((state) => state.hello?.fields);
+  if (!picked) return null;
+  const place = (point: readonly number[]) =>
+    point.map((x) => formatNumber(x * 1000, 4)).join(", ");
+  return (
+    <aside className="picked" data-testid="picked" aria-label="Values at a vertex">
+      <header>
+        <strong>Vertex {picked.vertex}</strong>
+        <Button
+          icon
+          kind="quiet"
+          label="Close"
+          onClick={() => useStudio.setState({ picked: null })}
+        >
+          ×
+        </Button>
+      </header>
+      <dl className="facts">
+        <div>
+          <dt>At rest</dt>
+          <dd>{place(picked.rest)} mm</dd>
+        </div>
+        <div>
+          <dt>Now</dt>
+          <dd>{place(picked.position)} mm</dd>
+        </div>
+        {picked.values.map((value) => (
+          <div key={value.field}>
+            <dt>{fields?.find((one) => one.id === value.field)?.title ?? value.name}</dt>
+            <dd>{value.value === null ? "–" : formatQuantity(value.value, value.unit)}</dd>
+          </div>
+        ))}
+      </dl>
+      <Button testId="plot-picked" onClick={() => send({ t: "probe", vertex: picked.vertex })}>
+        Plot over time
+      </Button>
+    </aside>
+  );
+}
+
+/** Says in the picture that what it shows has diverged; a healthy lamp beside it would lie. */
+function Banner() {
+  const diverged = useShown((shown) => shown.diverged);
+  const stat = useStudio((state) => state.stat);
+  if (!diverged && stat?.state !== "diverged") return null;
+  return (
+    <div className="view-banner" role="alert" data-testid="diverged">
+      <strong>Diverged.</strong> <span>{stat?.sentence}</span>
+      <Button onClick={() => send({ t: "reset" })}>Back to the unloaded shape</Button>
+    </div>
+  );
+}

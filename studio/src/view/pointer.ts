@@ -1,0 +1,116 @@
+// What the mouse does: turn, move, zoom, pull, pick, measure.
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+import { setView, useView } from "../store/view";
+import type { Hit } from "./pick";
+import type { Viewport } from "./viewport";
+
+// A press that moves less than this, in pixels, is a click.
+const STILL = 4;
+
+type Gesture = { kind: "turn" | "move" } | { kind: "maybe-pull"; hit: Hit } | { kind: "pull" };
+
+export function listen(view: Viewport): void {
+  const canvas = view.renderer.domElement;
+  let gesture: Gesture | null = null;
+  let start = { x: 0, y: 0 };
+  let last = { x: 0, y: 0 };
+
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus({ preventScroll: true });
+    canvas.setPointerCapture(event.pointerId);
+    start = last = { x: event.clientX, y: event.clientY };
+    const hit = event.button === 0 && !event.altKey ? view.hit(event.clientX, event.clientY) : null;
+    if (event.button === 1 || (event.button === 0 && event.shiftKey && !hit))
+      gesture = { kind: "move" };
+    else if (hit) gesture = { kind: "maybe-pull", hit };
+    else gesture = { kind: "turn" };
+    event.preventDefault();
+  });
+
+  canvas.addEventListener("pointermove", (event) => {
+    const [dx, dy] = [event.clientX - last.x, event.clientY - last.y];
+    last = { x: event.clientX, y: event.clientY };
+    if (!gesture) {
+      view.hoverOver({ x: event.clientX, y: event.clientY });
+      return;
+    }
+    if (gesture.kind === "turn") view.rig.turn(dx, dy);
+    else if (gesture.kind === "move") view.rig.move(dx, dy);
+    else if (gesture.kind === "maybe-pull") {
+      const far = Math.hypot(event.clientX - start.x, event.clientY - start.y);
+      if (far < STILL) return;
+      if (mayPull()) {
+        const mesh = view.shownMesh();
+        if (mesh)
+          view.grabs.begin(gesture.hit.vertex, mesh.place(gesture.hit.vertex, 1), view.rig.toEye);
+        view.grabs.move(view.ray(event.clientX, event.clientY));
+        gesture = { kind: "pull" };
+        canvas.style.cursor = "grabbing";
+        if (useStudio.getState().stat?.state !== "playing") send({ t: "play" });
+      } else gesture = { kind: "turn" };
+    } else view.grabs.move(view.ray(event.clientX, event.clientY));
+    view.request();
+  });
+
+  const finish = (event: PointerEvent) => {
+    if (gesture?.kind === "pull") view.grabs.end(event.shiftKey);
+    else if (gesture?.kind === "maybe-pull") clicked(view, gesture.hit);
+    gesture = null;
+    canvas.style.cursor = "";
+    view.request();
+  };
+  canvas.addEventListener("pointerup", finish);
+  canvas.addEventListener("pointercancel", finish);
+  canvas.addEventListener("pointerleave", () => {
+    if (!gesture) view.hoverOver(null);
+  });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const clicks = event.deltaMode === 1 ? event.deltaY / 3 : event.deltaY / 100;
+      if (view.grabs.holding) {
+        const depth = -clicks * 0.02 * (canvas.clientHeight / view.rig.pixelsPerMeter);
+        view.grabs.deeper(depth, view.ray(event.clientX, event.clientY));
+      } else {
+        const rect = canvas.getBoundingClientRect();
+        const x = ((event.clientX - rect.left) / rect.width) * 2 - 1;
+        const y = 1 - ((event.clientY - rect.top) / rect.height) * 2;
+        view.rig.zoom(1.12 ** clicks, x, y);
+      }
+      view.request();
+    },
+    { passive: false },
+  );
+
+  canvas.addEventListener("dblclick", (event) => {
+    const hit = view.hit(event.clientX, event.clientY);
+    if (hit) view.rig.turnAbout(hit.point);
+    view.request();
+  });
+
+  addEventListener("keydown", (event) => {
+    if (event.key !== "Escape") return;
+    if (view.grabs.holding) {
+      view.grabs.end(false);
+      gesture = null;
+    } else if (useView.getState().tape) setView({ tape: false });
+    view.request();
+  });
+}
+
+// Pulling needs a present to pull on, in the place where it is drawn.
+function mayPull(): boolean {
+  const state = useStudio.getState().stat?.state;
+  const view = useView.getState();
+  const moving = state === "playing" || state === "paused" || state === "at-rest";
+  return moving && !view.tape && view.exaggeration === 1 && view.appearance !== "smooth";
+}
+
+function clicked(view: Viewport, hit: Hit): void {
+  if (useView.getState().tape) view.tape.add(hit);
+  else send({ t: "pick", vertex: hit.vertex });
+}

@@ -1,0 +1,82 @@
+// The smooth surface of the shapes, at rest, with normals of its own.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  GLSL3,
+  Group,
+  type IUniform,
+  Mesh,
+  ShaderMaterial,
+  type Vector4,
+} from "three";
+import type { Smooth } from "../engine/frames";
+import type { View } from "../store/view";
+
+const VERTEX = /* glsl */ `
+out vec3 vNormal;
+out vec3 vWorld;
+void main() {
+  vWorld = position;
+  vNormal = normalMatrix * normal;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}
+`;
+
+const FRAGMENT = /* glsl */ `
+precision highp float;
+in vec3 vNormal;
+in vec3 vWorld;
+uniform vec3 uOwn;
+uniform vec4 uPlane;
+uniform float uSection;
+out vec4 color;
+void main() {
+  if (uSection > 0.5 && dot(uPlane.xyz, vWorld) > uPlane.w) discard;
+  vec3 normal = normalize(vNormal);
+  if (!gl_FrontFacing) normal = -normal;
+  float key = max(0.0, dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
+  float rim = pow(1.0 - max(0.0, normal.z), 3.0);
+  vec3 base = gl_FrontFacing ? uOwn : uOwn * 0.55;
+  color = vec4(base * (0.58 + 0.46 * key) + 0.10 * rim, 1.0);
+}
+`;
+
+export class SmoothMesh {
+  readonly group = new Group();
+  private readonly geometry = new BufferGeometry();
+  private readonly material: ShaderMaterial;
+
+  constructor(smooth: Smooth, section: { plane: IUniform<Vector4>; section: IUniform<number> }) {
+    this.geometry.setAttribute("position", new BufferAttribute(smooth.vertices, 3));
+    this.geometry.setIndex(new BufferAttribute(smooth.triangles, 1));
+    this.geometry.computeVertexNormals();
+    this.material = new ShaderMaterial({
+      glslVersion: GLSL3,
+      vertexShader: VERTEX,
+      fragmentShader: FRAGMENT,
+      side: DoubleSide,
+      uniforms: {
+        uPlane: section.plane,
+        uSection: section.section,
+        uOwn: { value: new Color("#e8b88a") },
+      },
+    });
+    const mesh = new Mesh(this.geometry, this.material);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 2;
+    this.group.add(mesh);
+  }
+
+  style(_view: View, colors: { parts: readonly string[] }, visible: boolean): void {
+    (this.material.uniforms.uOwn!.value as Color).set(colors.parts[0] ?? "#e8b88a");
+    this.group.visible = visible;
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    this.geometry.dispose();
+    this.material.dispose();
+  }
+}

@@ -1,0 +1,163 @@
+// Clamps, loads and probes: marks on the body, and words that can be clicked.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  ConeGeometry,
+  CylinderGeometry,
+  Group,
+  Mesh,
+  MeshBasicMaterial,
+  Points,
+  PointsMaterial,
+  Vector3,
+} from "three";
+import { formatNumber, formatQuantity } from "../controls/units";
+import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
+import { showPane } from "../shell/actions";
+import { type BodyMesh, CAVITY_COLORS } from "./body";
+import type { Label } from "./labels";
+
+const CLAMP_COLOR = "#98a1ab";
+const LOAD_COLOR = "#e8704a";
+const PROBE_COLOR = "#56b4e9";
+
+/** The value of a load as text, at present. */
+export function loadText(load: BodyLoad, stat: StatEvent | null): string {
+  const value = stat?.loads[load.index] ?? load.value;
+  return `${formatNumber(value / load.factor, 3)} ${load.unit}`.trim();
+}
+
+export class Symbols {
+  readonly group = new Group();
+  private disposables: { dispose(): void }[] = [];
+
+  build(body: BodyEvent): void {
+    this.clear();
+    const size = Math.hypot(
+      ...body.bounds[1].map((high, axis) => high - (body.bounds[0][axis] ?? 0)),
+    );
+    for (const clamp of body.clamps) this.points(clamp.points.flat(), CLAMP_COLOR, 5);
+    for (const load of body.loads) {
+      const direction = new Vector3(...load.direction);
+      if (load.kind !== "pressure" && direction.lengthSq() > 0) {
+        this.arrow(new Vector3(...load.at), direction.normalize(), 0.16 * size);
+      }
+    }
+  }
+
+  private points(places: number[], color: string, size: number): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(places), 3));
+    const material = new PointsMaterial({
+      color: new Color(color),
+      size,
+      sizeAttenuation: false,
+      transparent: true,
+      opacity: 0.9,
+      depthWrite: false,
+    });
+    const points = new Points(geometry, material);
+    points.renderOrder = 6;
+    this.group.add(points);
+    this.disposables.push(geometry, material);
+  }
+
+  // An arrow whose tip touches the point that the load acts on.
+  private arrow(tip: Vector3, direction: Vector3, length: number): void {
+    const head = 0.28 * length;
+    const material = new MeshBasicMaterial({ color: new Color(LOAD_COLOR) });
+    const shaft = new CylinderGeometry(0.028 * length, 0.028 * length, length - head, 12);
+    shaft.translate(0, -(head + (length - head) / 2), 0);
+    const cone = new ConeGeometry(0.1 * length, head, 20);
+    cone.translate(0, -head / 2, 0);
+    for (const geometry of [shaft, cone]) {
+      const mesh = new Mesh(geometry, material);
+      mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction);
+      mesh.position.copy(tip);
+      mesh.renderOrder = 6;
+      this.group.add(mesh);
+    }
+    this.disposables.push(material, shaft, cone);
+  }
+
+  clear(): void {
+    this.group.clear();
+    for (const one of this.disposables) one.dispose();
+    this.disposables = [];
+  }
+
+  /** Words for what the body has; probes follow their vertices. */
+  labels(
+    body: BodyEvent,
+    stat: StatEvent | null,
+    mesh: BodyMesh | null,
+    exaggeration: number,
+    cavities: boolean,
+  ): Label[] {
+    const labels: Label[] = [];
+    const fixed = (point: readonly number[]) => (out: Vector3) =>
+      out.set(point[0] ?? 0, point[1] ?? 0, point[2] ?? 0);
+    for (const [i, clamp] of body.clamps.entries()) {
+      labels.push({
+        key: `clamp-${i}`,
+        kind: "clamp",
+        text: clamp.name,
+        title: `${clamp.vertices} vertices are held`,
+        color: CLAMP_COLOR,
+        at: fixed(clamp.center),
+        onClick: () => showPane("design"),
+      });
+    }
+    for (const load of body.loads) {
+      labels.push({
+        key: `load-${load.index}`,
+        kind: "load",
+        text: `${load.label} ${loadText(load, stat)}`,
+        title: "Change this load",
+        color: LOAD_COLOR,
+        at: fixed(load.at),
+        onClick: () => showPane("run"),
+      });
+    }
+    for (const probe of body.probes) {
+      const place = (out: Vector3) => {
+        if (!mesh || mesh.topology.tets || probe.vertices.length === 0)
+          return fixed(probe.center)(out);
+        const one = new Vector3();
+        out.set(0, 0, 0);
+        for (const vertex of probe.vertices) out.add(mesh.place(vertex, exaggeration, one));
+        return out.divideScalar(probe.vertices.length);
+      };
+      labels.push({
+        key: `probe-${probe.name}`,
+        kind: "probe",
+        text: probe.name,
+        title: "Show what this probe measured",
+        color: PROBE_COLOR,
+        at: place,
+        onClick: () => showPane("probes"),
+      });
+    }
+    if (cavities) {
+      for (const [i, cavity] of body.cavities.entries()) {
+        labels.push({
+          key: `cavity-${i}`,
+          kind: "cavity",
+          text: `cavity ${i + 1} · ${formatQuantity(cavity.volume, "m^3", 3)}${cavity.leaks ? " · leaks" : ""}`,
+          color: CAVITY_COLORS[i % CAVITY_COLORS.length] as string,
+          at: fixed(cavity.center),
+        });
+      }
+    }
+    for (const [i, leak] of body.leaks.entries()) {
+      labels.push({
+        key: `leak-${i}`,
+        kind: "leak",
+        text: `open here: ${formatQuantity(leak.volume, "m^3", 3)} is not enclosed`,
+        at: fixed(leak.point),
+      });
+    }
+    return labels;
+  }
+}

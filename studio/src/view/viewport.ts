@@ -1,0 +1,513 @@
+// The picture: scene, render loop and what frames change in it, outside of React. It draws only
+// when something has changed. Long because it is the one place where all parts of the view meet.
+import {
+  Box3,
+  ColorManagement,
+  LinearSRGBColorSpace,
+  Raycaster,
+  Scene,
+  Vector2,
+  Vector3,
+  WebGLRenderer,
+} from "three";
+import { FrameGate } from "../engine/credits";
+import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
+import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
+import { useStudio } from "../store/studio";
+import { setView, useShown, useView, type View } from "../store/view";
+import { BodyMesh } from "./body";
+import { CameraRig, type StandardView } from "./camera";
+import { Grabs } from "./grab";
+import { Ground, roundLength, Sky } from "./ground";
+import { type Label, Labels } from "./labels";
+import { type Hit, pick } from "./pick";
+import { listen } from "./pointer";
+import { Section } from "./section";
+import { SmoothMesh } from "./smooth";
+import { Symbols } from "./symbols";
+import { Tape } from "./tape";
+import { themeColor } from "./theme";
+
+// Colors stay as they are written: those of the maps must be those of the legend.
+ColorManagement.enabled = false;
+
+const TELL_EVERY = 120;
+const HOVER_EVERY = 100;
+
+export class Viewport {
+  readonly element = document.createElement("div");
+  readonly rig = new CameraRig();
+  readonly grabs = new Grabs();
+  readonly tape = new Tape();
+  readonly renderer: WebGLRenderer;
+  private readonly scene = new Scene();
+  private readonly sky = new Sky();
+  private readonly ground = new Ground();
+  private readonly section = new Section();
+  private readonly symbols = new Symbols();
+  private readonly labels = new Labels();
+  private readonly gate = new FrameGate();
+  private readonly raycaster = new Raycaster();
+  private surface: BodyMesh | null = null;
+  private tets: BodyMesh | null = null;
+  private smooth: SmoothMesh | null = null;
+  private latest: Frame | null = null;
+  private positions: { key: string; values: Float32Array } | null = null;
+  private asked: number | null = null;
+  private attached = false;
+  private lastTold = 0;
+  private tellTimer: ReturnType<typeof setTimeout> | null = null;
+  private lastHover = 0;
+  private hoverAt: { x: number; y: number } | null = null;
+  private times: number[] = [];
+  private latency: number | null = null;
+  private lastSeq = 0;
+  private extremes: { low: number; high: number } | null = null;
+  private fitNext = true;
+  private documentName: string | null = null;
+  private drawnListeners = new Set<() => void>();
+
+  constructor() {
+    this.element.className = "viewport";
+    this.renderer = new WebGLRenderer({
+      antialias: true,
+      stencil: true,
+      preserveDrawingBuffer: true,
+    });
+    this.renderer.outputColorSpace = LinearSRGBColorSpace;
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.info.autoReset = true;
+    this.renderer.domElement.setAttribute("aria-label", "The body");
+    this.renderer.domElement.tabIndex = 0;
+    this.element.append(this.renderer.domElement, this.labels.element);
+    this.scene.add(
+      this.sky.mesh,
+      this.ground.mesh,
+      this.section.group,
+      this.symbols.group,
+      this.grabs.group,
+      this.tape.group,
+    );
+    new ResizeObserver(() => this.resize()).observe(this.element);
+    new MutationObserver(() => this.recolor()).observe(document.documentElement, {
+      attributeFilter: ["data-theme"],
+    });
+    listen(this);
+    useView.subscribe((now, before) => this.viewChanged(now, before));
+    useStudio.subscribe((now, before) => {
+      if (now.body !== before.body) this.bodyChanged();
+      if (now.stat !== before.stat) {
+        if (now.stat?.grabs.length === 0 && before.stat?.grabs.length) this.grabs.forgetPinned();
+        this.request();
+      }
+      const name = now.document && `${now.document.path} ${now.document.name}`;
+      if (name && name !== this.documentName) {
+        this.documentName = name;
+        this.fitNext = true;
+      }
+    });
+    document.addEventListener("visibilitychange", () => this.tellView());
+    onReady(() => {
+      this.gate.clear();
+      this.tellView();
+    });
+    present(this);
+    if (useStudio.getState().body) this.bodyChanged();
+  }
+
+  // ---- what comes from the engine ----
+
+  topology(topology: Topology): void {
+    const mesh = new BodyMesh(topology, { plane: this.section.plane, section: this.section.on });
+    if (topology.tets) {
+      this.drop(this.tets);
+      this.tets = mesh;
+    } else {
+      this.drop(this.surface);
+      this.drop(this.tets);
+      this.tets = null;
+      this.surface = mesh;
+      this.smooth?.dispose();
+      this.smooth = null;
+      this.grabs.clear();
+      this.tape.clear();
+      const box = mesh.box(1);
+      this.ground.lay(box);
+      this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
+      if (this.fitNext) this.rig.fit(box, true);
+      this.fitNext = false;
+    }
+    this.scene.add(mesh.group);
+    if (this.latest && this.latest.topology !== topology.id) this.latest = null;
+    this.request();
+  }
+
+  frame(frame: Frame): void {
+    this.gate.offer(frame);
+    this.request();
+  }
+
+  smoothSurface(smooth: Smooth): void {
+    this.smooth?.dispose();
+    this.smooth = new SmoothMesh(smooth, { plane: this.section.plane, section: this.section.on });
+    this.scene.add(this.smooth.group);
+    this.request();
+  }
+
+  private drop(mesh: BodyMesh | null): void {
+    if (!mesh) return;
+    mesh.group.removeFromParent();
+    mesh.dispose();
+  }
+
+  private bodyChanged(): void {
+    const body = useStudio.getState().body;
+    if (body) this.symbols.build(body);
+    else this.symbols.clear();
+    this.request();
+  }
+
+  private viewChanged(now: View, before: View): void {
+    const mode = (view: View) => (view.appearance === "tets" ? "tets" : "surface");
+    if (now.field !== before.field || mode(now) !== mode(before)) this.tellView();
+    if (!now.tape && before.tape) this.tape.clear();
+    this.rig.flat = now.orthographic;
+    this.request();
+  }
+
+  private tellView(): void {
+    const view = useView.getState();
+    const visible = this.attached && document.visibilityState === "visible";
+    if (currentEngine()) {
+      send({
+        t: "view",
+        field: view.field,
+        mode: view.appearance === "tets" ? "tets" : "surface",
+        visible,
+      });
+    }
+  }
+
+  // ---- where it is on the page ----
+
+  attach(parent: HTMLElement): void {
+    parent.prepend(this.element);
+    this.attached = true;
+    this.resize();
+    this.tellView();
+  }
+
+  detach(): void {
+    this.element.remove();
+    this.attached = false;
+    this.tellView();
+  }
+
+  private resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    if (width < 2 || height < 2) return;
+    this.renderer.setSize(width, height);
+    this.rig.resize(width, height);
+    this.request();
+  }
+
+  private recolor(): void {
+    this.sky.recolor();
+    this.ground.recolor();
+    this.section.recolor();
+    this.request();
+  }
+
+  // ---- drawing ----
+
+  /** Draw at the next chance; while the tab is hidden or the view is away nothing is drawn. */
+  request(): void {
+    if (this.asked !== null || !this.attached) return;
+    this.asked = requestAnimationFrame((now) => {
+      this.asked = null;
+      this.draw(now);
+    });
+  }
+
+  onDrawn(listener: () => void): () => void {
+    this.drawnListeners.add(listener);
+    return () => this.drawnListeners.delete(listener);
+  }
+
+  private draw(now: number): void {
+    this.takeFrame(now);
+    if (this.rig.advance(now)) this.request();
+    this.grabs.flush();
+    const view = useView.getState();
+    const mesh = this.shownMesh();
+    this.style(view, mesh);
+    const labels = this.words(view, mesh);
+    this.ground.face(this.rig.toEye.z);
+    this.renderer.render(this.scene, this.rig.camera);
+    this.labels.set(labels);
+    this.labels.place(this.rig.camera, this.element.clientWidth, this.element.clientHeight);
+    this.hover(now, view);
+    this.tell(now, view);
+    for (const listener of this.drawnListeners) listener();
+  }
+
+  private takeFrame(now: number): void {
+    const frame = this.gate.take((number) => currentEngine()?.acknowledge(number));
+    if (!frame) return;
+    const mesh = [this.surface, this.tets].find((one) => one?.topology.id === frame.topology);
+    if (!mesh) return; // a frame of a body that is gone
+    mesh.setFrame(frame);
+    this.latest = frame;
+    this.extremes = null;
+    this.times.push(now);
+    if (frame.seq > this.lastSeq) {
+      this.lastSeq = frame.seq;
+      this.latency = sinceSent(frame.seq) ?? this.latency;
+    }
+  }
+
+  /** The mesh that is drawn: the tetrahedra where they are wanted and at hand. */
+  shownMesh(): BodyMesh | null {
+    const wanted = useView.getState().appearance === "tets";
+    return wanted && this.tets?.frame ? this.tets : this.surface;
+  }
+
+  private style(view: View, mesh: BodyMesh | null): void {
+    const parts = useStudio.getState().body?.parts.map((part) => part.color) ?? [];
+    const light = document.documentElement.dataset.theme === "light";
+    const colors = { parts, ink: themeColor("--ink"), light };
+    const smooth = view.appearance === "smooth" && this.smooth !== null;
+    const [low, high] = this.range(view);
+    for (const one of [this.surface, this.tets]) {
+      one?.setRange(low, high);
+      one?.setPixels(this.renderer.domElement.height / 2);
+      one?.style(view, colors, one === mesh && !smooth);
+    }
+    this.smooth?.style(view, colors, smooth);
+    const box = mesh?.box(view.exaggeration) ?? new Box3();
+    this.section.update(
+      view,
+      box,
+      view.appearance !== "wireframe" && !view.cavities && !mesh?.topology.tets,
+    );
+    this.ground.mesh.visible = view.grid && mesh !== null;
+    this.symbols.group.visible = view.symbols;
+  }
+
+  private range(view: View): [number, number] {
+    if (view.range === "locked") return [view.low, view.high];
+    const frame = this.latest;
+    if (!frame) return [0, 1];
+    if (view.range === "auto") return [frame.min, frame.max];
+    const most = Math.max(Math.abs(frame.min), Math.abs(frame.max));
+    return [-most, most];
+  }
+
+  private words(view: View, mesh: BodyMesh | null): Label[] {
+    if (!mesh) return [];
+    const { body, stat } = useStudio.getState();
+    const labels: Label[] = [];
+    if (body && view.symbols) {
+      labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
+    }
+    if (view.extremes && mesh.frame && view.coloring === "field")
+      labels.push(...this.extremeWords(mesh, view));
+    const surface = this.surface;
+    if (surface) labels.push(...this.grabs.update(surface));
+    const tape = surface ? this.tape.update(surface, view.exaggeration) : null;
+    if (tape) labels.push(...tape.labels);
+    if (tape && tape.length !== useShown.getState().tapeLength) {
+      useShown.setState({ tapeLength: tape.length });
+    }
+    return labels;
+  }
+
+  private extremeWords(mesh: BodyMesh, view: View): Label[] {
+    const frame = mesh.frame as Frame;
+    if (!this.extremes) {
+      let [low, high] = [0, 0];
+      for (let i = 3; i < frame.packed.length; i += 4) {
+        if (frame.packed[i]! < frame.packed[low + 3]!) low = i - 3;
+        if (frame.packed[i]! > frame.packed[high + 3]!) high = i - 3;
+      }
+      this.extremes = { low: low / 4, high: high / 4 };
+    }
+    const word = (key: "low" | "high", text: string): Label => {
+      const vertex = this.extremes![key];
+      return {
+        key: `extreme-${key}`,
+        kind: "extreme",
+        text,
+        at: (out) => mesh.place(vertex, view.exaggeration, out),
+      };
+    };
+    return [word("low", "min"), word("high", "max")];
+  }
+
+  private tell(now: number, view: View): void {
+    this.times = this.times.filter((time) => now - time < 1000);
+    if (this.tellTimer === null && (this.times.length > 0 || now - this.lastTold < TELL_EVERY)) {
+      this.tellTimer = setTimeout(() => {
+        this.tellTimer = null;
+        this.tell(performance.now(), useView.getState());
+      }, TELL_EVERY);
+    }
+    if (now - this.lastTold < TELL_EVERY) return;
+    this.lastTold = now;
+    const [low, high] = this.range(view);
+    const pixels = this.rig.pixelsPerMeter;
+    const barLength = roundLength(130 / pixels);
+    const frame = this.latest;
+    const next = {
+      frame: frame?.number ?? 0,
+      time: frame?.time ?? 0,
+      fps: this.times.length,
+      latency: this.latency,
+      low,
+      high,
+      min: frame?.min ?? 0,
+      max: frame?.max ?? 0,
+      barLength,
+      barPixels: barLength * pixels,
+      diverged: frame?.diverged ?? false,
+    };
+    const shown = useShown.getState();
+    const same = (Object.keys(next) as (keyof typeof next)[]).every(
+      (key) => next[key] === shown[key],
+    );
+    if (!same) useShown.setState(next);
+  }
+
+  // ---- the pointer ----
+
+  ray(x: number, y: number): Raycaster["ray"] {
+    const rect = this.renderer.domElement.getBoundingClientRect();
+    const at = new Vector2(
+      ((x - rect.left) / rect.width) * 2 - 1,
+      1 - ((y - rect.top) / rect.height) * 2,
+    );
+    this.raycaster.setFromCamera(at, this.rig.camera);
+    return this.raycaster.ray;
+  }
+
+  /** What of the body is at a place of the page. Grabs work on the surface only. */
+  hit(x: number, y: number): Hit | null {
+    const mesh = this.surface;
+    const view = useView.getState();
+    if (!mesh || view.appearance === "wireframe") return null;
+    const keep = (point: Vector3) => this.section.keeps(point);
+    return pick(this.ray(x, y), this.drawnPositions(mesh, view), mesh.topology.triangles, keep);
+  }
+
+  private drawnPositions(mesh: BodyMesh, view: View): Float32Array {
+    const key = `${mesh.topology.id} ${mesh.frame?.number} ${mesh.frame?.time} ${view.exaggeration}`;
+    if (this.positions?.key === key) return this.positions.values;
+    const n = mesh.topology.rest.length / 3;
+    const values = new Float32Array(3 * n);
+    const at = new Vector3();
+    for (let i = 0; i < n; i++) mesh.place(i, view.exaggeration, at).toArray(values, 3 * i);
+    this.positions = { key, values };
+    return values;
+  }
+
+  hoverOver(at: { x: number; y: number } | null): void {
+    this.hoverAt = at;
+    if (at === null && useShown.getState().hover) useShown.setState({ hover: null });
+    else if (at) this.request();
+  }
+
+  private hover(now: number, view: View): void {
+    if (!this.hoverAt || this.grabs.holding || now - this.lastHover < HOVER_EVERY) return;
+    this.lastHover = now;
+    const hit = this.hit(this.hoverAt.x, this.hoverAt.y);
+    const frame = this.surface?.frame;
+    this.renderer.domElement.style.cursor = view.tape ? "crosshair" : hit ? "grab" : "";
+    if (!hit || !frame || view.coloring !== "field") {
+      if (useShown.getState().hover) useShown.setState({ hover: null });
+      return;
+    }
+    const rect = this.element.getBoundingClientRect();
+    useShown.setState({
+      hover: {
+        x: this.hoverAt.x - rect.left,
+        y: this.hoverAt.y - rect.top,
+        vertex: hit.vertex,
+        value: valueIn(frame, hit.vertex),
+      },
+    });
+  }
+
+  // ---- what buttons and keys ask for ----
+
+  fit(): void {
+    const mesh = this.shownMesh();
+    if (mesh) this.rig.fit(mesh.box(useView.getState().exaggeration).clone());
+    this.request();
+  }
+
+  look(view: StandardView): void {
+    this.rig.look(view);
+    this.request();
+  }
+
+  setExaggeration(factor: number): void {
+    setView({ exaggeration: factor });
+  }
+
+  // ---- what tests and measurements read ----
+
+  get drawn(): {
+    frame: number;
+    time: number;
+    seq: number;
+    latency: number | null;
+    triangles: number;
+    topology: number;
+    fps: number;
+  } {
+    const mesh = this.shownMesh();
+    return {
+      frame: this.latest?.number ?? 0,
+      time: this.latest?.time ?? 0,
+      seq: this.lastSeq,
+      latency: this.latency,
+      triangles: mesh?.triangles ?? 0,
+      topology: mesh?.topology.id ?? 0,
+      fps: this.times.length,
+    };
+  }
+
+  vertexPosition(vertex: number): [number, number, number] | null {
+    const frame = this.surface?.frame;
+    return frame && 4 * vertex < frame.packed.length ? positionIn(frame, vertex) : null;
+  }
+
+  /** Where a vertex is on the page, in CSS pixels. */
+  screenOf(vertex: number): [number, number] | null {
+    if (!this.surface) return null;
+    const at = this.surface.place(vertex, useView.getState().exaggeration).project(this.rig.camera);
+    const rect = this.renderer.domElement.getBoundingClientRect();
+    return [rect.left + ((at.x + 1) / 2) * rect.width, rect.top + ((1 - at.y) / 2) * rect.height];
+  }
+
+  /** Draw now, at `scale` times the size of the page, and hand the canvas over. */
+  still<T>(scale: number, use: (canvas: HTMLCanvasElement) => T): T {
+    const ratio = this.renderer.getPixelRatio();
+    this.renderer.setPixelRatio(scale);
+    this.resizeNow();
+    this.renderer.render(this.scene, this.rig.camera);
+    try {
+      return use(this.renderer.domElement);
+    } finally {
+      this.renderer.setPixelRatio(ratio);
+      this.resizeNow();
+      this.request();
+    }
+  }
+
+  private resizeNow(): void {
+    const { clientWidth: width, clientHeight: height } = this.element;
+    this.renderer.setSize(width, height);
+    this.surface?.setPixels(this.renderer.domElement.height / 2);
+  }
+}
