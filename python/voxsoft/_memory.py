@@ -3,10 +3,23 @@
 from __future__ import annotations
 
 import os
+import time
 from pathlib import Path
+from typing import Final
 
 #: Used where the operating system does not say (Windows, some containers) [bytes].
 UNKNOWN_MEMORY = 8 << 30
+
+
+#: Seconds for which an answer holds: asking takes as long as meshing a small body.
+_LASTING: Final = 0.2
+
+
+class _Reading:
+    """The last answer of the system and when it came."""
+
+    limit = 0
+    time = float("-inf")
 
 
 def memory_limit() -> int:
@@ -20,6 +33,13 @@ def memory_limit() -> int:
     >>> memory_limit() > 0
     True
     """
+    now = time.monotonic()
+    if now - _Reading.time > _LASTING:
+        _Reading.limit, _Reading.time = _read(), now
+    return _Reading.limit
+
+
+def _read() -> int:
     try:
         for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
             if line.startswith("MemAvailable:"):

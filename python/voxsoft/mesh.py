@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft import _core
 from voxsoft._memory import memory_limit
 from voxsoft.errors import MeshError
+from voxsoft.metrics import enclosed_volume
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +82,10 @@ class MeshCavity:
         >>> round(mesh.cavities[0].volume_at(2 * mesh.vertices), 12)
         8e-06
         """
-        a, b, c = positions[self.triangles].transpose(1, 0, 2)
-        enclosed = -np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0
-        return float(enclosed + self.void_parts @ _tet_volumes(positions, self.void_tets))
+        enclosed = enclosed_volume(self.triangles, positions)
+        if len(self.void_tets) == 0:
+            return enclosed
+        return enclosed + float(self.void_parts @ _tet_volumes(positions, self.void_tets))
 
 
 @dataclass(frozen=True)
@@ -354,9 +356,12 @@ _DTYPES: dict[str, type[np.generic]] = {
 
 
 def _tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDArray[np.float64]:
-    a, b, c, d = (positions[tets[:, corner]] for corner in range(4))
-    volumes: NDArray[np.float64] = np.einsum("ij,ij->i", b - a, np.cross(c - a, d - a)) / 6.0
-    return volumes
+    corners = positions.T.take(tets.T, axis=1)  # three axes, four corners, m
+    (ux, vx, wx), (uy, vy, wy), (uz, vz, wz) = corners[:, 1:] - corners[:, :1]
+    six_volumes: NDArray[np.float64] = (
+        ux * (vy * wz - vz * wy) + uy * (vz * wx - vx * wz) + uz * (vx * wy - vy * wx)
+    )
+    return six_volumes / 6.0
 
 
 def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[Any]:

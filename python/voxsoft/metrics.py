@@ -121,8 +121,10 @@ def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]
     >>> round(enclosed_volume(inward, corners), 6)
     0.166667
     """
-    a, b, c = positions[triangles].transpose(1, 0, 2)
-    return float(-np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+    corners = positions.T.take(triangles.T, axis=1)  # three axes, three corners, t
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = corners
+    six_volumes = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return -float(six_volumes.sum()) / 6.0
 
 
 def max_stretch(
@@ -137,9 +139,11 @@ def max_stretch(
     1.5
     """
 
-    def lengths(points: NDArray[np.float64]) -> NDArray[np.float64]:
-        squares: NDArray[np.float64] = np.square(points[edges[:, 0]] - points[edges[:, 1]])
-        found: NDArray[np.float64] = np.sqrt(squares.sum(axis=1))
+    def squares(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        along = points.take(edges[:, 0], axis=0)
+        along -= points.take(edges[:, 1], axis=0)
+        along *= along
+        found: NDArray[np.float64] = along[:, 0] + along[:, 1] + along[:, 2]
         return found
 
-    return float(np.max(lengths(positions) / lengths(rest)))
+    return float(np.sqrt(np.max(squares(positions) / squares(rest))))

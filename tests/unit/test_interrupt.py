@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import threading
 import time
@@ -137,3 +138,21 @@ def test_long_work_that_cannot_be_stopped_is_left_behind(prepare):
     stopped, interrupted = seconds(whole / 10)
     assert interrupted
     assert stopped < whole / 2
+
+
+def test_a_shapes_function_may_call_the_core_in_turn():
+    # On the one thread of the pool, where a call that waited for the pool would wait for itself.
+    code = """
+import numpy as np
+from voxsoft.shapes import Function, Sphere, voxelize
+ball = Sphere(radius=0.01)
+same = Function(
+    function=lambda *axes: ball.evaluate(np.column_stack(axes)), low=(-0.01,) * 3, high=(0.01,) * 3
+)
+print(voxelize(same, 0.001) == voxelize(ball, 0.001))
+"""
+    one = {**os.environ, "RAYON_NUM_THREADS": "1"}
+    run = subprocess.run(
+        [sys.executable, "-c", code], env=one, capture_output=True, text=True, timeout=60
+    )
+    assert run.stdout == "True\n", run.stderr

@@ -1,4 +1,5 @@
 //! The ways from Python into long Rust work: they free the GIL and obey Ctrl-C.
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -9,21 +10,26 @@ use pyo3::prelude::*;
 /// How often the waiting thread asks Python whether Ctrl-C was pressed.
 const SIGNAL_PERIOD: Duration = Duration::from_millis(50);
 
-/// Runs `work` on another thread with the GIL released, and waits for its end even after Ctrl-C.
+/// Runs `work` on a thread of the pool that its parallel loops use, with the GIL released, and waits for its
+/// end even after Ctrl-C.
 ///
-/// For work that borrows and looks at `cancel` often: it is set when a signal handler raises
-/// (`KeyboardInterrupt`), and the exception is passed on once `work` has returned.
+/// Within the pool a loop has no thread to wait for: from outside each would cost two changes of thread,
+/// as long as meshing a small body takes. For work that borrows and looks at `cancel` often: it is set when
+/// a signal handler raises (`KeyboardInterrupt`), and the exception is passed on once `work` has returned.
 pub fn run<T, F>(py: Python<'_>, work: F) -> PyResult<T>
 where
     T: Send,
     F: FnOnce(&AtomicBool) -> T + Send,
 {
     let cancel = AtomicBool::new(false);
+    if within_pool() {
+        return Ok(py.detach(|| work(&cancel)));
+    }
     py.detach(|| {
-        std::thread::scope(|scope| {
+        rayon::in_place_scope(|scope| {
             let (sender, receiver) = sync_channel(1);
             let flag = &cancel;
-            scope.spawn(move || {
+            scope.spawn(move |_| {
                 let _ = sender.send(work(flag));
             });
             wait(&receiver, &cancel)
@@ -41,14 +47,26 @@ where
     F: FnOnce(&AtomicBool) -> T + Send + 'static,
 {
     let cancel = Arc::new(AtomicBool::new(false));
+    if within_pool() {
+        return Ok(py.detach(|| work(&cancel)));
+    }
     let flag = Arc::clone(&cancel);
     py.detach(|| {
         let (sender, receiver) = sync_channel(1);
-        std::thread::spawn(move || {
-            let _ = sender.send(work(&flag));
+        rayon::spawn(move || {
+            // A panic here would end the process; without an answer the waiting thread reports it.
+            if let Ok(answer) = catch_unwind(AssertUnwindSafe(|| work(&flag))) {
+                let _ = sender.send(answer);
+            }
         });
         wait(&receiver, &cancel)
     })
+}
+
+/// Whether Python was called by work of the pool, a shape's function say, and calls the core in turn: to wait
+/// there for the pool could take for ever.
+fn within_pool() -> bool {
+    rayon::current_thread_index().is_some()
 }
 
 /// Waits for an answer. Python handles signals on its main thread only, so the calling thread asks

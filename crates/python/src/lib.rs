@@ -24,6 +24,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<voxels::PyGrid>()?;
     module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_tets, module)?)?;
+    module.add_function(wrap_pyfunction!(mesh::mesh_pieces, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_quality, module)?)?;
     Ok(())
 }

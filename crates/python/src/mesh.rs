@@ -66,6 +66,16 @@ pub fn mesh_tets<'py>(
     }
 }
 
+/// The piece of each tetrahedron, from 0 in the order of their first ones.
+#[pyfunction]
+pub fn mesh_pieces<'py>(
+    py: Python<'py>,
+    tets: PyReadonlyArray2<'py, i32>,
+) -> Bound<'py, PyArray1<u32>> {
+    let tets = rows_from(&tets);
+    py.detach(|| voxel::pieces(&tets)).into_pyarray(py)
+}
+
 #[pyfunction]
 pub fn mesh_quality<'py>(
     py: Python<'py>,

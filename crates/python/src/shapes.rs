@@ -369,6 +369,9 @@ impl PyShape {
 
     /// Lowest and highest corner; infinite where there is no end, reversed when empty.
     fn bounds(&self, py: Python<'_>) -> PyResult<(Corner, Corner)> {
+        if self.0.bounds.is_finite() {
+            return Ok((self.0.bounds.low.into(), self.0.bounds.high.into()));
+        }
         let found = gate::run(py, |_| self.0.find_bounds())?;
         let found = found.map_err(|error| sample_error(py, &error.into()))?;
         Ok((found.low.into(), found.high.into()))

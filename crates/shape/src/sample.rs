@@ -6,7 +6,7 @@
 //!
 //! Blocks of cells are decided together where interval arithmetic proves one sign; the others are
 //! split, each with the part of the function that matters there, and the smallest are evaluated by
-//! compiled f32 code. A cell whose f32 value lies within the error bound of [`crate::range`] is
+//! compiled f32 code (few cells at once in float64). A cell whose f32 value lies within the error bound of [`crate::range`] is
 //! evaluated again in float64, so the answer is that of a float64 evaluation of every cell.
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -18,6 +18,7 @@ use crate::compiled::Interpreted;
 use crate::compiled::{MachineCode, runs_machine_code};
 use crate::error::SampleError;
 use crate::shape::Shape;
+use crate::tape::Tape;
 use crate::worker::{Classifier, Worker};
 
 /// Cells along the edge of the blocks handed to threads.
@@ -25,6 +26,9 @@ const TILE: usize = 64;
 
 /// Centers closer to the surface than this part of a voxel count as on it.
 pub const TIE: f64 = 1e-9;
+
+/// Operations of float64, over all cells, that take no longer than compiling the function does.
+const FEW_OPERATIONS: u128 = 100_000;
 
 /// Cells in space: cell (i, j, k) is the cube from `origin + size·(i, j, k)` with edge `size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,6 +50,10 @@ impl Lattice {
     /// Center of a cell along one axis, m.
     pub fn center(&self, axis: usize, index: usize) -> f64 {
         self.origin[axis] + (index as f64 + 0.5) * self.voxel_size
+    }
+
+    fn center_of(&self, cell: [usize; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.center(axis, cell[axis]))
     }
 
     /// Estimate of the memory of [`sample`] in bytes: the cells, and the tiles before they are put
@@ -104,6 +112,10 @@ pub fn sample(
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
     lattice.check(memory_limit)?;
+    let tape = Tape::new(&shape.expr);
+    if !tape.has_fields() && lattice.cells() * tape.len() as u128 <= FEW_OPERATIONS {
+        return evaluate_all(&tape, lattice);
+    }
     #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
     if runs_machine_code() {
         return sample_by::<MachineCode>(shape, lattice, cancel);
@@ -132,14 +144,33 @@ fn sample_by<F: MathFunction>(
         content.write(tile, lattice.shape, &mut cells);
         undefined.extend(content.undefined);
     }
-    if let Some(&first) = undefined.iter().min() {
-        let at = [0, 1, 2].map(|axis| lattice.center(axis, first[axis]));
-        return Err(SampleError::NotANumber {
-            count: undefined.len(),
-            at,
-        });
+    match undefined.iter().min() {
+        Some(first) => Err(not_a_number(lattice.center_of(*first), undefined.len())),
+        None => Ok(cells),
     }
-    Ok(cells)
+}
+
+/// As [`sample`], by the definition.
+fn evaluate_all(tape: &Tape, lattice: &Lattice) -> Result<Vec<u8>, SampleError> {
+    let [nx, ny, nz] = lattice.shape;
+    let mut centers = Vec::with_capacity(nx * ny * nz);
+    for i in 0..nx {
+        for j in 0..ny {
+            centers.extend((0..nz).map(|k| lattice.center_of([i, j, k])));
+        }
+    }
+    let mut values = vec![0.0; centers.len()];
+    tape.evaluate_into(&centers, &mut values)?;
+    let mut undefined = (0..values.len()).filter(|&cell| values[cell].is_nan());
+    if let Some(first) = undefined.next() {
+        return Err(not_a_number(centers[first], 1 + undefined.count()));
+    }
+    let threshold = -TIE * lattice.voxel_size;
+    Ok(values.iter().map(|s| u8::from(*s < threshold)).collect())
+}
+
+fn not_a_number(at: [f64; 3], count: usize) -> SampleError {
+    SampleError::NotANumber { count, at }
 }
 
 #[cfg(feature = "threads")]

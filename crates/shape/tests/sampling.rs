@@ -215,20 +215,21 @@ proptest! {
 fn a_center_on_the_surface_is_outside() {
     // Centers lie at x = ±0.5, ±1.5 ...: a shell of thickness 1 around the plane x = 0 touches two layers.
     let plane = primitives::half_space([0.0; 3], [1.0, 0.0, 0.0]).unwrap();
-    let lattice = Lattice {
-        origin: [-2.0; 3],
-        voxel_size: 1.0,
-        shape: [4; 3],
-    };
-    let count = |thickness: f64| {
-        let shell = operators::shell(&plane, thickness).unwrap();
-        classify(&shell, &lattice)
-            .iter()
-            .filter(|&&cell| cell == 1)
-            .count()
-    };
-    assert_eq!(count(1.0), 0);
-    assert_eq!(count(1.0 + 1e-6), 32);
+    // Few cells, which are evaluated one by one, and many.
+    for cells in [4, 64] {
+        let lattice = Lattice {
+            origin: [-0.5 * cells as f64; 3],
+            voxel_size: 1.0,
+            shape: [cells; 3],
+        };
+        let count = |thickness: f64| {
+            let shell = operators::shell(&plane, thickness).unwrap();
+            let cells = classify(&shell, &lattice);
+            cells.iter().filter(|&&cell| cell == 1).count()
+        };
+        assert_eq!(count(1.0), 0);
+        assert_eq!(count(1.0 + 1e-6), 2 * cells * cells);
+    }
 }
 
 #[cfg(feature = "threads")]
@@ -266,17 +267,21 @@ fn too_large_a_grid_is_refused_before_allocating() {
 fn a_function_without_a_value_is_an_error_with_its_place() {
     let [x, ..] = Expr::axes();
     let shape = Shape::unknown(x.sqrt() - 0.01);
-    let refused = sample(&shape, &lattice(20), u64::MAX, &AtomicBool::new(false));
-    let Err(SampleError::NotANumber { count, at }) = refused else {
-        panic!("{refused:?}")
-    };
-    assert_eq!(count, 10 * 23 * 15);
-    assert!((at[0] + 0.0475).abs() < 1e-12, "{at:?}");
+    // Few cells, which are evaluated one by one, and many.
+    for (cells, undefined) in [(20, 10 * 23 * 15), (80, 40 * 83 * 75)] {
+        let refused = sample(&shape, &lattice(cells), u64::MAX, &AtomicBool::new(false));
+        let Err(SampleError::NotANumber { count, at }) = refused else {
+            panic!("{refused:?}")
+        };
+        assert_eq!(count, undefined);
+        let first = -0.05 + 0.05 / cells as f64;
+        assert!((at[0] - first).abs() < 1e-12, "{at:?}");
+    }
 }
 
 #[test]
 fn cancel_stops() {
     let ball = primitives::sphere([0.0; 3], 0.04).unwrap();
-    let stopped = sample(&ball, &lattice(20), u64::MAX, &AtomicBool::new(true));
+    let stopped = sample(&ball, &lattice(75), u64::MAX, &AtomicBool::new(true));
     assert_eq!(stopped, Err(SampleError::Canceled));
 }

@@ -9,7 +9,6 @@
 //! carries the same energy density, and materials meet at an interface in proportion:
 //! `k = ℓ Σ_tets E_e(tet) θ(tet)/2π`.
 
-use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -124,7 +123,7 @@ impl Body {
             membrane.add_mass(&mut masses);
         }
         let mut found: Vec<Edge> = Vec::new();
-        let mut edge_index: HashMap<[u32; 2], usize> = HashMap::new();
+        let mut edges_from = EdgesFrom::new(mesh.vertices.len());
         let (mut tets, mut edge_order) = (Vec::with_capacity(mesh.tets.len()), Vec::new());
         let (mut chunk_edges, mut chunk_tets) = (vec![0], vec![0]);
         for chunk in &order.chunks {
@@ -150,10 +149,10 @@ impl Body {
                         let ends = pair.map(|corner| mesh.tets[t][corner]);
                         let apexes = opposite.map(|corner| mesh.tets[t][corner]);
                         let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                        let index = *edge_index.entry(key).or_insert_with(|| {
+                        let index = edges_from.find_or_add(key);
+                        if index == found.len() {
                             found.push(unstressed_edge(&mesh.vertices, key));
-                            found.len() - 1
-                        });
+                        }
                         let share = dihedral(&mesh.vertices, key, apexes) / TAU;
                         let edge = &mut found[index];
                         edge.stiffness += fraction
@@ -309,6 +308,41 @@ impl Body {
             }
         }
         norm(sub(high, low))
+    }
+}
+
+/// The edges from each vertex to higher ones, a dozen at most in a mesh of voxels: a list for each.
+struct EdgesFrom {
+    /// The last edge from each vertex.
+    last: Vec<u32>,
+    /// The other end of each edge, and the edge before it in the list.
+    edges: Vec<(u32, u32)>,
+}
+
+impl EdgesFrom {
+    const NONE: u32 = u32::MAX;
+
+    fn new(vertices: usize) -> Self {
+        Self {
+            last: vec![Self::NONE; vertices],
+            edges: Vec::new(),
+        }
+    }
+
+    /// The number of an edge, which is the next one if it is new.
+    fn find_or_add(&mut self, [low, high]: [u32; 2]) -> usize {
+        let last = &mut self.last[low as usize];
+        let mut at = *last;
+        while at != Self::NONE {
+            let (end, before) = self.edges[at as usize];
+            if end == high {
+                return at as usize;
+            }
+            at = before;
+        }
+        self.edges.push((high, *last));
+        *last = self.edges.len() as u32 - 1;
+        self.edges.len() - 1
     }
 }
 

@@ -13,6 +13,7 @@ A size that is written as a number and is not positive stays an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Annotated, Any, Final, get_args, get_origin
 
 from pydantic.fields import FieldInfo
@@ -74,6 +75,8 @@ class _Pruning:
 
     def differences(self, value: Any) -> Any:  # noqa: ANN401 - a document holds anything
         """Prune the subtracted operands of every difference in `value`."""
+        if isinstance(value, (str, Quantity)):
+            return value
         if isinstance(value, list):
             return [self.differences(entry) for entry in value]
         if not isinstance(value, Mapping):
@@ -119,13 +122,18 @@ class _Pruning:
 
 def _has_vanished(table: Mapping[str, Any]) -> bool:
     """Whether a formula makes one of the sizes of a shape zero or negative."""
-    models = [m for m in records_in(AnyShape) if _is_of_kind(m, table.get("kind"))]
-    return any(
-        _any_not_positive(table[name])
-        for model in models
-        for name, field in model.model_fields.items()
-        if name in table and _must_be_positive(field)
-    )
+    kind = table.get("kind")
+    if not isinstance(kind, str):
+        return False
+    return any(_any_not_positive(table[size]) for size in _sizes(kind) if size in table)
+
+
+@cache
+def _sizes(kind: str) -> frozenset[str]:
+    """The fields of a kind of shape that must be positive."""
+    models = (model for model in records_in(AnyShape) if _is_of_kind(model, kind))
+    fields = (field for model in models for field in model.model_fields.items())
+    return frozenset(name for name, field in fields if _must_be_positive(field))
 
 
 def _is_of_kind(model: type[Record], kind: object) -> bool:

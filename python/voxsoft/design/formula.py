@@ -15,6 +15,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Final, NoReturn
 
 from voxsoft.errors import FormulaError
@@ -86,7 +87,7 @@ class _Reader:
             )
         self._text = text
         self._parameter = parameter
-        self._tokens = self._split()
+        self._tokens = _tokens_of(text)
         self._position = 0
         self._depth = 0
 
@@ -95,17 +96,6 @@ class _Reader:
         if self._token:
             self._fail(f'"{self._token}" is not expected here')
         return result
-
-    def _split(self) -> list[str]:
-        body = self._text.lstrip()[1:].rstrip()
-        tokens, position = [], 0
-        while position < len(body):
-            match = _TOKEN.match(body, position)
-            if match is None:
-                self._fail(f'"{body[position:].lstrip()[:10]}" is not part of a formula')
-            tokens.append(match.group().strip())
-            position = match.end()
-        return tokens
 
     @property
     def _token(self) -> str:
@@ -191,3 +181,17 @@ class _Reader:
 
     def _fail(self, what: str, hint: str = "") -> NoReturn:
         raise FormulaError("", f'in "{self._text}": {what}', hint)
+
+
+@lru_cache(maxsize=1024)  # a study evaluates the same formulas for every trial
+def _tokens_of(text: str) -> tuple[str, ...]:
+    body = text.lstrip()[1:].rstrip()
+    tokens, position = [], 0
+    while position < len(body):
+        match = _TOKEN.match(body, position)
+        if match is None:
+            what = f'"{body[position:].lstrip()[:10]}" is not part of a formula'
+            raise FormulaError("", f'in "{text}": {what}')
+        tokens.append(match.group().strip())
+        position = match.end()
+    return tuple(tokens)

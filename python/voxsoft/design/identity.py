@@ -12,7 +12,7 @@ from voxsoft.units import round_significant
 
 # Words about the design, ways to vary it, and what a study asks of it: the answer of a
 # simulation depends on none of them. Probes stay in, because results are recorded at them.
-_NOT_PHYSICS: Final = frozenset(
+NOT_PHYSICS: Final = frozenset(
     {"schema", "name", "description", "parameters", "objectives", "constraints"}
 )
 
@@ -28,7 +28,7 @@ def hash_of(document: Mapping[str, Any]) -> str:
     >>> hash_of({"voxel_size": 0.1 + 0.2}) == hash_of({"voxel_size": 0.3, "name": "other"})
     True
     """
-    physics = {key: value for key, value in document.items() if key not in _NOT_PHYSICS}
+    physics = {key: value for key, value in document.items() if key not in NOT_PHYSICS}
     # A key that is younger than the records of studies: its default is not written down.
     if physics.get("fill") == "binary":
         del physics["fill"]
@@ -37,6 +37,8 @@ def hash_of(document: Mapping[str, Any]) -> str:
 
 
 def _canonical(value: object) -> object:
+    if isinstance(value, str):
+        return value
     if isinstance(value, Mapping):
         if value.get("kind") == "mesh":
             value = {**value, "path": _content(str(value.get("path")))}

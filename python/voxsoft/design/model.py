@@ -20,7 +20,7 @@ from voxsoft.design.assignment import set_values
 from voxsoft.design.clamp import Clamp
 from voxsoft.design.documents import plain_document
 from voxsoft.design.emptiness import without_empty_shapes
-from voxsoft.design.identity import hash_of
+from voxsoft.design.identity import NOT_PHYSICS, hash_of
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
 from voxsoft.design.operands import Name, ParameterName
@@ -231,8 +231,13 @@ class Design(Record):
         DesignError
             A shape is made of a Python function: such a design has no document and no hash.
         """
+        return self._values_without(frozenset())
+
+    def _values_without(self, tables: frozenset[str]) -> Document:
         try:
-            dumped = self.model_dump(mode="json", by_alias=True, exclude_none=True)
+            dumped = self.model_dump(
+                mode="json", by_alias=True, exclude_none=True, exclude=set(tables)
+            )
         except PydanticSerializationError as error:
             what = "hold a Python function, which no file can hold"
             raise DesignError("shapes", what, "write it as an expression") from error
@@ -245,7 +250,7 @@ class Design(Record):
         Name, description, parameters, objectives and constraints do not count; values that
         formulas gave do. Numbers are rounded to 12 significant digits.
         """
-        return hash_of(self.resolved)
+        return hash_of(self._values_without(NOT_PHYSICS))
 
     def with_parameters(self, **values: float | str) -> Self:
         """Return the design with other values of its parameters.

@@ -181,13 +181,15 @@ def _resolve(
 ) -> Any:  # noqa: ANN401 - a document holds anything
     if len(path) > DEEPEST_DOCUMENT:
         raise DesignError(place(path[:3]), f"nests deeper than {DEEPEST_DOCUMENT} levels")
+    if isinstance(value, str):
+        if not is_formula(value) or (path and path[-1] in _PROSE):
+            return value
+        return _evaluated(value, path, parameters, problems)
     if isinstance(value, Mapping):
         return {k: _resolve(v, (*path, k), parameters, problems) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
         return [_resolve(v, (*path, i), parameters, problems) for i, v in enumerate(value)]
-    if not is_formula(value) or (path and path[-1] in _PROSE):
-        return value
-    return _evaluated(str(value), path, parameters, problems)
+    return value
 
 
 def _evaluated(

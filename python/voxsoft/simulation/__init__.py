@@ -5,7 +5,7 @@ from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
-from voxsoft.simulation.setup import Setup, named_regions, pieces
+from voxsoft.simulation.setup import Setup, named_regions
 from voxsoft.simulation.targets import check_targets
 
 __all__ = [
@@ -22,7 +22,6 @@ __all__ = [
     "check_targets",
     "gradient",
     "named_regions",
-    "pieces",
     "relax",
     "simulate",
 ]

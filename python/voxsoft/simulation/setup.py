@@ -257,15 +257,15 @@ class Setup:
             )
         held = np.zeros(len(self.mesh.vertices), dtype=bool)
         held[np.concatenate(self.clamped)] = True
-        for piece in pieces(self.mesh):
-            if not held[piece].any():
-                center = self.mesh.vertices[piece].mean(axis=0) * 1e3
-                raise DisconnectedError(
-                    "parts",
-                    f"a piece of {len(piece)} vertices around "
-                    f"({center[0]:.1f}, {center[1]:.1f}, {center[2]:.1f}) mm touches no clamp",
-                    "join it to the rest by whole faces of voxels, or clamp it",
-                )
+        loose = _loose_piece(self.mesh, held)
+        if loose is not None:
+            center = self.mesh.vertices[loose].mean(axis=0) * 1e3
+            raise DisconnectedError(
+                "parts",
+                f"a piece of {len(loose)} vertices around "
+                f"({center[0]:.1f}, {center[1]:.1f}, {center[2]:.1f}) mm touches no clamp",
+                "join it to the rest by whole faces of voxels, or clamp it",
+            )
 
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
@@ -287,23 +287,17 @@ def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
     return regions
 
 
-def pieces(mesh: Mesh) -> list[NDArray[np.intp]]:
-    """Vertices of each piece of a mesh, largest first: tetrahedra joined by whole faces.
+def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | None:
+    """Vertices of the largest piece of which none is held, if there is one.
 
-    Tetrahedra that share only an edge or a vertex hinge on it and count as separate pieces.
+    Tetrahedra joined by whole faces make a piece; those that share only an edge or a vertex hinge
+    on it and count as separate pieces.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    faces = np.sort(mesh.tets[:, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]], axis=2)
-    order = np.lexsort(faces.reshape(-1, 3).T)
-    flat = faces.reshape(-1, 3)[order]
-    twins = np.flatnonzero((flat[1:] == flat[:-1]).all(axis=1))
-    first, second = order[twins] // 4, order[twins + 1] // 4
-    links = coo_array((np.ones(len(first)), (first, second)), shape=(len(mesh.tets),) * 2)
-    _, labels = connected_components(links, directed=False)
-    found = [np.unique(mesh.tets[labels == label]) for label in np.unique(labels)]
-    return sorted(found, key=len, reverse=True)
+    labels = _core.mesh_pieces(mesh.tets)
+    count = int(labels.max()) + 1
+    reached = np.bincount(labels, weights=held[mesh.tets].any(axis=1), minlength=count)
+    loose = [np.unique(mesh.tets[labels == label]) for label in np.flatnonzero(reached == 0)]
+    return max(loose, key=len, default=None)
 
 
 _CoreHistory = tuple[list[float], list[float]] | None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from decimal import Context, Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING, Any, Final
 
 from voxsoft.errors import UnitError
@@ -179,6 +179,7 @@ def _without_unit(number: str, text: str, where: str, due: Kind) -> float:
     raise UnitError(where, f'"{text}" has no unit; {_due(due)}', _suggest(number, due))
 
 
+@lru_cache(maxsize=1024)  # a study reads the bounds and constants of its family for every trial
 def _quantity(number: str, unit: str, text: str, where: str) -> Quantity:
     factor, dimension = _unit(unit, text, where)
     value = float(_DECIMAL.multiply(Decimal(number), factor))
