@@ -14,6 +14,8 @@ export interface NumberFieldProps {
   fallback?: number;
   /** Adds a slider where `min` and `max` are known. */
   slider?: boolean;
+  /** Puts the label on a line of its own, for long ones. */
+  stacked?: boolean;
   disabled?: boolean;
   problem?: string | undefined;
   title?: string;
@@ -77,7 +79,7 @@ export function NumberField(props: NumberFieldProps) {
   const changed = props.fallback !== undefined && props.fallback !== value;
   const note = problem ?? props.problem;
   return (
-    <div className="field" title={props.title}>
+    <div className={props.stacked ? "field stacked" : "field"} title={props.title}>
       <label
         className={`field-label scrub${changed ? " changed" : ""}`}
         htmlFor={id}

@@ -47,7 +47,7 @@ function State() {
   const stat = useStudio((state) => state.stat);
   if (!stat) return null;
   const facts: [string, string][] = [
-    ["Real time", `${formatNumber(stat.real_time_factor, 3)} ×`],
+    ["Real time", stat.state === "playing" ? `${formatNumber(stat.real_time_factor, 3)} ×` : "–"],
     ["Substep", `${formatNumber(stat.step_ms, 3)} ms`],
     ["Residual", stat.residual === null ? "–" : formatNumber(stat.residual, 3)],
     ["Elastic energy", stat.elastic === null ? "–" : formatQuantity(stat.elastic, "J", 3)],
@@ -83,6 +83,7 @@ function Load(props: { load: BodyLoad }) {
       max={load.max}
       fallback={load.value}
       slider
+      stacked
       onChange={(next) => send({ t: "load", index: load.index, value: next })}
     />
   );

@@ -60,7 +60,7 @@ export function ViewBar(props: { view: Viewport }) {
         label="Section plane (X)"
         pressed={view.section !== "off"}
         testId="section"
-        onClick={() => setView({ section: view.section === "off" ? "y" : "off" })}
+        onClick={() => props.view.toggleSection()}
       >
         <Icon name="section" />
       </Button>

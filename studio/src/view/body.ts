@@ -208,6 +208,7 @@ export class BodyMesh {
         uVoxelSize: { value: this.topology.voxelSize || 1 },
         uPixels: { value: 1 },
         uFade: { value: 1 },
+        uByField: { value: 0 },
         uInk: { value: new Vector4(0, 0, 0, 0.4) },
       },
     });
@@ -216,8 +217,14 @@ export class BodyMesh {
     return lines;
   }
 
+  /** Whether a frame is one of this body in this kind of view. */
+  suits(frame: Frame): boolean {
+    return (
+      frame.topology === this.topology.id && frame.packed.length === this.attribute.array.length
+    );
+  }
+
   setFrame(frame: Frame): void {
-    if (frame.packed.length !== this.attribute.array.length) return;
     this.frame = frame;
     this.attribute.array = frame.packed as Uint16Array<ArrayBuffer>;
     this.attribute.needsUpdate = true;
@@ -238,11 +245,7 @@ export class BodyMesh {
 
   private lutKey = "";
 
-  style(
-    view: View,
-    colors: { parts: readonly string[]; ink: Color; light: boolean },
-    visible: boolean,
-  ): void {
+  style(view: View, colors: { parts: readonly string[]; ink: Color }, visible: boolean): void {
     const key = `${view.colormap} ${view.bands}`;
     if (key !== this.lutKey) {
       this.lutKey = key;
@@ -280,9 +283,12 @@ export class BodyMesh {
       for (const stencil of stencils) stencil.visible = mesh.visible && cut && !this.topology.tets;
     }
     const ink = this.edges.material.uniforms.uInk!.value as Vector4;
-    if (wire) ink.set(colors.ink.r, colors.ink.g, colors.ink.b, 0.55);
+    if (wire) ink.set(colors.ink.r, colors.ink.g, colors.ink.b, 0.75);
     else ink.set(0, 0, 0, view.cavities ? 0.12 : 0.42);
     this.edges.material.uniforms.uFade!.value = wire ? 0 : 1;
+    const flatField = !this.frame || this.frame.max <= this.frame.min;
+    this.edges.material.uniforms.uByField!.value =
+      wire && view.coloring === "field" && !flatField ? 1 : 0;
     this.edges.visible = visible && (wire || view.edges);
     const ghost = this.ghost.material.uniforms;
     (ghost.uInk!.value as Vector4).set(colors.ink.r, colors.ink.g, colors.ink.b, 0.3);

@@ -53,7 +53,6 @@ function actions(shown: Viewport): Action[] {
     ["orthographic", "Orthographic view", "o"],
     ["tape", "Measuring tape", "m"],
   ];
-  const section = () => setView({ section: useView.getState().section === "off" ? "y" : "off" });
   return [
     {
       id: "fit",
@@ -62,7 +61,13 @@ function actions(shown: Viewport): Action[] {
       keys: ["f"],
       run: () => shown.fit(),
     },
-    { id: "section", title: "Section plane", group: "View", keys: ["x"], run: section },
+    {
+      id: "section",
+      title: "Section plane",
+      group: "View",
+      keys: ["x"],
+      run: () => shown.toggleSection(),
+    },
     ...STANDARD.map(
       ([name, title, key]): Action => ({
         id: `look-${name}`,

@@ -11,6 +11,20 @@ vec3 placed() {
 }
 `;
 
+const COLORED = /* glsl */ `
+uniform sampler2D uLut;
+uniform vec2 uFrameRange;
+uniform vec2 uRange;
+// Where a value stands in the range of colors: 0 to 1, or beyond.
+float shareOf(float field) {
+  float value = uFrameRange.x + (uFrameRange.y - uFrameRange.x) * field;
+  return (value - uRange.x) / max(uRange.y - uRange.x, 1e-30);
+}
+vec3 colorOf(float share) {
+  return texture(uLut, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
+}
+`;
+
 const CUT = /* glsl */ `
 uniform vec4 uPlane;
 uniform float uSection;
@@ -36,12 +50,10 @@ void main() {
 export const BODY_FRAGMENT = /* glsl */ `
 precision highp float;
 ${CUT}
+${COLORED}
 in vec3 vWorld;
 in vec3 vView;
 in float vField;
-uniform sampler2D uLut;
-uniform vec2 uFrameRange;
-uniform vec2 uRange;
 uniform float uByField;
 uniform vec3 uOwn;
 uniform float uAlpha;
@@ -54,9 +66,8 @@ void main() {
   float light = 0.74 + 0.26 * max(0.0, dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
   vec3 base = uOwn;
   if (uByField > 0.5) {
-    float value = uFrameRange.x + (uFrameRange.y - uFrameRange.x) * vField;
-    float share = (value - uRange.x) / max(uRange.y - uRange.x, 1e-30);
-    base = texture(uLut, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
+    float share = shareOf(vField);
+    base = colorOf(share);
     // Outside of a fixed range: stripes on the screen, seen without telling colors apart.
     float beyond = max(share - 1.0, -share);
     if (beyond > 0.01) {
@@ -86,8 +97,10 @@ uniform float uPixels;
 uniform float uFade;
 out vec3 vWorld;
 out float vStrength;
+out float vField;
 void main() {
   vWorld = placed();
+  vField = packed.w;
   vec4 view = modelViewMatrix * vec4(vWorld, 1.0);
   gl_Position = projectionMatrix * view;
   // Side of a voxel on the screen, in pixels; below some, edges would only darken the body.
@@ -99,13 +112,17 @@ void main() {
 export const EDGE_FRAGMENT = /* glsl */ `
 precision highp float;
 ${CUT}
+${COLORED}
 in vec3 vWorld;
 in float vStrength;
+in float vField;
 uniform vec4 uInk;
+uniform float uByField;
 out vec4 color;
 void main() {
   if (vStrength < 0.01 || cutAway(vWorld)) discard;
-  color = vec4(uInk.rgb, uInk.a * vStrength);
+  vec3 ink = uByField > 0.5 ? colorOf(shareOf(vField)) : uInk.rgb;
+  color = vec4(ink, uInk.a * vStrength);
 }
 `;
 

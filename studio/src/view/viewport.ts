@@ -46,6 +46,7 @@ export class Viewport {
   private readonly section = new Section();
   private readonly symbols = new Symbols();
   private readonly labels = new Labels();
+  private ink = themeColor("--ink");
   private readonly gate = new FrameGate();
   private readonly raycaster = new Raycaster();
   private surface: BodyMesh | null = null;
@@ -72,7 +73,6 @@ export class Viewport {
     this.renderer = new WebGLRenderer({
       antialias: true,
       stencil: true,
-      preserveDrawingBuffer: true,
     });
     this.renderer.outputColorSpace = LinearSRGBColorSpace;
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
@@ -118,28 +118,36 @@ export class Viewport {
   // ---- what comes from the engine ----
 
   topology(topology: Topology): void {
+    const current = this.surface ?? this.tets;
+    const fresh = current?.topology.id !== topology.id;
+    // A change from tetrahedra back to the surface sends again what is known already.
+    if (!fresh && !topology.tets && this.surface) return;
     const mesh = new BodyMesh(topology, { plane: this.section.plane, section: this.section.on });
+    if (fresh) this.clearBody(mesh.box(1));
     if (topology.tets) {
       this.drop(this.tets);
       this.tets = mesh;
-    } else {
-      this.drop(this.surface);
-      this.drop(this.tets);
-      this.tets = null;
-      this.surface = mesh;
-      this.smooth?.dispose();
-      this.smooth = null;
-      this.grabs.clear();
-      this.tape.clear();
-      const box = mesh.box(1);
-      this.ground.lay(box);
-      this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
-      if (this.fitNext) this.rig.fit(box, true);
-      this.fitNext = false;
-    }
+    } else this.surface = mesh;
     this.scene.add(mesh.group);
-    if (this.latest && this.latest.topology !== topology.id) this.latest = null;
     this.request();
+  }
+
+  // Another body: what hung on the old one goes, the camera stays where it is.
+  private clearBody(box: Box3): void {
+    this.drop(this.surface);
+    this.drop(this.tets);
+    this.surface = this.tets = null;
+    this.smooth?.dispose();
+    this.smooth = null;
+    this.latest = null;
+    this.extremes = null;
+    this.positions = null;
+    this.grabs.clear();
+    this.tape.clear();
+    this.ground.lay(box);
+    this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
+    if (this.fitNext) this.rig.fit(box, true);
+    this.fitNext = false;
   }
 
   frame(frame: Frame): void {
@@ -212,6 +220,7 @@ export class Viewport {
   }
 
   private recolor(): void {
+    this.ink = themeColor("--ink");
     this.sky.recolor();
     this.ground.recolor();
     this.section.recolor();
@@ -254,7 +263,9 @@ export class Viewport {
   private takeFrame(now: number): void {
     const frame = this.gate.take((number) => currentEngine()?.acknowledge(number));
     if (!frame) return;
-    const mesh = [this.surface, this.tets].find((one) => one?.topology.id === frame.topology);
+    const wanted = useView.getState().appearance === "tets";
+    const meshes = wanted ? [this.tets, this.surface] : [this.surface, this.tets];
+    const mesh = meshes.find((one) => one?.suits(frame));
     if (!mesh) return; // a frame of a body that is gone
     mesh.setFrame(frame);
     this.latest = frame;
@@ -274,8 +285,7 @@ export class Viewport {
 
   private style(view: View, mesh: BodyMesh | null): void {
     const parts = useStudio.getState().body?.parts.map((part) => part.color) ?? [];
-    const light = document.documentElement.dataset.theme === "light";
-    const colors = { parts, ink: themeColor("--ink"), light };
+    const colors = { parts, ink: this.ink };
     const smooth = view.appearance === "smooth" && this.smooth !== null;
     const [low, high] = this.range(view);
     for (const one of [this.surface, this.tets]) {
@@ -394,7 +404,7 @@ export class Viewport {
   hit(x: number, y: number): Hit | null {
     const mesh = this.surface;
     const view = useView.getState();
-    if (!mesh || view.appearance === "wireframe") return null;
+    if (!mesh || mesh !== this.shownMesh() || view.appearance === "wireframe") return null;
     const keep = (point: Vector3) => this.section.keeps(point);
     return pick(this.ray(x, y), this.drawnPositions(mesh, view), mesh.topology.triangles, keep);
   }
@@ -450,8 +460,15 @@ export class Viewport {
     this.request();
   }
 
-  setExaggeration(factor: number): void {
-    setView({ exaggeration: factor });
+  /** Cut the body open on the side that faces the eye, or close it again. */
+  toggleSection(): void {
+    if (useView.getState().section !== "off") {
+      setView({ section: "off" });
+      return;
+    }
+    const eye = this.rig.toEye;
+    const section = Math.abs(eye.x) > Math.abs(eye.y) ? "x" : "y";
+    setView({ section, sectionFlipped: eye[section] < 0, sectionAt: 0.5 });
   }
 
   // ---- what tests and measurements read ----

@@ -1,9 +1,21 @@
 import { Empty, Section } from "../../controls/Choice";
 import { formatQuantity, formatSpan } from "../../controls/units";
+import type { Finding } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import "./body.css";
 
 const SIGNS = { error: "✕", warning: "!", note: "i" } as const;
+
+/** Findings that say the same at several places, once each with their number. */
+function grouped(findings: readonly Finding[]): [Finding, number][] {
+  const groups = new Map<string, [Finding, number]>();
+  for (const finding of findings) {
+    const known = groups.get(finding.what);
+    if (known) known[1] += 1;
+    else groups.set(finding.what, [finding, 1]);
+  }
+  return [...groups.values()];
+}
 
 /** What the mesh came to: counts, mass, cavities, and what the check found. */
 export default function BodyPane() {
@@ -72,11 +84,12 @@ export default function BodyPane() {
       </Section>
       {body.findings.length > 0 && (
         <Section title="Check">
-          {body.findings.map((finding) => (
+          {grouped(body.findings).map(([finding, count]) => (
             <p key={finding.where + finding.what} className={`finding ${finding.severity}`}>
               <b>{SIGNS[finding.severity]}</b>
               <span>
                 {finding.what}
+                {count > 1 && <b> × {count}</b>}
                 {finding.hint && <span className="muted"> {finding.hint}</span>}
               </span>
             </p>
