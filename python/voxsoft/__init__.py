@@ -67,7 +67,7 @@ if TYPE_CHECKING:
     )
     from voxsoft.mesh import Mesh
     from voxsoft.shapes import *
-    from voxsoft.simulation import Result, check, gradient, simulate
+    from voxsoft.simulation import Result, check, gradient, simulate, simulate_many
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
@@ -111,7 +111,7 @@ _HOMES: Final = {
         "load_card",
     ),
     "voxsoft.mesh": ("Mesh",),
-    "voxsoft.simulation": ("Result", "check", "gradient", "simulate"),
+    "voxsoft.simulation": ("Result", "check", "gradient", "simulate", "simulate_many"),
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),
 }

@@ -237,4 +237,4 @@ def test_impossible_budgets(bent):
 def test_nothing_comes_to_rest(bent, monkeypatch):
     monkeypatch.setattr("voxsoft.calibration.misfit._MAX_STEPS", 3)
     with pytest.raises(SimulationError, match=r"no candidate came to rest.*not-at-rest"):
-        calibrate(bent, generations=1, population=4)
+        calibrate(bent, generations=1, population=4, lanes=False)

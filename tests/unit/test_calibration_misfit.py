@@ -90,7 +90,7 @@ def test_equal_genes_are_simulated_once_and_threads_change_nothing():
 
 
 def test_candidate_that_fails_has_fitness_zero(monkeypatch):
-    tested = misfit()
+    tested = misfit(lanes=False)
     monkeypatch.setattr("voxsoft.calibration.misfit._MAX_STEPS", 3)
     candidate = tested.at([0.4, 0.3])
     assert (candidate.status, candidate.fitness) == ("not-at-rest", 0.0)

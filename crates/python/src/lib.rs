@@ -1,6 +1,7 @@
 //! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
 use pyo3::prelude::*;
 
+mod ensemble;
 mod equilibrium;
 mod errors;
 mod gate;
@@ -17,6 +18,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
+    module.add_class::<ensemble::PyEnsemble>()?;
     module.add_function(wrap_pyfunction!(materials::lattice_constants, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;

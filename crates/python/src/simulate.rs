@@ -22,7 +22,7 @@ pub(crate) fn to_python(error: ProblemError) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-fn rows<const N: usize, T: numpy::Element + Copy>(
+pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
     what: &str,
     array: &PyReadonlyArray2<'_, T>,
 ) -> PyResult<Vec<[T; N]>> {

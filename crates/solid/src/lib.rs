@@ -46,6 +46,7 @@ pub mod elastic;
 mod error;
 mod history;
 pub mod hyperelastic;
+pub mod lanes;
 mod lattice;
 mod load;
 mod material;

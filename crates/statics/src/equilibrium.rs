@@ -73,9 +73,9 @@ pub(crate) struct Equilibrium<'a> {
 }
 
 /// Iterations with strains carried along: most steps take less than ten.
-const MIXED_ITERATIONS: u32 = 25;
+pub(crate) const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
-const PATIENCE: u32 = 8;
+pub(crate) const PATIENCE: u32 = 8;
 /// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
 const LARGEST_SHIFT: f64 = 10.0;
 /// Armijo's condition: the part of the predicted gain that a step must bring.
@@ -296,8 +296,7 @@ impl<'a> Equilibrium<'a> {
             .zip(body.rest())
             .map(|(x, rest)| norm(sub(*x, *rest)))
             .fold(0.0, f64::max);
-        let rounding = f64::max(STANDSTILL * body.size(), STANDSTILL_OF_MOTION * moved);
-        relative <= STANDSTILL_RESIDUAL && largest < rounding
+        is_standstill(relative, largest, body.size(), moved)
     }
 
     fn tell(
@@ -496,6 +495,13 @@ impl<'a> Equilibrium<'a> {
         }
         Ok(changed)
     }
+}
+
+/// Whether a step of the size `largest` of a body of some size that has moved by `moved` (all m), with the
+/// `relative` residual before it, is nothing but rounding.
+pub(crate) fn is_standstill(relative: f64, largest: f64, size: f64, moved: f64) -> bool {
+    let rounding = f64::max(STANDSTILL * size, STANDSTILL_OF_MOTION * moved);
+    relative <= STANDSTILL_RESIDUAL && largest < rounding
 }
 
 /// The farthest that a clamp carries a vertex.

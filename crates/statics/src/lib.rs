@@ -5,6 +5,8 @@
 //!   off, and arc length or volume control where a load has a limit.
 //! - [`adjoint()`] gives the derivative of a number that depends on the equilibrium, without solving for
 //!   it again.
+//! - [`Ensemble`] finds the equilibria of many variants of one lattice body at a time, one in each lane of
+//!   the processor.
 //!
 //! # Example
 //!
@@ -37,6 +39,7 @@
 mod adjoint;
 mod control;
 mod direct;
+mod ensemble;
 mod equilibrium;
 mod iterative;
 mod multigrid;
@@ -48,6 +51,7 @@ mod system;
 mod volume;
 
 pub use adjoint::{AdjointError, adjoint};
+pub use ensemble::{Ensemble, Settled, Variant};
 pub use path::solve;
 pub use settings::{
     Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,

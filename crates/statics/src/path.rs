@@ -13,7 +13,7 @@ use crate::system::{FactorError, Means, System};
 use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
-const EASY: u32 = 6;
+pub(crate) const EASY: u32 = 6;
 /// Steps up to this part of the load are tried again with a line search before they are cut: a quick
 /// way that fails is mostly helped by a shorter step.
 const SAFE_STEP: f64 = 0.05;

@@ -18,7 +18,8 @@ from voxsoft.calibration.linearization import seen_slopes
 from voxsoft.calibration.space import Space
 from voxsoft.errors import MaterialError
 from voxsoft.materials import Material
-from voxsoft.simulation import Result, Status, balance, relax
+from voxsoft.simulation import Ensemble, Settled, Status, balance, relax
+from voxsoft.simulation.many import settled_of
 
 T = TypeVar("T")
 U = TypeVar("U")
@@ -103,6 +104,19 @@ class Linearized:
     slopes: tuple[NDArray[np.float64], ...]
 
 
+#: Each experiment beside its measurement with the state that was found, or how the first failed.
+_Solved = list[tuple[Comparison, Settled]] | Status
+#: Runs a task for each input, in some order.
+_Runner = Callable[
+    [Callable[[Material], Settled], Sequence[Material]],
+    list[Settled],
+]
+
+
+def _one_by_one(task: Callable[[Material], Settled], inputs: Sequence[Material]) -> list[Settled]:
+    return [task(each) for each in inputs]
+
+
 def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) -> float:
     """Factor ``s`` that minimises the sum over stations of ``|s simulated - measured|``.
 
@@ -144,6 +158,10 @@ class Misfit:
         Relative residual at which a body counts as at rest.
     statics
         Whether to solve by statics in place of relaxation; both find the same state.
+    lanes
+        Whether to solve several candidates at a time by statics, one in each lane of the
+        processor, where that is quicker (:class:`voxsoft.simulation.Ensemble`). What is left open
+        is solved as without.
 
     Notes
     -----
@@ -163,6 +181,7 @@ class Misfit:
         workers: int = 1,
         tolerance: float = TOLERANCE,
         statics: bool = False,
+        lanes: bool = True,
     ) -> None:
         self.experiments = tuple(experiments)
         self.space = space
@@ -170,6 +189,9 @@ class Misfit:
         self.workers = workers
         self.tolerance = tolerance
         self.statics = statics
+        self._ensembles = [
+            Ensemble.of(experiment.setup) if lanes else None for experiment in self.experiments
+        ]
         self._seen: dict[tuple[float, ...], Evaluation] = {}
         self._lock = threading.Lock()
         self._pool: ThreadPoolExecutor | None = None
@@ -198,7 +220,12 @@ class Misfit:
 
     def many(self, genes: NDArray[np.float64]) -> list[Evaluation]:
         """Evaluate candidates side by side, (m, n) → m evaluations in the same order."""
-        self.side_by_side(self.at, list(dict.fromkeys(map(_key, genes))))
+        with self._lock:
+            new = [key for key in dict.fromkeys(map(_key, genes)) if key not in self._seen]
+        solved = self._solved_many(new, self.side_by_side)
+        evaluations = {key: self._worth(key, found) for key, found in zip(new, solved, strict=True)}
+        with self._lock:
+            self._seen.update(evaluations)
         return [self.at(row) for row in genes]
 
     def side_by_side(self, task: Callable[[T], U], inputs: Sequence[T]) -> list[U]:
@@ -242,28 +269,58 @@ class Misfit:
         )
         return Linearized(evaluation, tuple(comparison for comparison, _ in solved), slopes)
 
-    def _solved(self, genes: ArrayLike) -> list[tuple[Comparison, Result]] | Status:
-        try:
-            material = self.space.material_at(genes)
-        except MaterialError:  # constants that are possible each, and not together
-            return "failed"
-        found = []
-        for experiment in self.experiments:
-            result = self._settle(experiment, material)
-            if result.status != "ok":
-                return result.status
-            simulated = experiment.seen_at(result.positions)
-            measured = experiment.measurement.values
-            scale = best_scale(simulated, measured) if self.free_scale else 1.0
-            found.append((Comparison(scale * simulated, measured, scale), result))
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """How each experiment is solved."""
+        alone = "statics" if self.statics else "xpbd relaxation"
+        return tuple("statics in lanes" if each else alone for each in self._ensembles)
+
+    def _solved(self, genes: ArrayLike) -> _Solved:
+        return self._solved_many([_key(genes)], _one_by_one)[0]
+
+    def _solved_many(self, keys: Sequence[tuple[float, ...]], run: _Runner) -> list[_Solved]:
+        """Simulate every experiment with each candidate, experiment by experiment."""
+        found: list[_Solved] = [[] for _ in keys]
+        materials: dict[int, Material] = {}
+        for index, key in enumerate(keys):
+            try:
+                materials[index] = self.space.material_at(key)
+            except MaterialError:  # constants that are possible each, and not together
+                found[index] = "failed"
+        for experiment, ensemble in zip(self.experiments, self._ensembles, strict=True):
+            settled = self._settled(experiment, ensemble, list(materials.values()), run)
+            for index, result in zip(list(materials), settled, strict=True):
+                here = found[index]
+                if result.status != "ok" or isinstance(here, str):
+                    found[index] = result.status
+                    del materials[index]
+                    continue
+                simulated = experiment.seen_at(result.positions)
+                measured = experiment.measurement.values
+                scale = best_scale(simulated, measured) if self.free_scale else 1.0
+                here.append((Comparison(scale * simulated, measured, scale), result))
         return found
 
-    def _settle(self, experiment: Experiment, material: Material) -> Result:
+    def _settled(
+        self,
+        experiment: Experiment,
+        ensemble: Ensemble | None,
+        materials: Sequence[Material],
+        run: _Runner,
+    ) -> list[Settled]:
+        found: list[Settled | None] = [None] * len(materials)
+        if ensemble is not None:
+            found = ensemble.settle(materials, [1.0] * len(materials), self.tolerance)
+        open_ones = [material for material, each in zip(materials, found, strict=True) if not each]
+        alone = iter(run(lambda material: self._settle(experiment, material), open_ones))
+        return [next(alone) if each is None else each for each in found]
+
+    def _settle(self, experiment: Experiment, material: Material) -> Settled:
         setup = experiment.setup
         problem = setup.problem_with([material] * len(experiment.design.parts))
         if self.statics:
-            return balance(setup, problem, self.tolerance)
-        return relax(setup, problem, self.tolerance, _MAX_STEPS)
+            return settled_of(setup, balance(setup, problem, self.tolerance))
+        return settled_of(setup, relax(setup, problem, self.tolerance, _MAX_STEPS))
 
     def fitness(self, error: float) -> float:
         """Fitness of a mean error in m."""
@@ -273,9 +330,7 @@ class Misfit:
     def _evaluate(self, genes: tuple[float, ...]) -> Evaluation:
         return self._worth(genes, self._solved(genes))
 
-    def _worth(
-        self, genes: tuple[float, ...], solved: list[tuple[Comparison, Result]] | Status
-    ) -> Evaluation:
+    def _worth(self, genes: tuple[float, ...], solved: _Solved) -> Evaluation:
         if isinstance(solved, str):
             return Evaluation(genes, solved, np.inf, 0.0, (1.0,) * len(self.experiments))
         error = float(np.mean([comparison.errors.mean() for comparison, _ in solved]))

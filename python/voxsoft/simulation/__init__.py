@@ -2,6 +2,7 @@
 
 from voxsoft.simulation.check import CheckReport, Finding, check
 from voxsoft.simulation.gradient import gradient
+from voxsoft.simulation.many import Ensemble, Settled, simulate_many
 from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
@@ -10,11 +11,13 @@ from voxsoft.simulation.targets import check_targets
 
 __all__ = [
     "CheckReport",
+    "Ensemble",
     "Finding",
     "History",
     "Place",
     "ProgressCallback",
     "Result",
+    "Settled",
     "Setup",
     "Status",
     "balance",
@@ -24,4 +27,5 @@ __all__ = [
     "named_regions",
     "relax",
     "simulate",
+    "simulate_many",
 ]

@@ -4,12 +4,8 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::lanes::{Lanes, Wide};
 use super::{Columns, Kind, Strip, Strips, slabs};
-
-/// Below this square of a length (m²) an edge has no direction: it keeps divisions finite where two
-/// vertices lie on one spot, and is far below the square of any length that rounding can tell from zero.
-pub(super) const NO_LENGTH: f64 = 1e-200;
+use crate::lanes::{Lanes, Spans, Volumes};
 
 /// Pointers that threads share: the slabs that run at the same time touch different slots and places.
 #[derive(Clone, Copy)]
@@ -173,21 +169,19 @@ impl Strips {
     }
 }
 
-/// The vertices of tetrahedra: their positions, and six times the gradients of their volumes.
-#[derive(Clone, Copy)]
-pub(super) struct Volumes<S: Simd> {
-    pub corners: [Wide<S>; 4],
-    pub gradients: [Wide<S>; 4],
-    /// Six times the volumes in m³.
-    pub six_volumes: S::f64s,
-}
-
 impl<S: Simd> Volumes<S> {
+    /// Of the tetrahedra of a strip from number `n` on.
+    ///
     /// # Safety
     ///
     /// As [`Kernel::edges`].
     #[inline(always)]
-    pub unsafe fn new(lanes: Lanes<S>, from: [*const f64; 3], strip: &Strip, n: usize) -> Self {
+    pub(super) unsafe fn new(
+        lanes: Lanes<S>,
+        from: [*const f64; 3],
+        strip: &Strip,
+        n: usize,
+    ) -> Self {
         let slots = strip.slots(n);
         let corners = unsafe {
             [
@@ -197,40 +191,26 @@ impl<S: Simd> Volumes<S> {
                 lanes.load3(from, slots[3]),
             ]
         };
-        let [a, b, c, d] = corners;
-        let (u, v, w) = (lanes.sub(b, a), lanes.sub(c, a), lanes.sub(d, a));
-        let (by_b, by_c, by_d) = (lanes.cross(v, w), lanes.cross(w, u), lanes.cross(u, v));
-        Self {
-            corners,
-            gradients: [lanes.minus_sum(by_b, by_c, by_d), by_b, by_c, by_d],
-            six_volumes: lanes.dot(u, by_b),
-        }
+        Self::of(lanes, corners)
     }
 }
 
-/// Edges: from the second vertex to the first, and the square of the length.
-#[derive(Clone, Copy)]
-pub(super) struct Spans<S: Simd> {
-    pub ends: [Wide<S>; 2],
-    pub along: Wide<S>,
-    pub square: S::f64s,
-}
-
 impl<S: Simd> Spans<S> {
+    /// Of the edges of a strip from number `n` on.
+    ///
     /// # Safety
     ///
     /// As [`Kernel::edges`].
     #[inline(always)]
-    pub unsafe fn new(lanes: Lanes<S>, from: [*const f64; 3], strip: &Strip, n: usize) -> Self {
+    pub(super) unsafe fn new(
+        lanes: Lanes<S>,
+        from: [*const f64; 3],
+        strip: &Strip,
+        n: usize,
+    ) -> Self {
         let slots = strip.slots(n);
         let ends = unsafe { [lanes.load3(from, slots[0]), lanes.load3(from, slots[1])] };
-        let along = lanes.sub(ends[0], ends[1]);
-        let square = lanes.max(lanes.dot(along, along), lanes.splat(NO_LENGTH));
-        Self {
-            ends,
-            along,
-            square,
-        }
+        Self::of(lanes, ends)
     }
 }
 

@@ -26,7 +26,6 @@
 mod build;
 mod columns;
 mod kernels;
-mod lanes;
 mod slabs;
 mod sweep;
 

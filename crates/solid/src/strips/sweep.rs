@@ -2,9 +2,9 @@
 
 use pulp::Simd;
 
-use super::kernels::{Kernel, Spans, Volumes};
-use super::lanes::{Lanes, Wide};
+use super::kernels::Kernel;
 use super::{Columns, Strip, Strips};
+use crate::lanes::{Lanes, Spans, Volumes, Wide};
 
 /// What a sweep works on.
 ///

@@ -1,0 +1,100 @@
+//! `_core.Ensemble`: the equilibria of many variants of one problem at a time.
+use std::sync::atomic::Ordering;
+
+use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voxsoft_statics::{Ensemble, Status, Variant};
+
+use crate::gate;
+use crate::simulate::{PyProblem, rows};
+
+/// A problem laid out for many candidates at a time.
+#[pyclass(frozen, name = "Ensemble", module = "voxsoft._core")]
+pub struct PyEnsemble(Ensemble);
+
+#[pymethods]
+impl PyEnsemble {
+    /// The layout of a problem, or None for one that cannot be laid out.
+    #[staticmethod]
+    fn of(problem: PyRef<'_, PyProblem>) -> Option<Self> {
+        Ensemble::of(&problem.problem).map(Self)
+    }
+
+    /// The products of 3×3 blocks that each factorization takes.
+    #[getter]
+    fn products(&self) -> u64 {
+        self.0.products()
+    }
+
+    /// The bytes that the tangents of one thread take.
+    #[getter]
+    fn bytes(&self) -> u64 {
+        self.0.bytes()
+    }
+
+    /// The candidates that are taken at a time on one thread.
+    #[getter]
+    fn lanes(&self) -> usize {
+        self.0.lanes()
+    }
+
+    /// The equilibria of candidates with factors (n, 4) on edges, tetrahedra, gravity and other forces.
+    fn settle<'py>(
+        &self,
+        py: Python<'py>,
+        factors: PyReadonlyArray2<'_, f64>,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let rows: Vec<[f64; 4]> = rows("factors", &factors)?;
+        let mut variants = Vec::with_capacity(rows.len());
+        for [edge, bulk, weight, forces] in rows {
+            let stiff = edge > 0.0 && bulk > 0.0 && edge.is_finite() && bulk.is_finite();
+            if !stiff || !weight.is_finite() || !forces.is_finite() {
+                let message = "factors on stiffness must be positive, and all must be finite";
+                return Err(PyValueError::new_err(message));
+            }
+            variants.push(Variant {
+                edge,
+                bulk,
+                weight,
+                forces,
+            });
+        }
+        let found = gate::run(py, |cancel| {
+            let stop = || cancel.load(Ordering::Relaxed);
+            self.0.settle(&variants, tolerance, &stop)
+        })?;
+        let report = PyDict::new(py);
+        let status = |status| match status {
+            Status::AtRest => "at-rest",
+            Status::Cancelled => "cancelled",
+            Status::LimitReached
+            | Status::NotConverged
+            | Status::Mechanism
+            | Status::OutOfMemory(_) => "not-converged",
+        };
+        let statuses: Vec<&str> = found.iter().map(|f| status(f.status)).collect();
+        report.set_item("status", statuses)?;
+        let vertices = found.first().map_or(0, |f| f.positions.len());
+        let flat: Vec<f64> = found
+            .iter()
+            .flat_map(|f| f.positions.as_flattened())
+            .copied()
+            .collect();
+        let positions: Bound<'py, PyArray3<f64>> =
+            PyArray1::from_vec(py, flat).reshape([found.len(), vertices, 3])?;
+        report.set_item("positions", positions)?;
+        let list = |value: fn(&voxsoft_statics::Settled) -> f64| {
+            PyArray1::from_vec(py, found.iter().map(value).collect())
+        };
+        report.set_item("residual", list(|f| f.residual))?;
+        let counts = |value: fn(&voxsoft_statics::Settled) -> u32| {
+            PyArray1::from_vec(py, found.iter().map(value).collect())
+        };
+        report.set_item("iterations", counts(|f| f.iterations))?;
+        report.set_item("back_offs", counts(|f| f.back_offs))?;
+        Ok(report)
+    }
+}
