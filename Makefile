@@ -10,7 +10,7 @@ STAMP := $(VENV)/.installed
 JOBS ?= 2
 
 # What `make bench` runs, some ten minutes; JSON goes to target/bench, beside the text.
-BENCHMARKS := pipeline step_rate time_to_rest study growth peers
+BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 

@@ -6,7 +6,6 @@ import pytest
 from voxsoft import (
     Box,
     Clamp,
-    DesignError,
     Floor,
     Gravity,
     Lattice,
@@ -16,7 +15,7 @@ from voxsoft import (
     simulate_many,
 )
 from voxsoft.design import families
-from voxsoft.errors import SimulationError
+from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Ensemble, Setup
 
 SOFT, STIFF = Lattice(edge="20 kPa", bulk="60 kPa"), Lattice(edge="60 kPa", bulk="90 kPa")

@@ -1,4 +1,5 @@
 //! `_core.Ensemble`: the equilibria of many variants of one problem at a time.
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
@@ -12,14 +13,14 @@ use crate::simulate::{PyProblem, rows};
 
 /// A problem laid out for many candidates at a time.
 #[pyclass(frozen, name = "Ensemble", module = "voxsoft._core")]
-pub struct PyEnsemble(Ensemble);
+pub struct PyEnsemble(Arc<Ensemble>);
 
 #[pymethods]
 impl PyEnsemble {
     /// The layout of a problem, or None for one that cannot be laid out.
     #[staticmethod]
     fn of(problem: PyRef<'_, PyProblem>) -> Option<Self> {
-        Ensemble::of(&problem.problem).map(Self)
+        Ensemble::of(&problem.problem).map(Arc::new).map(Self)
     }
 
     /// The products of 3×3 blocks that each factorization takes.
@@ -62,9 +63,11 @@ impl PyEnsemble {
                 forces,
             });
         }
-        let found = gate::run(py, |cancel| {
+        // One Newton step of a wide body takes longer than Ctrl-C should.
+        let ensemble = Arc::clone(&self.0);
+        let found = gate::run_owned(py, move |cancel| {
             let stop = || cancel.load(Ordering::Relaxed);
-            self.0.settle(&variants, tolerance, &stop)
+            ensemble.settle(&variants, tolerance, &stop)
         })?;
         let report = PyDict::new(py);
         let status = |status| match status {
