@@ -21,6 +21,8 @@ export const PANES: readonly PaneDefinition[] = [
   pane("run", "Run", () => import("../run/RunPane")),
   pane("probes", "Probes", () => import("../run/ProbesPane")),
   pane("energy", "Energy and residual", () => import("../run/EnergyPane")),
+  pane("design", "Design", () => import("./design/DesignPane")),
+  pane("text", "Text", () => import("./design/text/TextPane")),
   pane("body", "Body", () => import("./body/BodyPane")),
   pane("log", "Log", () => import("./log/LogPane")),
 ];

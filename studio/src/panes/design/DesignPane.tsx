@@ -1,0 +1,197 @@
+// The form of the design: one document with the text beside it.
+import { useMemo } from "react";
+import { Button, Empty, Section } from "../../controls/Choice";
+import { useStudio } from "../../store/studio";
+import { Adder, EntryList, EntryMap } from "./Entries";
+import { edit } from "./edits";
+import { type Form, FormContext } from "./form";
+import { Gallery } from "./Gallery";
+import { Glyph } from "./Glyph";
+import { Goals } from "./Goals";
+import { Parameters } from "./Parameters";
+import { SchemaField, TableFields } from "./SchemaField";
+import { Shapes } from "./Shapes";
+import { helpOfKeys, type Schema } from "./schema";
+import "./design.css";
+
+const NO_DIAGNOSTICS: Form["diagnostics"] = [];
+
+function useFormOfDocument(): Form | null {
+  const hello = useStudio((state) => state.hello);
+  const document = useStudio((state) => state.document);
+  return useMemo(() => {
+    if (!hello || !document?.source) return null;
+    const { source } = document;
+    const keys = (section: string) => Object.keys((source[section] as object | undefined) ?? {});
+    return {
+      root: hello.design_schema as Schema,
+      source,
+      design: document.design,
+      diagnostics: document.diagnostics.length ? document.diagnostics : NO_DIAGNOSTICS,
+      names: {
+        shapes: keys("shapes"),
+        materials: [...keys("materials"), ...hello.materials.map((card) => card.name)],
+      },
+      materialTitles: Object.fromEntries(
+        hello.materials.map((card) => [card.name, `${card.name} (${card.model})`]),
+      ),
+    };
+  }, [hello, document]);
+}
+
+export default function DesignPane() {
+  const form = useFormOfDocument();
+  const connected = useStudio((state) => state.hello !== null);
+  const document = useStudio((state) => state.document);
+  if (!connected) {
+    return (
+      <Empty title="Waiting for VoxSoft">
+        <p>The form appears when the server has answered.</p>
+      </Empty>
+    );
+  }
+  return (
+    <div className="pane design" data-testid="design-form">
+      <Gallery />
+      {document && !document.valid && <Faults />}
+      {form && (
+        <FormContext value={form}>
+          <Parameters />
+          <General form={form} />
+          <Shapes />
+          <EntryMap
+            section="materials"
+            title="Materials"
+            what="a material"
+            first="rubber"
+            empty="None of its own: parts name cards such as ecoflex-00-30."
+          />
+          <EntryList
+            section="parts"
+            title="Parts"
+            what="a part"
+            empty="None yet. A part is a shape made of a material."
+            note="Where parts overlap, the upper one wins."
+          />
+          <EntryList
+            section="layers"
+            title="Layers"
+            what="a layer"
+            empty="None. A layer is a thin sheet that resists stretch, such as fabric."
+          />
+          <EntryList
+            section="clamps"
+            title="Clamps"
+            what="a clamp"
+            empty="None yet. Without one the body floats away."
+          />
+          <EntryList
+            section="loads"
+            title="Loads"
+            what="a load"
+            empty="None yet. Add pressure, gravity, a force or a traction."
+          />
+          <Floor form={form} />
+          <EntryMap
+            section="probes"
+            title="Probes"
+            what="a probe"
+            first="probe"
+            empty="None yet. A probe is a place where displacements are measured."
+          />
+          <Goals />
+          <Solver form={form} />
+        </FormContext>
+      )}
+      {document && !form && (
+        <p className="section muted">
+          The text cannot be read as a table of values; the form comes back when it can.
+        </p>
+      )}
+    </div>
+  );
+}
+
+/** What is wrong with the text, in words; the fields below show it at their places. */
+function Faults() {
+  const diagnostics = useStudio((state) => state.document?.diagnostics ?? NO_DIAGNOSTICS);
+  return (
+    <div className="faults" role="alert" data-testid="faults">
+      {diagnostics.slice(0, 3).map((one) => (
+        <p key={`${one.where} ${one.what}`}>
+          <b>{one.where || `line ${one.line}`}</b> {one.what}
+          {one.hint && <span className="muted"> Try: {one.hint}.</span>}
+        </p>
+      ))}
+      <p className="muted">The view shows the last design that was good.</p>
+    </div>
+  );
+}
+
+const GENERAL = ["name", "description", "voxel_size", "fill"];
+
+function General(props: { form: Form }) {
+  const { root, source } = props.form;
+  const help: Readonly<Record<string, string>> = {
+    ...helpOfKeys(root),
+    voxel_size: "Edge of a voxel. Halving it makes eight times as many.",
+    fill: "binary: a voxel is full or empty; fraction: cut voxels count by their share.",
+  };
+  return (
+    <Section title="Design">
+      {GENERAL.filter((key) => key in source || key === "voxel_size" || key === "name").map(
+        (key) => (
+          <SchemaField
+            key={key}
+            path={[key]}
+            schema={root.properties?.[key] ?? {}}
+            value={source[key]}
+            label={{ voxel_size: "Voxel size", name: "Name", fill: "Fill" }[key] ?? "Description"}
+            help={help[key]}
+          />
+        ),
+      )}
+    </Section>
+  );
+}
+
+function Floor(props: { form: Form }) {
+  const { root, source } = props.form;
+  const schema = root.properties?.floor?.anyOf?.[0];
+  if (!schema) return null;
+  const there = "floor" in source;
+  return (
+    <Section
+      title="Floor"
+      action={
+        there ? (
+          <Button icon kind="quiet" label="Remove the floor" onClick={() => edit(["floor"], null)}>
+            <Glyph name="trash" />
+          </Button>
+        ) : (
+          <Adder what="a floor" schema={schema} onAdd={() => edit(["floor"], { z: 0 })} />
+        )
+      }
+    >
+      {there ? (
+        <TableFields path={["floor"]} schema={schema} value={source.floor} />
+      ) : (
+        <p className="muted">None. A floor is a plane that nothing sinks through.</p>
+      )}
+    </Section>
+  );
+}
+
+function Solver(props: { form: Form }) {
+  const { root, source } = props.form;
+  const schema = root.properties?.solver;
+  if (!schema) return null;
+  return (
+    <Section title="Solver">
+      {!("solver" in source) && (
+        <p className="muted">Chosen from the design: statics for rubber, XPBD for lattices.</p>
+      )}
+      <TableFields path={["solver"]} schema={schema} value={source.solver} />
+    </Section>
+  );
+}

@@ -1,0 +1,256 @@
+// Sections of a design that hold several things: parts, loads, clamps, probes, materials, layers.
+import { type ReactNode, useState } from "react";
+import { Button, Section } from "../../controls/Choice";
+import { describeValue } from "../../controls/kinds";
+import { useStudio } from "../../store/studio";
+import { edit, problemsAt, replaceText } from "./edits";
+import { useForm } from "./form";
+import { Glyph } from "./Glyph";
+import { NAME, type Named, renamed } from "./rename";
+import { swapped, TableFields } from "./SchemaField";
+import { controlOf, resolve, type Schema, summary } from "./schema";
+import { freeName, starter } from "./starters";
+import { TextField } from "./TextField";
+
+export type Table = Readonly<Record<string, unknown>>;
+
+interface EntryProps {
+  title: string;
+  about?: string | undefined;
+  wrong: boolean;
+  testId?: string;
+  depth?: number;
+  actions: readonly { readonly glyph: "up" | "down" | "trash"; label: string; run(): void }[];
+  children: ReactNode;
+}
+
+/** A line that opens to the fields behind it. */
+export function Entry(props: EntryProps) {
+  const [open, setOpen] = useState(false);
+  return (
+    <div
+      className={`entry${open ? " is-open" : ""}`}
+      data-testid={props.testId}
+      style={{ marginLeft: (props.depth ?? 0) * 14 }}
+    >
+      <div className="entry-head">
+        <button type="button" aria-expanded={open} onClick={() => setOpen(!open)}>
+          <i className="chevron">
+            <Glyph name="open" />
+          </i>
+          <span className="entry-title">{props.title}</span>
+          {props.wrong && (
+            <b className="bad" role="img" aria-label="has an error">
+              !
+            </b>
+          )}
+          <span className="muted entry-about">{props.about}</span>
+        </button>
+        <span className="entry-actions">
+          {props.actions.map((action) => (
+            <Button key={action.label} icon kind="quiet" label={action.label} onClick={action.run}>
+              <Glyph name={action.glyph} />
+            </Button>
+          ))}
+        </span>
+      </div>
+      {open && <div className="entry-body">{props.children}</div>}
+    </div>
+  );
+}
+
+/** A choice of variants that adds one; a plain button where there is one kind only. */
+export function Adder(props: { what: string; schema: Schema; onAdd(value: unknown): void }) {
+  const { root, names } = useForm();
+  const control = controlOf(root, props.schema);
+  if (control.is !== "variant") {
+    return (
+      <Button
+        icon
+        kind="quiet"
+        label={`Add ${props.what}`}
+        onClick={() => props.onAdd(starter(root, props.schema, names))}
+      >
+        <Glyph name="plus" />
+      </Button>
+    );
+  }
+  return (
+    <select
+      className="select add-kind"
+      aria-label={`Add ${props.what}`}
+      title={`Add ${props.what}`}
+      value=""
+      onChange={(event) => {
+        const kind = event.target.value;
+        const variant = control.variants[kind];
+        if (!variant) return;
+        const table = starter(root, variant, names) as Table;
+        props.onAdd({ [control.tag]: kind, ...table });
+      }}
+    >
+      <option value="">+</option>
+      {Object.entries(control.variants).map(([kind, variant]) => (
+        <option key={kind} value={kind} title={summary(variant)}>
+          {kind}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+/** The short word for an entry of a list, such as `pressure 4 kPa`. */
+export function aboutEntry(section: string, value: Table): string {
+  const region = value.region as Table | undefined;
+  const place = region ? describeValue(region) : "";
+  switch (section) {
+    case "parts":
+      return `${describeShort(value.shape)} of ${describeShort(value.material)}`;
+    case "loads":
+      return `${describeValue(value.value ?? "")} ${place && `at ${place}`}`.trim();
+    case "clamps":
+      return `${place}${value.axes && value.axes !== "xyz" ? `, along ${value.axes}` : ""}`;
+    case "layers":
+      return `${describeValue(value.thickness)}, ${describeValue(value.young)}`;
+    case "materials":
+      return String(value.model ?? "");
+    default:
+      return describeValue(value);
+  }
+}
+
+function describeShort(value: unknown): string {
+  if (typeof value === "object" && value !== null) {
+    const table = value as Table;
+    return String(table.kind ?? table.model ?? "");
+  }
+  return String(value ?? "");
+}
+
+function titleOf(section: string, value: Table, index: number): string {
+  if (typeof value.name === "string") return value.name;
+  if (section === "loads") return String(value.kind ?? "load");
+  const word = { parts: "Part", clamps: "Clamp", layers: "Layer" }[section] ?? "Entry";
+  return `${word} ${index + 1}`;
+}
+
+/** A list of tables, such as the loads; the order counts and can be changed. */
+export function EntryList(props: {
+  section: string;
+  title: string;
+  what: string;
+  empty: string;
+  note?: string;
+}) {
+  const { root, source, diagnostics } = useForm();
+  const { section } = props;
+  const schema = root.properties?.[section]?.items;
+  if (!schema) return null;
+  const values = (source[section] as Table[] | undefined) ?? [];
+  return (
+    <Section
+      title={props.title}
+      action={
+        <Adder
+          what={props.what}
+          schema={schema}
+          onAdd={(value) => edit([section, values.length], value)}
+        />
+      }
+    >
+      {values.length === 0 && <p className="muted">{props.empty}</p>}
+      {values.length > 1 && props.note && <p className="muted">{props.note}</p>}
+      {values.map((value, i) => {
+        const title = titleOf(section, value, i);
+        const remove = { glyph: "trash", label: `Remove ${title}` } as const;
+        return (
+          <Entry
+            // biome-ignore lint/suspicious/noArrayIndexKey: entries may have no other name
+            key={i}
+            title={title}
+            about={aboutEntry(section, value)}
+            wrong={problemsAt(diagnostics, [section, i]).length > 0}
+            testId={`${section}-${i}`}
+            actions={[
+              ...(i > 0
+                ? [
+                    {
+                      glyph: "up" as const,
+                      label: `Move ${title} up`,
+                      run: () => edit([section], swapped(values, i, i - 1)),
+                    },
+                  ]
+                : []),
+              { ...remove, run: () => edit([section, i], null) },
+            ]}
+          >
+            <TableFields path={[section, i]} schema={schema} value={value} />
+          </Entry>
+        );
+      })}
+    </Section>
+  );
+}
+
+/** A table of named things, such as the probes; they can be renamed. */
+export function EntryMap(props: {
+  section: Named;
+  title: string;
+  what: string;
+  empty: string;
+  first: string;
+  children?: (name: string, value: Table) => ReactNode;
+}) {
+  const { root, source, diagnostics } = useForm();
+  const { section } = props;
+  const map = resolve(root, root.properties?.[section] ?? {}).additionalProperties;
+  if (typeof map !== "object") return null;
+  const values = (source[section] as Record<string, Table> | undefined) ?? {};
+  return (
+    <Section
+      title={props.title}
+      action={
+        <Adder
+          what={props.what}
+          schema={map}
+          onAdd={(value) => edit([section, freeName(props.first, Object.keys(values))], value)}
+        />
+      }
+    >
+      {Object.keys(values).length === 0 && <p className="muted">{props.empty}</p>}
+      {Object.entries(values).map(([name, value]) => (
+        <Entry
+          key={name}
+          title={name}
+          about={aboutEntry(section, value)}
+          wrong={problemsAt(diagnostics, [section, name]).length > 0}
+          testId={`${section}-${name}`}
+          actions={[
+            { glyph: "trash", label: `Remove ${name}`, run: () => edit([section, name], null) },
+          ]}
+        >
+          <NameField section={section} name={name} taken={Object.keys(values)} />
+          {props.children?.(name, value) ?? (
+            <TableFields path={[section, name]} schema={map} value={value} />
+          )}
+        </Entry>
+      ))}
+    </Section>
+  );
+}
+
+export function NameField(props: { section: Named; name: string; taken: readonly string[] }) {
+  return (
+    <TextField
+      label="Name"
+      value={props.name}
+      onCommit={(name) => {
+        if (!NAME.test(name)) return "letters, digits, _ and - only";
+        if (props.taken.includes(name)) return `“${name}” is taken`;
+        const text = useStudio.getState().document?.text ?? "";
+        replaceText(renamed(text, props.section, props.name, name));
+        return null;
+      }}
+    />
+  );
+}

@@ -1,0 +1,188 @@
+// What a study strives for and what it must keep: metrics at probes.
+import { Select } from "../../controls/Choice";
+import { readWritten } from "../../controls/kinds";
+import type { Metric } from "../../protocol";
+import { useStudio } from "../../store/studio";
+import { EntryMap, type Table } from "./Entries";
+import { edit } from "./edits";
+import { useForm } from "./form";
+import { labelOf } from "./schema";
+import { TextField } from "./TextField";
+
+const AXES = [
+  { value: "", label: "magnitude" },
+  { value: "x", label: "x" },
+  { value: "y", label: "y" },
+  { value: "z", label: "z" },
+];
+
+/** The fields that every metric has: which one, where, along what. */
+export function MetricFields(props: {
+  metric: string;
+  value: Table;
+  onMetric(name: string): void;
+  onKey(key: string, value: unknown): void;
+}) {
+  const metrics = useStudio((state) => state.hello?.metrics);
+  const { source } = useForm();
+  const probes = Object.keys((source.probes as object | undefined) ?? {});
+  const metric = metrics?.find((one) => one.name === props.metric);
+  const probe = String(props.value.probe ?? "");
+  return (
+    <>
+      <Select
+        label="Metric"
+        value={props.metric}
+        options={withCurrent(
+          (metrics ?? []).map((one) => ({ value: one.name, label: labelOf(one.name) })),
+          props.metric,
+        )}
+        onChange={props.onMetric}
+      />
+      {metric?.needs_probe && (
+        <Select
+          label="Probe"
+          value={probe}
+          options={withCurrent(
+            probes.map((name) => ({ value: name, label: name })),
+            probe,
+          )}
+          onChange={(next) => props.onKey("probe", next)}
+        />
+      )}
+      {metric?.needs_probe && (
+        <Select
+          label="Along"
+          value={String(props.value.axis ?? "")}
+          options={AXES}
+          onChange={(next) => props.onKey("axis", next || null)}
+        />
+      )}
+      {metric?.needs_cavity && (
+        <TextField
+          label="Cavity"
+          title="0 is the largest."
+          value={String(props.value.cavity ?? 0)}
+          onCommit={(text) => {
+            const read = readWritten(text, "number");
+            if ("problem" in read) return read.problem;
+            props.onKey("cavity", read.value);
+            return null;
+          }}
+        />
+      )}
+    </>
+  );
+}
+
+function withCurrent(options: { value: string; label: string }[], current: string) {
+  return options.some((one) => one.value === current)
+    ? options
+    : [{ value: current, label: current || "choose…" }, ...options];
+}
+
+/** What a goal needs when its metric changes: a probe where there must be one, and no more. */
+export function fittingKeys(
+  metric: Metric | undefined,
+  value: Table,
+  probes: readonly string[],
+): Record<string, unknown> {
+  const { probe: _p, axis: _a, cavity: _c, ...kept } = value;
+  if (metric?.needs_probe) {
+    return {
+      ...kept,
+      probe: value.probe ?? probes[0] ?? "",
+      ...(value.axis ? { axis: value.axis } : {}),
+    };
+  }
+  return metric?.needs_cavity ? { ...kept, cavity: value.cavity ?? 0 } : kept;
+}
+
+export function Goals() {
+  const metrics = useStudio((state) => state.hello?.metrics);
+  const { source } = useForm();
+  const probes = Object.keys((source.probes as object | undefined) ?? {});
+  const metricOf = (name: string) => metrics?.find((one) => one.name === name);
+  return (
+    <>
+      <EntryMap
+        section="objectives"
+        title="Objectives"
+        what="an objective"
+        first="goal"
+        empty="None yet. A study needs one: what to make as large or as small as possible."
+      >
+        {(name, value) => {
+          const direction = "maximize" in value ? "maximize" : "minimize";
+          const path = ["objectives", name];
+          return (
+            <>
+              <Select
+                label="Goal"
+                value={direction}
+                options={["maximize", "minimize"]}
+                onChange={(next) => {
+                  const { maximize, minimize, ...others } = value;
+                  edit(path, { [next]: maximize ?? minimize ?? "mass", ...others });
+                }}
+              />
+              <MetricFields
+                metric={String(value[direction] ?? "")}
+                value={value}
+                onMetric={(next) =>
+                  edit(path, {
+                    ...fittingKeys(metricOf(next), value, probes),
+                    [direction]: next,
+                  })
+                }
+                onKey={(key, next) => edit([...path, key], next)}
+              />
+            </>
+          );
+        }}
+      </EntryMap>
+      <EntryMap
+        section="constraints"
+        title="Constraints"
+        what="a constraint"
+        first="limit"
+        empty="None. A constraint keeps a metric within bounds."
+      >
+        {(name, value) => {
+          const path = ["constraints", name];
+          const metric = metricOf(String(value.metric ?? ""));
+          const bound = (key: "min" | "max") => (text: string) => {
+            if (text.trim() === "") {
+              edit([...path, key], null);
+              return null;
+            }
+            const read = readWritten(text, metric?.kind ?? "number");
+            if ("problem" in read) return read.problem;
+            edit([...path, key], read.value);
+            return null;
+          };
+          return (
+            <>
+              <MetricFields
+                metric={String(value.metric ?? "")}
+                value={value}
+                onMetric={(next) => {
+                  const kept = fittingKeys(metricOf(next), value, probes);
+                  // Bounds in the unit of another metric would be wrong.
+                  if (metricOf(next)?.kind !== metric?.kind) {
+                    delete kept.min;
+                    delete kept.max;
+                  }
+                  edit(path, { ...kept, metric: next });
+                }}
+                onKey={(key, next) => edit([...path, key], next)}
+              />
+              <TextField label="At least" value={String(value.min ?? "")} onCommit={bound("min")} />
+              <TextField label="At most" value={String(value.max ?? "")} onCommit={bound("max")} />
+            </>
+          );
+        }}
+      </EntryMap>
+    </>
+  );
+}

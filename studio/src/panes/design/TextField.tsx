@@ -1,0 +1,96 @@
+import { useId, useState } from "react";
+
+export interface TextFieldProps {
+  label: string;
+  value: string;
+  title?: string | undefined;
+  problem?: string | undefined;
+  /** Said in gray behind the value, such as what a formula comes to. */
+  aside?: string | undefined;
+  /** Names to offer while typing. */
+  offers?: readonly string[];
+  changed?: boolean;
+  /** Numbers stand at the right, names and sentences at the left. */
+  right?: boolean;
+  bare?: boolean;
+  /** Gives what is wrong with the text, or null after taking it. */
+  onCommit(text: string): string | null;
+  onDefault?: (() => void) | undefined;
+  /** Up and down arrows. */
+  onNudge?: ((count: number) => void) | undefined;
+}
+
+/** A field that takes its text with Enter or on leaving it; Escape gives the old one back. */
+export function TextField(props: TextFieldProps) {
+  const id = useId();
+  const [draft, setDraft] = useState<string | null>(null);
+  const [refusal, setRefusal] = useState<string | null>(null);
+  const note = refusal ?? props.problem;
+
+  const commit = () => {
+    if (draft === null) return;
+    if (draft.trim() === props.value.trim()) {
+      setDraft(null);
+      setRefusal(null);
+      return;
+    }
+    const wrong = props.onCommit(draft);
+    setRefusal(wrong);
+    if (wrong === null) setDraft(null);
+  };
+
+  const input = (
+    <span className="number">
+      <input
+        id={id}
+        className={`input${props.right ? "" : " words"}`}
+        aria-label={props.label}
+        aria-invalid={note ? true : undefined}
+        autoComplete="off"
+        spellCheck={false}
+        list={props.offers ? `${id}-offers` : undefined}
+        title={note ?? props.title}
+        value={draft ?? props.value}
+        onChange={(event) => setDraft(event.target.value)}
+        onBlur={commit}
+        onKeyDown={(event) => {
+          if (event.key === "Enter") commit();
+          else if (event.key === "Escape") {
+            setDraft(null);
+            setRefusal(null);
+          } else if (props.onNudge && draft === null && event.key === "ArrowUp") {
+            props.onNudge(event.shiftKey ? 10 : 1);
+          } else if (props.onNudge && draft === null && event.key === "ArrowDown") {
+            props.onNudge(event.shiftKey ? -10 : -1);
+          } else return;
+          event.preventDefault();
+          event.stopPropagation();
+        }}
+      />
+      {props.offers && (
+        <datalist id={`${id}-offers`}>
+          {props.offers.map((offer) => (
+            <option key={offer} value={offer} />
+          ))}
+        </datalist>
+      )}
+    </span>
+  );
+  if (props.bare) return input;
+  return (
+    <div className="field" title={props.title}>
+      <label
+        className={`field-label${props.changed ? " changed" : ""}`}
+        htmlFor={id}
+        onDoubleClick={props.onDefault}
+      >
+        {props.label}
+      </label>
+      <div className="field-value">
+        {input}
+        {props.aside && <span className="aside">{props.aside}</span>}
+      </div>
+      {note && <span className="field-note">{note}</span>}
+    </div>
+  );
+}

@@ -1,0 +1,86 @@
+// Changes of the document, from the form and from other panes; all end in the one text.
+import type { Diagnostic } from "../../protocol";
+import { send } from "../../store/session";
+import { useStudio } from "../../store/studio";
+
+export type Path = readonly (string | number)[];
+
+/** Shortest time between two changes while a slider moves, ms. */
+const SPACING = 60;
+
+let flushText: () => void = () => {};
+
+/** The text editor says here how to hand over what was typed and not yet sent. */
+export function beforeEdits(flush: () => void): () => void {
+  flushText = flush;
+  return () => {
+    flushText = () => {};
+  };
+}
+
+/** Set one value of the document; null removes it. */
+export function edit(path: Path, value: unknown): void {
+  flushText();
+  const rev = useStudio.getState().document?.rev ?? 0;
+  send({ t: "edit", rev, path: [...path], value });
+}
+
+/** Replace the text of the document. */
+export function replaceText(text: string): void {
+  flushText();
+  const rev = useStudio.getState().document?.rev ?? 0;
+  send({ t: "text", rev, text });
+}
+
+interface Sliding {
+  value: unknown;
+  timer: ReturnType<typeof setTimeout> | null;
+}
+
+const sliding = new Map<string, Sliding>();
+
+/** Like `edit` while a slider moves: the newest value is sent, not more often than makes sense. */
+export function slide(path: Path, value: unknown, settled: boolean): void {
+  const key = JSON.stringify(path);
+  const known = sliding.get(key);
+  if (settled) {
+    if (known?.timer) clearTimeout(known.timer);
+    sliding.delete(key);
+    edit(path, value);
+    return;
+  }
+  if (known) {
+    known.value = value;
+    return;
+  }
+  edit(path, value);
+  const entry: Sliding = { value, timer: null };
+  entry.timer = setTimeout(() => {
+    sliding.delete(key);
+    if (entry.value !== value) slide(path, entry.value, false);
+  }, SPACING);
+  sliding.set(key, entry);
+}
+
+/** A path as VoxSoft's messages write it: `parts[0].material`. */
+export function placeText(path: Path): string {
+  return path
+    .map((step, i) => (typeof step === "number" ? `[${step}]` : i ? `.${step}` : step))
+    .join("");
+}
+
+/** What is wrong at a place or anywhere below it. */
+export function problemsAt(diagnostics: readonly Diagnostic[], path: Path): readonly Diagnostic[] {
+  const place = placeText(path);
+  return diagnostics.filter(
+    ({ where }) =>
+      where === place || (where.startsWith(place) && /[.[]/.test(where[place.length] ?? "")),
+  );
+}
+
+/** One sentence for a field: what is wrong, and what to try. */
+export function problemText(diagnostics: readonly Diagnostic[]): string | undefined {
+  const first = diagnostics[0];
+  if (!first) return undefined;
+  return first.hint ? `${first.what}. Try: ${first.hint}` : first.what;
+}

@@ -1,0 +1,75 @@
+// Give a named thing of a design another name, everywhere the text speaks of it.
+
+export type Named = "parameters" | "shapes" | "materials" | "probes" | "objectives" | "constraints";
+
+export const NAME = /^[A-Za-z_][\w-]*$/;
+
+function escaped(text: string): string {
+  return text.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+}
+
+/** Split a line into what counts and its comment. */
+function splitComment(line: string): [string, string] {
+  let quote = "";
+  for (let i = 0; i < line.length; i++) {
+    const letter = line[i] ?? "";
+    if (quote) {
+      if (letter === "\\" && quote === '"') i++;
+      else if (letter === quote) quote = "";
+    } else if (letter === '"' || letter === "'") quote = letter;
+    else if (letter === "#") return [line.slice(0, i), line.slice(i)];
+  }
+  return [line, ""];
+}
+
+/** The key itself, where its section defines it. */
+function redefine(
+  code: string,
+  inSection: boolean,
+  section: Named,
+  from: string,
+  to: string,
+): string {
+  const header = new RegExp(`^(\\s*\\[\\s*${section}\\s*\\.\\s*)"?${escaped(from)}"?(\\s*[\\].])`);
+  if (header.test(code)) return code.replace(header, `$1${to}$2`);
+  if (!inSection) return code;
+  return code.replace(new RegExp(`^(\\s*)"?${escaped(from)}"?(\\s*[=.])`), `$1${to}$2`);
+}
+
+/** Mentions of the name in texts: whole texts name things, formulas name parameters. */
+function mention(code: string, section: Named, from: string, to: string): string {
+  return code.replace(/"((?:\\.|[^"\\])*)"|'([^']*)'/g, (whole, double, single) => {
+    const text: string = double ?? single ?? "";
+    const quote = whole[0];
+    if (section === "parameters") {
+      if (!text.trimStart().startsWith("=")) return whole;
+      const word = new RegExp(`(?<![\\w-])${escaped(from)}(?![\\w-])`, "g");
+      return `${quote}${text.replace(word, to)}${quote}`;
+    }
+    return text === from ? `${quote}${to}${quote}` : whole;
+  });
+}
+
+// What names are spoken of where: a probe called like a shape must not rename the shape.
+const SPEAKS: Readonly<Record<Named, RegExp | null>> = {
+  parameters: /./,
+  shapes: /\b(?:of|shape|by|base|inner|outer)\s*=/,
+  materials: /\bmaterial\s*=/,
+  probes: /\bprobe\s*=/,
+  objectives: null,
+  constraints: null,
+};
+
+/** The text with one thing renamed; its comments and its layout stay. */
+export function renamed(text: string, section: Named, from: string, to: string): string {
+  let current = "";
+  const lines = text.split("\n").map((line) => {
+    const [code, comment] = splitComment(line);
+    const header = /^\s*\[\[?\s*([\w-]+)/.exec(code);
+    if (header) current = header[1] ?? "";
+    let next = redefine(code, current === section && !header, section, from, to);
+    if (SPEAKS[section]?.test(next)) next = mention(next, section, from, to);
+    return next + comment;
+  });
+  return lines.join("\n");
+}

@@ -1,0 +1,43 @@
+// The shapes of a design as a tree: what parts and regions use stands at the top, what a shape
+// is made of below it.
+
+export interface ShapeNode {
+  readonly name: string;
+  readonly depth: number;
+  /** It stands with its fields at another place of the tree. */
+  readonly again: boolean;
+}
+
+type Table = Readonly<Record<string, unknown>>;
+
+/** Names that a shape refers to, in the order in which it does. */
+export function operandsOf(shape: unknown): string[] {
+  if (typeof shape === "string") return [shape];
+  if (Array.isArray(shape)) return shape.flatMap(operandsOf);
+  if (typeof shape !== "object" || shape === null) return [];
+  const table = shape as Table;
+  return [...operandsOf(table.of ?? []), ...(typeof table.by === "string" ? [table.by] : [])];
+}
+
+/** All shapes, each once with its fields, below the first shape that uses it. */
+export function shapeTree(shapes: Readonly<Record<string, unknown>>): ShapeNode[] {
+  const uses = new Map(
+    Object.entries(shapes).map(([name, shape]) => {
+      const inner = (shape as Table | null)?.of ?? [];
+      return [name, operandsOf(inner).filter((one) => one in shapes)] as const;
+    }),
+  );
+  const used = new Set([...uses.values()].flat());
+  const found: ShapeNode[] = [];
+  const seen = new Set<string>();
+  const visit = (name: string, depth: number): void => {
+    const again = seen.has(name);
+    seen.add(name);
+    found.push({ name, depth, again });
+    if (!again) for (const inner of uses.get(name) ?? []) visit(inner, depth + 1);
+  };
+  for (const name of Object.keys(shapes)) if (!used.has(name)) visit(name, 0);
+  // What is left refers to itself in a circle, which the diagnostics tell.
+  for (const name of Object.keys(shapes)) if (!seen.has(name)) visit(name, 0);
+  return found;
+}

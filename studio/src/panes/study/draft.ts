@@ -1,0 +1,44 @@
+// The study that is being set up; kept in this page until it is started.
+import { create } from "zustand";
+
+export interface Sweep {
+  readonly low: number;
+  readonly high: number;
+  readonly step: number | null;
+  readonly log: boolean;
+}
+
+export interface StudyDraft {
+  readonly name: string;
+  readonly sampler: string;
+  readonly budget: number;
+  readonly workers: number | null;
+  readonly seed: number;
+  /** Parameters that were switched on or off by hand; the others follow the design. */
+  readonly chosen: Readonly<Record<string, boolean>>;
+  /** Ranges that differ from those of the design. */
+  readonly ranges: Readonly<Record<string, Partial<Sweep>>>;
+  /** Objectives that were switched off. */
+  readonly dropped: Readonly<Record<string, boolean>>;
+}
+
+export const useStudyDraft = create<StudyDraft>(() => ({
+  name: "",
+  sampler: "tpe",
+  budget: 60,
+  workers: null,
+  seed: 0,
+  chosen: {},
+  ranges: {},
+  dropped: {},
+}));
+
+export function toggleSweep(parameter: string, on: boolean): void {
+  useStudyDraft.setState((draft) => ({ chosen: { ...draft.chosen, [parameter]: on } }));
+}
+
+export function changeRange(parameter: string, change: Partial<Sweep>): void {
+  useStudyDraft.setState((draft) => ({
+    ranges: { ...draft.ranges, [parameter]: { ...draft.ranges[parameter], ...change } },
+  }));
+}

@@ -1,0 +1,120 @@
+import { describe, expect, it } from "vitest";
+import { placeText, problemsAt } from "../../src/panes/design/edits";
+import { renamed } from "../../src/panes/design/rename";
+import { shapeTree } from "../../src/panes/design/shapeTree";
+import { tableAt, valueOffers } from "../../src/panes/design/text/complete";
+import { difference } from "../../src/panes/design/text/editor";
+import { placeAt } from "../../src/panes/design/text/place";
+import type { HelloEvent } from "../../src/protocol";
+import { root } from "./smallSchema";
+
+/** The place of the bar in a text. */
+function at(text: string) {
+  return placeAt(text.replace("|", ""), text.indexOf("|"));
+}
+
+describe("placeAt", () => {
+  it("tells keys from values, in sections and in tables on one line", () => {
+    expect(at('[shapes]\nbody = { ki|nd = "box" }')).toMatchObject({
+      at: "key",
+      path: ["shapes", "body"],
+      word: "ki",
+    });
+    expect(at('[shapes]\nbody = { kind = "bo|x" }')).toMatchObject({
+      at: "value",
+      path: ["shapes", "body", "kind"],
+      word: "bo",
+      quoted: true,
+    });
+  });
+  it("counts the sections of a list and the entries of an array", () => {
+    expect(at("[[loads]]\nkind = 1\n[[loads]]\nval|")).toMatchObject({ path: ["loads", 1] });
+    expect(at('size = [1, "2 m|m"]')).toMatchObject({ at: "value", path: ["size", 1] });
+    expect(at('size = [\n  1,\n  "2|"]')).toMatchObject({ path: ["size", 1] });
+  });
+  it("is not misled by comments, texts and brackets in them", () => {
+    expect(at('a = "# [x" # b = {\nc|')).toMatchObject({ at: "key", path: [], word: "c" });
+    expect(at("a = 1 # wh|y")).toMatchObject({ at: "comment" });
+  });
+  it("knows headers, and what was read before", () => {
+    expect(at("[sha|")).toMatchObject({ at: "header", word: "sha" });
+    expect(at('[shapes]\nbody = { kind = "box", |').read).toEqual({
+      shapes: { body: { kind: "box" } },
+    });
+  });
+});
+
+it("offers the keys of the kind that stands there", () => {
+  const read = { shapes: { body: { kind: "box" } } };
+  expect(Object.keys(tableAt(root, ["shapes", "body"], read)?.properties ?? {})).toContain("size");
+  expect(Object.keys(tableAt(root, ["shapes", "new"], read)?.properties ?? {})).toEqual(["kind"]);
+});
+
+it("offers parameters in formulas, shapes where one is named", () => {
+  const hello = { design_schema: root, metrics: [], materials: [] } as unknown as HelloEvent;
+  const whole = { parameters: { wall: 1 }, shapes: { body: {} } };
+  const formula = { path: ["voxel_size"], word: "= wa", quoted: true };
+  expect(valueOffers(hello, formula, whole)).toEqual([{ label: "wall" }]);
+  const named = { path: ["parts", 0, "shape"], word: "", quoted: true };
+  expect(valueOffers(hello, named, whole)).toEqual([{ label: "body" }]);
+});
+
+describe("renamed", () => {
+  const text = [
+    "[parameters] # wall",
+    'wall = { value = "5 mm" }',
+    'big-wall = { value = "= 2*wall" }',
+    "[shapes]",
+    'wall = { kind = "box", size = ["= wall", "= big-wall", 1] } # the wall',
+    'all = { kind = "union", of = ["wall", "other"] }',
+    "[[parts]]",
+    'shape = "wall"',
+    'name = "wall"',
+  ].join("\n");
+  it("renames a parameter in its definition and in formulas only", () => {
+    const after = renamed(text, "parameters", "wall", "skin");
+    expect(after).toContain('skin = { value = "5 mm" }');
+    expect(after).toContain('"= 2*skin"');
+    expect(after).toContain(
+      'wall = { kind = "box", size = ["= skin", "= big-wall", 1] } # the wall',
+    );
+    expect(after).toContain('shape = "wall"');
+  });
+  it("renames a shape where shapes are named, not what is only called alike", () => {
+    const after = renamed(text, "shapes", "wall", "hull");
+    expect(after).toContain('hull = { kind = "box", size = ["= wall"');
+    expect(after).toContain('of = ["hull", "other"]');
+    expect(after).toContain('shape = "hull"\nname = "wall"');
+    expect(after).toContain("[parameters] # wall\nwall = { value");
+  });
+});
+
+it("orders shapes below what uses them, each once", () => {
+  const shapes = {
+    a: { kind: "box" },
+    b: { kind: "union", of: ["a", "c"] },
+    c: { kind: "shell", of: "a" },
+  };
+  expect(shapeTree(shapes)).toEqual([
+    { name: "b", depth: 0, again: false },
+    { name: "a", depth: 1, again: false },
+    { name: "c", depth: 1, again: false },
+    { name: "a", depth: 2, again: true },
+  ]);
+  // A circle is shown too, so that it can be mended.
+  const circle = { a: { of: "b" }, b: { of: "a" } };
+  expect(shapeTree(circle).filter((node) => !node.again)).toHaveLength(2);
+});
+
+it("finds problems at a place and below it, not at one that begins alike", () => {
+  const at = (where: string) => ({ where, what: "", hint: "", line: 1 }) as never;
+  const found = [at("parts[1].material"), at("parts[10].material"), at("partsy")];
+  expect(placeText(["parts", 1, "material"])).toBe("parts[1].material");
+  expect(problemsAt(found, ["parts", 1])).toHaveLength(1);
+  expect(problemsAt(found, ["parts"])).toHaveLength(2);
+});
+
+it("changes only what differs between two texts", () => {
+  expect(difference("a = 1\nb = 2", "a = 13\nb = 2")).toEqual({ from: 5, to: 5, insert: "3" });
+  expect(difference("aa", "aaa")).toEqual({ from: 2, to: 2, insert: "a" });
+});
