@@ -126,7 +126,7 @@ function Pulls() {
         <div key={grab.id} className="facts-row" data-testid="grab">
           <span>Vertex {grab.vertex}</span>
           <span>
-            {formatNumber(Math.hypot(...grab.force), 3)} N, {formatQuantity(grab.stretch, "m", 3)}{" "}
+            {formatNumber(Math.hypot(...grab.force), 3)} N{" "}
             <Button kind="quiet" onClick={() => viewport().grabs.release(grab.id)}>
               Release
             </Button>

@@ -15,10 +15,7 @@ export function StatusLine() {
         data-testid="sentence"
         aria-live="polite"
       >
-        {stat?.sentence ||
-          (body
-            ? "Ready. Space lets time run; drag the body to pull on it."
-            : "Open a design to begin.")}
+        {stat?.sentence || idle(stat?.state, body !== null)}
       </span>
       {running > 0 && (
         <span className="badge good">{running === 1 ? "1 job runs" : `${running} jobs run`}</span>
@@ -39,4 +36,10 @@ export function StatusLine() {
       {version && <span className="muted">VoxSoft {version}</span>}
     </footer>
   );
+}
+
+function idle(state: string | undefined, body: boolean): string {
+  if (!body) return "Open a design to begin.";
+  if (state === "playing") return "Time runs. Drag the body to pull on it.";
+  return "Ready. Space lets time run; drag the body to pull on it.";
 }

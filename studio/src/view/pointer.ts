@@ -46,6 +46,7 @@ export function listen(view: Viewport): void {
           view.grabs.begin(gesture.hit.vertex, mesh.place(gesture.hit.vertex, 1), view.rig.toEye);
         view.grabs.move(view.ray(event.clientX, event.clientY));
         gesture = { kind: "pull" };
+        view.hoverOver(null);
         canvas.style.cursor = "grabbing";
         if (useStudio.getState().stat?.state !== "playing") send({ t: "play" });
       } else gesture = { kind: "turn" };
