@@ -274,3 +274,82 @@ class Problem:
         frames: bool = False,
         progress: Callable[[int, float, float], None] | None = None,
     ) -> dict[str, Any]: ...
+
+class Display:
+    """A surface or tetrahedra of a body, packed into the messages of the studio."""
+
+    @staticmethod
+    def surface(
+        problem: Problem, triangles: NDArray[np.uint32], tags: NDArray[np.uint8], voxel_size: float
+    ) -> Display: ...
+    @staticmethod
+    def tets(
+        problem: Problem, tets: NDArray[np.uint32], tags: NDArray[np.uint8], voxel_size: float
+    ) -> Display: ...
+    @property
+    def vertices(self) -> NDArray[np.uint32]: ...
+    @property
+    def points(self) -> int: ...
+    def pack_topology(self, topology: int) -> bytes: ...
+    def pack_frame(
+        self,
+        positions: NDArray[np.float64],
+        *,
+        topology: int,
+        frame: int,
+        field: int,
+        seq: int = 0,
+        flags: int = 0,
+        time: float = 0.0,
+        velocities: NDArray[np.float64] | None = None,
+    ) -> bytes: ...
+
+class Live:
+    """A problem in motion between calls; any thread may call.
+
+    `advance` gives status ("moving", "at-rest", "diverged"), time, substep, substeps (all so far),
+    taken (in this call), back_offs, residual, elastic, kinetic (J), breakdown (vertex, rest, when)
+    and seconds of the clock.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        triangles: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxel_size: float,
+        *,
+        time_step: float = 0.01,
+        substeps: int | None = None,
+        iterations: int = 1,
+        damping: float | None = None,
+        retardation: float = 0.0,
+        tolerance: float = 1e-4,
+        deterministic: bool = False,
+    ) -> None: ...
+    @property
+    def substep(self) -> float: ...
+    def advance(self, substeps: int) -> dict[str, Any]: ...
+    def advance_for(self, seconds: float, max_substeps: int = ...) -> dict[str, Any]: ...
+    def set_load(self, load: int, factor: float | None) -> None: ...
+    def grab(self, number: int, vertex: int, target: Sequence[float], stiffness: float) -> None: ...
+    def release(self, number: int) -> bool: ...
+    def grabs(self) -> list[tuple[int, int, list[float], list[float], float]]:
+        """Number, vertex, target (m), force (N) and stretch (m) of each."""
+
+    def reset(self) -> None: ...
+    def seek(self, positions: NDArray[np.float64], time: float = 0.0) -> None: ...
+    def positions(self) -> NDArray[np.float64]: ...
+    def velocities(self) -> NDArray[np.float64]: ...
+    @property
+    def vertices(self) -> NDArray[np.uint32]: ...
+    def pack_topology(self, topology: int) -> bytes: ...
+    def pack_frame(
+        self,
+        topology: int,
+        frame: int,
+        field: int,
+        seq: int = 0,
+        flags: int = 0,
+        display: Display | None = None,
+    ) -> bytes: ...

@@ -5,6 +5,7 @@ mod ensemble;
 mod equilibrium;
 mod errors;
 mod gate;
+mod live;
 mod materials;
 mod mesh;
 mod shapes;
@@ -19,6 +20,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
+    module.add_class::<live::PyDisplay>()?;
+    module.add_class::<live::PyLive>()?;
     module.add_function(wrap_pyfunction!(materials::lattice_constants, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;

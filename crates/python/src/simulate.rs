@@ -380,6 +380,7 @@ impl PyProblem {
             end_time,
             max_time,
             tolerance,
+            deterministic: false,
             record_interval,
         };
         let state = State::at_rest(self.problem.body());

@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
-const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
+pub(crate) const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([0, 1], [2, 3]),
     ([0, 2], [3, 1]),
     ([0, 3], [1, 2]),
@@ -131,7 +131,7 @@ impl Body {
             let mut volume_constraints: Vec<Vec<Tet>> = Vec::with_capacity(chunk.len());
             for block in chunk {
                 let first_new = found.len();
-                let side = f64::cbrt(block.iter().map(|&t| volumes[t]).sum());
+                let side = libm::cbrt(block.iter().map(|&t| volumes[t]).sum());
                 let fraction = fraction_of(mesh, block);
                 let mut constraints = Vec::with_capacity(block.len());
                 for &t in block {
@@ -501,9 +501,9 @@ fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64)
 }
 
 /// The angle in rad between the two faces of a tetrahedron that meet at the edge `ends`.
-fn dihedral(vertices: &[Vec3], ends: [u32; 2], apexes: [u32; 2]) -> f64 {
+pub(crate) fn dihedral(vertices: &[Vec3], ends: [u32; 2], apexes: [u32; 2]) -> f64 {
     let [a, b] = ends.map(|v| vertices[v as usize]);
     let along = sub(b, a);
     let [n, m] = apexes.map(|v| cross(along, sub(vertices[v as usize], a)));
-    f64::atan2(norm(cross(n, m)), dot(n, m))
+    libm::atan2(norm(cross(n, m)), dot(n, m))
 }

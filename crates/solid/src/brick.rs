@@ -36,10 +36,13 @@ use crate::brick_energy::{Modes, Rotated, SHAPE};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
 use crate::matrix::{
-    IDENTITY, Mat3, apply, apply_transposed, axial, cross_matrix, multiply, plus, solve_spd,
-    transpose,
+    IDENTITY, Mat3, apply, apply_transposed, axial, cross_matrix, determinant, multiply, plus,
+    solve_spd, transpose,
 };
 use crate::vector::{Vec3, add, axpy, scale, sub};
+
+/// A voxel pressed below this part of its volume counts as that part where its stress is asked.
+pub(crate) const LEAST_VOLUME: f64 = 1e-3;
 
 /// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 const CORNERS: usize = 8;
@@ -127,6 +130,26 @@ impl Brick {
     pub fn deformation(&self, positions: &[Vec3]) -> Mat3 {
         let modes = self.modes(positions);
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
+    }
+
+    /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of
+    /// [`Brick::forces`]; bending modes have no part in it.
+    pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
+        let mut modes = self.modes(positions);
+        modes[3..].fill([0.0; 3]);
+        let state = Rotated::of(&modes, Filling::FULL);
+        let stress = to_matrix(&state.gradient(material).stress);
+        let stretch = to_matrix(&state.stretch);
+        let couple = multiply(&stress, &stretch);
+        let y = solve_spd(&spin_matrix(&stretch), axial(&couple));
+        let own = plus(&couple, -1.0, &multiply(&cross_matrix(y), &stretch));
+        // A voxel pressed flat keeps a stress.
+        let volume = determinant(&stretch).max(LEAST_VOLUME);
+        let turned = multiply(
+            &multiply(&state.rotation, &own),
+            &transpose(&state.rotation),
+        );
+        turned.map(|row| row.map(|x| x / volume))
     }
 
     /// The elastic forces on the corners in N, minus the gradient of [`Brick::energy`].

@@ -43,6 +43,15 @@ impl History {
         self.factors.iter().all(|factor| *factor == self.factors[0])
     }
 
+    /// The time in s after which the factor is constant: zero if it always is.
+    pub fn end(&self) -> f64 {
+        if self.is_constant() {
+            0.0
+        } else {
+            self.times[self.times.len() - 1]
+        }
+    }
+
     /// The factor at `time` (s); `f64::INFINITY` gives the final factor.
     pub fn at(&self, time: f64) -> f64 {
         let after = self.times.partition_point(|&t| t <= time);

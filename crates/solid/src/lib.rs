@@ -44,6 +44,7 @@ mod color;
 mod cube;
 pub mod elastic;
 mod error;
+pub mod fields;
 mod history;
 pub mod hyperelastic;
 pub mod lanes;

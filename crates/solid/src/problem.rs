@@ -3,7 +3,7 @@ use crate::elastic::volume_hessian;
 use crate::load::is_closed;
 use crate::matrix::{cross_matrix, plus};
 use crate::vector::{Vec3, axpy, cross, dot, scale, sub};
-use crate::{Body, Clamp, Load, LoadKind, ProblemError, Tet};
+use crate::{Body, Clamp, History, Load, LoadKind, ProblemError, Tet};
 
 /// A horizontal plane without friction that no vertex may pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +71,17 @@ impl Problem {
     /// The loads.
     pub fn loads(&self) -> &[Load] {
         &self.loads
+    }
+
+    /// Gives a load another history.
+    pub fn set_history(&mut self, load: usize, history: History) -> Result<(), ProblemError> {
+        let count = self.loads.len();
+        let what = "load";
+        let index = load;
+        let load = self.loads.get_mut(load);
+        load.ok_or(ProblemError::Index { what, index, count })?
+            .history = history;
+        Ok(())
     }
 
     /// The floor.

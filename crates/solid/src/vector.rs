@@ -53,7 +53,7 @@ pub fn norm(a: Vec3) -> f64 {
 
 /// Rotates `a` about the unit vector `axis` by `angle` radians (Rodrigues' formula).
 pub fn rotate(a: Vec3, axis: Vec3, angle: f64) -> Vec3 {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     let along = scale(dot(axis, a) * (1.0 - cos), axis);
     add(add(scale(cos, a), scale(sin, cross(axis, a))), along)
 }

@@ -30,6 +30,6 @@ mod slots;
 mod stiffness;
 mod viscosity;
 
-pub use dynamics::{Damping, Dynamics, simulate};
+pub use dynamics::{Damping, Dynamics, Grab, Live, LiveStatus, Look, simulate};
 pub use outcome::{Answer, Breakdown, Progress, Status};
 pub use relaxation::{Relaxation, relax};

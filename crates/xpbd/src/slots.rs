@@ -5,19 +5,19 @@ use voxsoft_solid::vector::{cross, scale, sub};
 use voxsoft_solid::{Load, LoadKind, Problem};
 
 /// A pressure on triangles of slots.
-struct SlotPressure<'a> {
-    load: &'a Load,
+struct SlotPressure {
+    /// The index of the load.
+    load: usize,
     /// Pa
     pressure: f64,
     triangles: Vec<[u32; 3]>,
     voids: Vec<([u32; 4], f64)>,
 }
 
-/// External forces and prescribed motions.
-pub(crate) struct SlotProblem<'a> {
-    problem: &'a Problem,
-    pub strips: &'a Strips,
-    pressures: Vec<SlotPressure<'a>>,
+/// External forces and prescribed motions. The problem and its strips come with every call, so that a run
+/// that goes on between calls can own them beside this.
+pub(crate) struct SlotProblem {
+    pressures: Vec<SlotPressure>,
     /// The forces in N that do not follow the body, at the time they were last asked for.
     dead: Columns,
     dead_vary: bool,
@@ -27,16 +27,16 @@ pub(crate) struct SlotProblem<'a> {
     pub free: [Vec<u64>; 3],
 }
 
-impl<'a> SlotProblem<'a> {
-    pub fn new(problem: &'a Problem, strips: &'a Strips) -> Self {
+impl SlotProblem {
+    pub fn new(problem: &Problem, strips: &Strips) -> Self {
         let slot = |&v: &u32| strips.slot_of()[v as usize];
-        let pressure = |load: &'a Load| match &load.kind {
+        let pressure = |(index, load): (usize, &Load)| match &load.kind {
             LoadKind::Pressure {
                 triangles,
                 voids,
                 pressure,
             } => Some(SlotPressure {
-                load,
+                load: index,
                 pressure: *pressure,
                 triangles: triangles.iter().map(|t| t.each_ref().map(slot)).collect(),
                 voids: voids
@@ -52,26 +52,28 @@ impl<'a> SlotProblem<'a> {
                 free[axis][slot as usize] = if *held { 0 } else { u64::MAX };
             }
         }
-        let dead_vary = problem
-            .loads()
-            .iter()
-            .any(|load| !follows(load) && !load.history.is_constant());
+        let loads = problem.loads().iter().enumerate();
         let mut slots = Self {
-            problem,
-            strips,
-            pressures: problem.loads().iter().filter_map(pressure).collect(),
+            pressures: loads.filter_map(pressure).collect(),
             dead: Columns::zeros(strips.slots()),
-            dead_vary,
+            dead_vary: false,
             clamps_move: problem.clamps().iter().any(|clamp| clamp.motion.is_some()),
             placed: false,
             free,
         };
-        slots.renew_dead(f64::INFINITY);
+        slots.renew_loads(problem, strips);
         slots
     }
 
-    fn renew_dead(&mut self, time: f64) {
-        let rest = self.problem.body().rest();
+    /// After the histories of loads have changed.
+    pub fn renew_loads(&mut self, problem: &Problem, strips: &Strips) {
+        let varies = |load: &Load| !follows(load) && !load.history.is_constant();
+        self.dead_vary = problem.loads().iter().any(varies);
+        self.renew_dead(problem, strips, f64::INFINITY);
+    }
+
+    fn renew_dead(&mut self, problem: &Problem, strips: &Strips, time: f64) {
+        let rest = problem.body().rest();
         let mut forces = vec![[0.0; 3]; rest.len()];
         let factor = |load: &Load| {
             if follows(load) {
@@ -80,18 +82,25 @@ impl<'a> SlotProblem<'a> {
                 load.history.at(time)
             }
         };
-        self.problem.add_scaled_loads(rest, &factor, &mut forces);
-        self.strips.load(&forces, &mut self.dead);
+        problem.add_scaled_loads(rest, &factor, &mut forces);
+        strips.load(&forces, &mut self.dead);
     }
 
     /// Sets `forces` to the external forces (N) at `time` (s).
-    pub fn set_loads(&mut self, positions: &Columns, time: f64, forces: &mut Columns) {
+    pub fn set_loads(
+        &mut self,
+        problem: &Problem,
+        strips: &Strips,
+        positions: &Columns,
+        time: f64,
+        forces: &mut Columns,
+    ) {
         if self.dead_vary && time.is_finite() {
-            self.renew_dead(time);
+            self.renew_dead(problem, strips, time);
         }
         forces.copy_from(&self.dead);
         for load in &self.pressures {
-            let pressure = load.pressure * load.load.history.at(time);
+            let pressure = load.pressure * problem.loads()[load.load].history.at(time);
             for triangle in &load.triangles {
                 let [a, b, c] = triangle.map(|slot| positions.get(slot));
                 let force = scale(-pressure / 6.0, cross(sub(b, a), sub(c, a)));
@@ -113,15 +122,22 @@ impl<'a> SlotProblem<'a> {
     }
 
     /// Puts held vertices where their clamps want them, as [`Problem::place_clamps`] does.
-    pub fn place_clamps(&mut self, time: f64, ramp: f64, positions: &mut Columns) {
+    pub fn place_clamps(
+        &mut self,
+        problem: &Problem,
+        strips: &Strips,
+        time: f64,
+        ramp: f64,
+        positions: &mut Columns,
+    ) {
         if self.placed && !self.clamps_move {
             return;
         }
         self.placed = true;
-        for clamp in self.problem.clamps() {
+        for clamp in problem.clamps() {
             for &vertex in &clamp.vertices {
-                let target = clamp.target(self.problem.body().rest()[vertex as usize], time, ramp);
-                let slot = self.strips.slot_of()[vertex as usize] as usize;
+                let target = clamp.target(problem.body().rest()[vertex as usize], time, ramp);
+                let slot = strips.slot_of()[vertex as usize] as usize;
                 for (axis, column) in positions.axes_mut().into_iter().enumerate() {
                     if clamp.axes[axis] {
                         column[slot] = target[axis];
@@ -129,11 +145,6 @@ impl<'a> SlotProblem<'a> {
                 }
             }
         }
-    }
-
-    /// The height of the floor in m.
-    pub fn floor(&self) -> Option<f64> {
-        self.problem.floor().map(|floor| floor.z)
     }
 
     /// After new positions came from elsewhere, clamps are placed again.

@@ -63,7 +63,7 @@ impl Viscosity {
                 let change = now.plus_scaled(-1.0, &last);
                 let mut sum = BrickStress::ZERO.plus_scaled(retardation / h, &change);
                 for (q, (stiffness, time)) in branches.iter_mut().zip(material.branches()) {
-                    let half = (-h / (2.0 * time)).exp();
+                    let half = libm::exp(-h / (2.0 * time));
                     *q = BrickStress::ZERO
                         .plus_scaled(half * half, q)
                         .plus_scaled(stiffness * half, &change);

@@ -83,6 +83,14 @@ impl Strips {
         self.slots
     }
 
+    /// The same constraints taken one at a time with plain multiplications and additions: the same bits on
+    /// every processor, WebAssembly included, a few times slower where there are lanes.
+    #[must_use]
+    pub fn deterministic(mut self) -> Self {
+        self.arch = pulp::Arch::Scalar;
+        self
+    }
+
     /// The slot of each vertex.
     pub fn slot_of(&self) -> &[u32] {
         &self.slot_of

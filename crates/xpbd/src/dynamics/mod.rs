@@ -1,5 +1,7 @@
 //! Algorithm 3: substeps of prediction and constraint projection in real time.
 
+mod grab;
+mod live;
 mod on_strips;
 mod on_vertices;
 
@@ -14,6 +16,9 @@ use crate::outcome::{
     travel_limit,
 };
 use crate::stiffness::largest_eigenvalue;
+
+pub use grab::Grab;
+pub use live::{Live, LiveStatus, Look};
 
 /// How motion is damped.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +51,9 @@ pub struct Dynamics {
     /// Rest is where the relative residual force is below this, and the kinetic energy below this
     /// part of the elastic energy.
     pub tolerance: f64,
+    /// Take constraints one at a time with plain arithmetic: the same bits on every processor, WebAssembly
+    /// included, a few times slower where there are lanes.
+    pub deterministic: bool,
     /// Tell the observer to record at multiples of this time in s (rounded to steps).
     pub record_interval: Option<f64>,
 }
@@ -61,6 +69,7 @@ impl Default for Dynamics {
             end_time: None,
             max_time: 60.0,
             tolerance: 1e-4,
+            deterministic: false,
             record_interval: None,
         }
     }
@@ -82,15 +91,44 @@ pub fn simulate(
     settings: &Dynamics,
     observer: &mut Observer<'_>,
 ) -> Answer {
-    match Strips::of(problem.body()) {
-        Some(strips) => {
-            let arrays = on_strips::OnStrips::new(problem, &strips, settings);
-            run(problem, start, settings, observer, arrays, Some(&strips))
-        }
-        None => {
-            let arrays = on_vertices::OnVertices::new(problem, settings);
-            run(problem, start, settings, observer, arrays, None)
-        }
+    let subject = Subject {
+        problem,
+        settings,
+        grabs: &[],
+    };
+    let strips = strips_of(subject);
+    let substeps = substeps_of(subject, strips.as_ref());
+    let arrays = arrays_of(subject, strips);
+    run(subject, start, observer, arrays, substeps)
+}
+
+/// What a run is about. Its arrays borrow none of it, so that a run that goes on between calls can own
+/// both.
+#[derive(Clone, Copy)]
+struct Subject<'a> {
+    problem: &'a Problem,
+    settings: &'a Dynamics,
+    grabs: &'a [Grab],
+}
+
+/// Strips for bodies that have them.
+fn strips_of(
+    Subject {
+        problem, settings, ..
+    }: Subject<'_>,
+) -> Option<Strips> {
+    let strips = Strips::of(problem.body())?;
+    Some(if settings.deterministic {
+        strips.deterministic()
+    } else {
+        strips
+    })
+}
+
+fn arrays_of(subject: Subject<'_>, strips: Option<Strips>) -> Box<dyn Arrays + Send> {
+    match strips {
+        Some(strips) => Box::new(on_strips::OnStrips::new(subject, strips)),
+        None => Box::new(on_vertices::OnVertices::new(subject)),
     }
 }
 
@@ -101,25 +139,26 @@ trait Arrays {
     /// Gives the present state.
     fn store(&self, state: &mut State);
     /// The balance at the present positions, which are those of `state`.
-    fn balance(&mut self, state: &State) -> Balance;
+    fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance;
     /// One substep of `h` seconds.
-    fn substep(&mut self, h: f64);
+    fn substep(&mut self, subject: Subject<'_>, h: f64);
+    /// After the histories of loads have changed.
+    fn renew_loads(&mut self, problem: &Problem);
     /// The rate of damping in force, in 1/s.
     fn damping_rate(&self) -> f64;
 }
 
 fn run(
-    problem: &Problem,
+    subject: Subject<'_>,
     mut state: State,
-    settings: &Dynamics,
     observer: &mut Observer<'_>,
-    mut arrays: impl Arrays,
-    strips: Option<&Strips>,
+    mut arrays: Box<dyn Arrays + Send>,
+    mut substeps: u32,
 ) -> Answer {
+    let Subject {
+        problem, settings, ..
+    } = subject;
     let limit = travel_limit(problem);
-    let mut substeps = settings
-        .substeps
-        .unwrap_or_else(|| enough_substeps(problem, settings, strips));
     arrays.load(&state);
     let mut checkpoint = state.clone();
     let (mut steps, mut back_offs) = (0u64, 0u32);
@@ -127,7 +166,7 @@ fn run(
     let mut window = Window::default();
     let (status, residual, breakdown) = loop {
         arrays.store(&mut state);
-        let now = arrays.balance(&state);
+        let now = arrays.balance(subject, &state);
         let residual = now.relative_residual();
         let broken = find_breakdown(problem, &state.positions, limit, state.time);
         let excess = now.excess();
@@ -186,7 +225,7 @@ fn run(
             .map_or(f64::INFINITY, |end| end - state.time);
         let substep = settings.time_step.min(left) / f64::from(substeps);
         for _ in 0..substeps {
-            arrays.substep(substep);
+            arrays.substep(subject, substep);
         }
         steps += u64::from(substeps);
     };
@@ -206,7 +245,14 @@ fn at_rest(problem: &Problem, state: &State, residual: f64, tolerance: f64) -> b
     residual <= tolerance && is_still(problem, &state.positions, kinetic(), tolerance)
 }
 
-fn enough_substeps(problem: &Problem, settings: &Dynamics, strips: Option<&Strips>) -> u32 {
+/// The substeps per step: those of the settings, or as many as the highest frequency needs.
+fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
+    let Subject {
+        problem, settings, ..
+    } = subject;
+    if let Some(substeps) = settings.substeps {
+        return substeps;
+    }
     let highest = largest_eigenvalue(problem, problem.body().masses(), strips).sqrt();
     (settings.time_step * highest / SUBSTEP_FREQUENCY)
         .ceil()
@@ -247,14 +293,19 @@ mod tests {
 
     fn run_both(problem: &Problem, settings: &Dynamics) -> [Answer; 2] {
         let start = State::at_rest(problem.body());
-        let strips = Strips::of(problem.body()).expect("voxels");
+        let strips = Strips::of(problem.body());
+        assert!(strips.is_some(), "voxels");
         let go_on = &mut |_: &Progress<'_>| ControlFlow::Continue(());
-        let fast = on_strips::OnStrips::new(problem, &strips, settings);
-        let slow = on_vertices::OnVertices::new(problem, settings);
-        [
-            run(problem, start.clone(), settings, go_on, fast, Some(&strips)),
-            run(problem, start, settings, go_on, slow, None),
-        ]
+        let subject = Subject {
+            problem,
+            settings,
+            grabs: &[],
+        };
+        [strips, None].map(|strips| {
+            let substeps = substeps_of(subject, strips.as_ref());
+            let arrays = arrays_of(subject, strips);
+            run(subject, start.clone(), go_on, arrays, substeps)
+        })
     }
 
     /// The largest distance between two answers over the largest displacement.

@@ -3,18 +3,17 @@
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::strips::{Columns, Strips, Sweep};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Problem, State};
+use voxsoft_solid::{Floor, Problem, State};
 
-use super::{Arrays, Damping, Dynamics};
+use super::grab::{Held, add_pulls};
+use super::{Arrays, Damping, Subject};
 use crate::motion::{self, Advance};
 use crate::slots::SlotProblem;
 
 /// The arrays of a run; nothing is allocated in a substep, unless dead loads vary over time.
-pub(super) struct OnStrips<'a> {
-    problem: &'a Problem,
-    settings: &'a Dynamics,
-    strips: &'a Strips,
-    slots: SlotProblem<'a>,
+pub(super) struct OnStrips {
+    strips: Strips,
+    slots: SlotProblem,
     time: f64,
     positions: Columns,
     velocities: Columns,
@@ -26,6 +25,8 @@ pub(super) struct OnStrips<'a> {
     masses: Vec<f64>,
     /// 1/kg for each axis, zero where a clamp holds it and where no vertex is.
     inverse_masses: Columns,
+    /// The vertices that are grabbed.
+    held: Held,
     /// Whether clamps hold all axes of a vertex or none.
     isotropic: bool,
     multipliers: Vec<f64>,
@@ -35,8 +36,13 @@ pub(super) struct OnStrips<'a> {
     substep_before: f64,
 }
 
-impl<'a> OnStrips<'a> {
-    pub fn new(problem: &'a Problem, strips: &'a Strips, settings: &'a Dynamics) -> Self {
+impl OnStrips {
+    pub fn new(
+        Subject {
+            problem, settings, ..
+        }: Subject<'_>,
+        strips: Strips,
+    ) -> Self {
         let empty = Columns::zeros(strips.slots());
         let mut masses = vec![0.0; strips.slots()];
         strips.load_scalars(problem.body().masses(), &mut masses);
@@ -48,10 +54,8 @@ impl<'a> OnStrips<'a> {
         let mut inverse_masses = empty.clone();
         strips.load(&pairs.map(inverse).collect::<Vec<_>>(), &mut inverse_masses);
         Self {
-            problem,
-            settings,
-            strips,
-            slots: SlotProblem::new(problem, strips),
+            slots: SlotProblem::new(problem, &strips),
+            held: Held::default(),
             time: 0.0,
             positions: empty.clone(),
             velocities: empty.clone(),
@@ -68,19 +72,30 @@ impl<'a> OnStrips<'a> {
                 Damping::Critical => 0.0,
             },
             substep_before: 0.0,
+            strips,
         }
     }
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
-    fn predict(&mut self, h: f64) {
+    fn predict(&mut self, subject: Subject<'_>, h: f64) {
+        let problem = subject.problem;
         let time = self.time + h;
         self.start.copy_from(&self.positions);
         std::mem::swap(&mut self.forces, &mut self.before);
-        self.slots.set_loads(&self.start, time, &mut self.forces);
+        self.slots
+            .set_loads(problem, &self.strips, &self.start, time, &mut self.forces);
         self.strips
             .add_forces_keeping(&self.start, &mut self.forces, &mut self.multipliers);
-        self.update_damping();
-        let keep = (-self.damping_rate * h).exp();
+        self.update_damping(subject);
+        let slot_of = self.strips.slot_of();
+        self.held.weigh(
+            subject.grabs,
+            |vertex| slot_of[vertex as usize] as usize,
+            h,
+            &mut self.inverse_masses,
+            &mut self.velocities,
+        );
+        let keep = libm::exp(-self.damping_rate * h);
         let positions = self.positions.axes_mut();
         let velocities = self.velocities.axes_mut();
         for (axis, (position, velocity)) in positions.into_iter().zip(velocities).enumerate() {
@@ -96,11 +111,19 @@ impl<'a> OnStrips<'a> {
             };
             advance.run();
         }
-        self.slots.place_clamps(time, 1.0, &mut self.positions);
+        self.held.pull(
+            h,
+            &self.start,
+            &self.inverse_masses,
+            &mut self.velocities,
+            &mut self.positions,
+        );
+        self.slots
+            .place_clamps(problem, &self.strips, time, 1.0, &mut self.positions);
     }
 
-    fn update_damping(&mut self) {
-        if self.settings.damping == Damping::Critical && self.substep_before > 0.0 {
+    fn update_damping(&mut self, subject: Subject<'_>) {
+        if subject.settings.damping == Damping::Critical && self.substep_before > 0.0 {
             let frequency = motion::frequency(
                 &self.velocities,
                 &self.before,
@@ -112,20 +135,20 @@ impl<'a> OnStrips<'a> {
         }
     }
 
-    fn lift_to_floor(&mut self) {
-        let Some(floor) = self.slots.floor() else {
+    fn lift_to_floor(&mut self, floor: Option<Floor>) {
+        let Some(floor) = floor else {
             return;
         };
         let [_, _, height] = self.positions.axes_mut();
         for (height, free) in height.iter_mut().zip(&self.slots.free[2]) {
-            if *free != 0 {
-                *height = height.max(floor);
+            if *free != 0 && *height < floor.z {
+                *height = floor.z;
             }
         }
     }
 }
 
-impl Arrays for OnStrips<'_> {
+impl Arrays for OnStrips {
     fn load(&mut self, state: &State) {
         self.time = state.time;
         self.strips.load(&state.positions, &mut self.positions);
@@ -140,39 +163,49 @@ impl Arrays for OnStrips<'_> {
         state.time = self.time;
     }
 
-    fn balance(&mut self, state: &State) -> Balance {
+    fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance {
         let count = state.positions.len();
         let (mut external, mut net) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
+        let (problem, time) = (subject.problem, state.time);
+        let (strips, looked) = (&self.strips, &mut self.looked);
         self.slots
-            .set_loads(&self.positions, state.time, &mut self.looked);
+            .set_loads(problem, strips, &self.positions, time, looked);
         self.strips.store(&self.looked, &mut external);
         self.strips.add_forces(&self.positions, &mut self.looked);
         self.strips.store(&self.looked, &mut net);
-        balance_of_forces(self.problem, &state.positions, &external, net)
+        add_pulls(subject.grabs, &state.positions, &mut external);
+        add_pulls(subject.grabs, &state.positions, &mut net);
+        balance_of_forces(problem, &state.positions, &external, net)
     }
 
-    fn substep(&mut self, h: f64) {
-        self.predict(h);
-        for sweep in 1..=self.settings.iterations {
+    fn substep(&mut self, subject: Subject<'_>, h: f64) {
+        self.predict(subject, h);
+        let settings = subject.settings;
+        for sweep in 1..=settings.iterations {
             self.strips.sweep(Sweep {
                 positions: &mut self.positions,
                 start: &self.start,
                 inverse_masses: &self.inverse_masses,
                 isotropic: self.isotropic,
                 multipliers: &mut self.multipliers,
-                keep: sweep < self.settings.iterations,
+                keep: sweep < settings.iterations,
                 substep: h,
-                retardation: self.settings.retardation,
+                retardation: settings.retardation,
             });
         }
         // Also those that never move: a run that blows up must not take them along.
         self.slots.forget_placed();
+        let (problem, time) = (subject.problem, self.time + h);
         self.slots
-            .place_clamps(self.time + h, 1.0, &mut self.positions);
-        self.lift_to_floor();
+            .place_clamps(problem, &self.strips, time, 1.0, &mut self.positions);
+        self.lift_to_floor(problem.floor());
         motion::difference(&self.positions, &self.start, 1.0 / h, &mut self.velocities);
         self.time += h;
         self.substep_before = h;
+    }
+
+    fn renew_loads(&mut self, problem: &Problem) {
+        self.slots.renew_loads(problem, &self.strips);
     }
 
     fn damping_rate(&self) -> f64 {

@@ -1,20 +1,21 @@
 //! Substeps of any body, constraint by constraint.
 
-use voxsoft_solid::balance::{Balance, balance};
+use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
-use voxsoft_solid::{Body, Problem, State};
+use voxsoft_solid::{Body, Floor, Problem, State, elastic};
 
-use super::{Arrays, Damping, Dynamics};
+use super::grab::{Held, add_pulls};
+use super::{Arrays, Damping, Subject};
 use crate::damping;
 use crate::viscosity::Viscosity;
 
 /// The state of a run and the arrays it works in; nothing is allocated in a substep.
-pub(super) struct OnVertices<'a> {
-    problem: &'a Problem,
-    settings: &'a Dynamics,
+pub(super) struct OnVertices {
     state: State,
     /// Inverse masses in 1/kg for each axis, zero where a clamp holds it.
     inverse_masses: Vec<Vec3>,
+    /// The vertices that are grabbed.
+    held: Held,
     start: Vec<Vec3>,
     forces: Vec<Vec3>,
     forces_before: Vec<Vec3>,
@@ -29,16 +30,19 @@ pub(super) struct OnVertices<'a> {
     substep_before: f64,
 }
 
-impl<'a> OnVertices<'a> {
-    pub fn new(problem: &'a Problem, settings: &'a Dynamics) -> Self {
+impl OnVertices {
+    pub fn new(
+        Subject {
+            problem, settings, ..
+        }: Subject<'_>,
+    ) -> Self {
         let body = problem.body();
         let count = body.rest().len();
         let inverse =
             |(mass, held): (&f64, &[bool; 3])| held.map(|h| if h { 0.0 } else { 1.0 / mass });
         Self {
-            problem,
-            settings,
             state: State::at_rest(body),
+            held: Held::default(),
             inverse_masses: body
                 .masses()
                 .iter()
@@ -64,13 +68,15 @@ impl<'a> OnVertices<'a> {
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
     /// Hyperelastic voxels and membranes are forces only: a substep of one over the highest frequency
     /// integrates them as it stands (symplectic Euler), and there is nothing to project.
-    fn predict(&mut self, h: f64) {
-        let body = self.problem.body();
+    fn predict(&mut self, subject: Subject<'_>, h: f64) {
+        let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
         std::mem::swap(&mut self.forces, &mut self.forces_before);
         self.forces.fill([0.0; 3]);
         let time = self.state.time + h;
-        self.problem.add_loads(&self.start, time, &mut self.forces);
+        subject
+            .problem
+            .add_loads(&self.start, time, &mut self.forces);
         for (edge, multiplier) in body.edges().iter().zip(&mut self.edge_multipliers) {
             let (constraint, gradient) = edge.evaluate(&self.start);
             *multiplier = -edge.stiffness * constraint;
@@ -90,8 +96,15 @@ impl<'a> OnVertices<'a> {
         for membrane in body.membranes() {
             membrane.add_forces(&self.start, &mut self.forces);
         }
-        self.update_damping();
-        let kept = (-self.damping_rate * h).exp();
+        self.update_damping(subject);
+        self.held.weigh(
+            subject.grabs,
+            |vertex| vertex as usize,
+            h,
+            &mut self.inverse_masses,
+            &mut self.state.velocities,
+        );
+        let kept = libm::exp(-self.damping_rate * h);
         for vertex in 0..self.start.len() {
             let velocity = &mut self.state.velocities[vertex];
             for axis in 0..3 {
@@ -104,13 +117,21 @@ impl<'a> OnVertices<'a> {
                 self.state.positions[vertex][axis] += h * velocity[axis];
             }
         }
-        self.problem
+        self.held.pull(
+            h,
+            &self.start,
+            &self.inverse_masses,
+            &mut self.state.velocities,
+            &mut self.state.positions,
+        );
+        subject
+            .problem
             .place_clamps(time, 1.0, &mut self.state.positions);
     }
 
-    fn update_damping(&mut self) {
-        if self.settings.damping == Damping::Critical && self.substep_before > 0.0 {
-            let masses = self.problem.body().masses();
+    fn update_damping(&mut self, subject: Subject<'_>) {
+        if subject.settings.damping == Damping::Critical && self.substep_before > 0.0 {
+            let masses = subject.problem.body().masses();
             let frequency = damping::frequency(
                 &self.state.velocities,
                 &self.forces_before,
@@ -125,10 +146,9 @@ impl<'a> OnVertices<'a> {
     /// One Gauss–Seidel pass over all constraints:
     /// `Δλ = −(C + τ ∇C·Δx/h + α λ) / ((1 + τ/h) h² ∇C·M⁻¹∇C + α)`, `Δx = h² M⁻¹ ∇C Δλ`,
     /// with the multipliers in N (edges) and Pa (volumes).
-    fn sweep(&mut self, h: f64) {
-        let body: &Body = self.problem.body();
+    fn sweep(&mut self, body: &Body, retardation: f64, h: f64) {
         let positions = &mut self.state.positions;
-        let lag = self.settings.retardation / h;
+        let lag = retardation / h;
         for (edges, tets) in body.chunks() {
             for i in edges {
                 let edge = &body.edges()[i];
@@ -193,19 +213,19 @@ impl<'a> OnVertices<'a> {
         }
     }
 
-    fn lift_to_floor(&mut self) {
-        let Some(floor) = self.problem.floor() else {
+    fn lift_to_floor(&mut self, problem: &Problem) {
+        let Some(Floor { z }) = problem.floor() else {
             return;
         };
-        for (position, held) in self.state.positions.iter_mut().zip(self.problem.held()) {
-            if !held[2] {
-                position[2] = position[2].max(floor.z);
+        for (position, held) in self.state.positions.iter_mut().zip(problem.held()) {
+            if !held[2] && position[2] < z {
+                position[2] = z;
             }
         }
     }
 }
 
-impl Arrays for OnVertices<'_> {
+impl Arrays for OnVertices {
     fn load(&mut self, state: &State) {
         self.state.clone_from(state);
         self.viscosity.restart();
@@ -216,18 +236,24 @@ impl Arrays for OnVertices<'_> {
         state.clone_from(&self.state);
     }
 
-    fn balance(&mut self, state: &State) -> Balance {
-        balance(self.problem, &state.positions, state.time)
+    fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance {
+        let (problem, positions) = (subject.problem, &state.positions);
+        let mut external = vec![[0.0; 3]; positions.len()];
+        problem.add_loads(positions, state.time, &mut external);
+        add_pulls(subject.grabs, positions, &mut external);
+        let mut net = external.clone();
+        elastic::add_forces(problem.body(), positions, &mut net);
+        balance_of_forces(problem, positions, &external, net)
     }
 
-    fn substep(&mut self, h: f64) {
-        self.predict(h);
-        for _ in 0..self.settings.iterations {
-            self.sweep(h);
+    fn substep(&mut self, subject: Subject<'_>, h: f64) {
+        self.predict(subject, h);
+        let (problem, settings) = (subject.problem, subject.settings);
+        for _ in 0..settings.iterations {
+            self.sweep(problem.body(), settings.retardation, h);
         }
-        self.problem
-            .place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
-        self.lift_to_floor();
+        problem.place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
+        self.lift_to_floor(problem);
         for vertex in 0..self.start.len() {
             let moved = sub(self.state.positions[vertex], self.start[vertex]);
             self.state.velocities[vertex] = scale(1.0 / h, moved);
@@ -235,6 +261,8 @@ impl Arrays for OnVertices<'_> {
         self.state.time += h;
         self.substep_before = h;
     }
+
+    fn renew_loads(&mut self, _problem: &Problem) {}
 
     fn damping_rate(&self) -> f64 {
         self.damping_rate

@@ -11,7 +11,7 @@ use crate::slots::SlotProblem;
 pub(super) struct OnStrips<'a> {
     problem: &'a Problem,
     strips: &'a Strips,
-    slots: SlotProblem<'a>,
+    slots: SlotProblem,
     positions: Columns,
     velocities: Columns,
     forces: Columns,
@@ -42,13 +42,13 @@ impl<'a> OnStrips<'a> {
 
     /// The floor carries what touches it and is pressed down.
     fn release_on_floor(&mut self) {
-        let Some(floor) = self.slots.floor() else {
+        let Some(floor) = self.problem.floor() else {
             return;
         };
         let height = self.positions.axes()[2];
         let [_, _, force] = self.forces.axes_mut();
         for (force, height) in force.iter_mut().zip(height) {
-            if *height <= floor && *force < 0.0 {
+            if *height <= floor.z && *force < 0.0 {
                 *force = 0.0;
             }
         }
@@ -70,14 +70,14 @@ impl<'a> OnStrips<'a> {
             };
             advance.run();
         }
-        let Some(floor) = self.slots.floor() else {
+        let Some(floor) = self.problem.floor() else {
             return;
         };
         let height = self.positions.axes_mut()[2].iter_mut();
         let rise = self.velocities.axes_mut()[2].iter_mut();
         for ((height, rise), free) in height.zip(rise).zip(&self.slots.free[2]) {
-            if *height < floor && *free != 0 {
-                *height = floor;
+            if *height < floor.z && *free != 0 {
+                *height = floor.z;
                 *rise = 0.0;
             }
         }
@@ -101,8 +101,9 @@ impl Arrays for OnStrips<'_> {
         let count = state.positions.len();
         let (mut external, mut net) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let time = f64::INFINITY;
+        let (problem, strips) = (self.problem, self.strips);
         self.slots
-            .set_loads(&self.positions, time, &mut self.looked);
+            .set_loads(problem, strips, &self.positions, time, &mut self.looked);
         self.strips.store(&self.looked, &mut external);
         self.strips.add_forces(&self.positions, &mut self.looked);
         self.strips.store(&self.looked, &mut net);
@@ -124,10 +125,12 @@ impl Arrays for OnStrips<'_> {
 
     fn step(&mut self, ramp: f64) {
         let time = f64::INFINITY;
-        self.slots.place_clamps(time, ramp, &mut self.positions);
+        let (problem, strips) = (self.problem, self.strips);
+        self.slots
+            .place_clamps(problem, strips, time, ramp, &mut self.positions);
         std::mem::swap(&mut self.before, &mut self.forces);
         self.slots
-            .set_loads(&self.positions, time, &mut self.forces);
+            .set_loads(problem, strips, &self.positions, time, &mut self.forces);
         self.strips.add_forces(&self.positions, &mut self.forces);
         self.release_on_floor();
         // Held axes have no velocity, so their forces do not count.

@@ -1,0 +1,31 @@
+//! What the studio shows of a body, packed into the bytes that its client hands to the graphics processor.
+//!
+//! A [`Display`] is chosen once: the surface of a body or its tetrahedra, shrunk. Its *topology* (points at
+//! rest, triangles, edges) is sent once, then a *frame* for every picture: positions and one field,
+//! quantized to 16 bits. All numbers are little-endian, after a header of [`HEADER`] bytes:
+//!
+//! | at | type | topology | frame |
+//! |---|---|---|---|
+//! | 0 | u32 | magic `VXF1` | magic |
+//! | 4 | u8 | kind 1 | kind 2 |
+//! | 5 | u8 | 1 surface, 2 shrunk tetrahedra | the caller's: 1 paused, 2 diverged, 4 at rest |
+//! | 6 | u16 | 0 | field, a number of [`Field`] |
+//! | 8 | u32 | number of the topology | the same |
+//! | 12 | u32 | 0 | number of the frame |
+//! | 16 | f64 | voxel size in m | time in s |
+//! | 24 | u32 | points | points |
+//! | 28 | u32 | triangles | last input applied |
+//! | 32 | u32, f32×3 | edges | origin in m |
+//! | 44 | f32×3 | 0 | scale in m |
+//! | 56 | f32×2 | 0 | smallest and largest value of the field |
+//!
+//! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, then one byte per
+//! triangle, its tag, padded to a multiple of four. Payload of a frame: u16×4 per point; a coordinate is
+//! `origin + scale q / 65535`, the value `smallest + (largest − smallest) q / 65535`.
+
+mod display;
+mod pack;
+
+pub use display::Display;
+pub use pack::{FrameHead, HEADER};
+pub use voxsoft_solid::fields::Field;

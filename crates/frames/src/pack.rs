@@ -1,0 +1,141 @@
+use voxsoft_solid::fields::Field;
+use voxsoft_solid::vector::Vec3;
+
+/// Bytes before the payload.
+pub const HEADER: usize = 64;
+
+const MAGIC: u32 = u32::from_le_bytes(*b"VXF1");
+
+/// What the sender says with a frame.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct FrameHead {
+    /// The number of the topology that the frame belongs to.
+    pub topology: u32,
+    /// The number of the frame.
+    pub frame: u32,
+    /// The number of the last input that was applied.
+    pub seq: u32,
+    /// 1 paused, 2 diverged, 4 at rest.
+    pub flags: u8,
+}
+
+struct Bytes(Vec<u8>);
+
+impl Bytes {
+    fn new(payload: usize) -> Self {
+        Self(Vec::with_capacity(HEADER + payload))
+    }
+
+    fn put<const N: usize>(&mut self, bytes: [u8; N]) {
+        self.0.extend_from_slice(&bytes);
+    }
+
+    fn start(&mut self, kind: u8, flags: u8, field: u16, topology: u32, frame: u32) {
+        self.put(MAGIC.to_le_bytes());
+        self.put([kind, flags]);
+        self.put(field.to_le_bytes());
+        self.put(topology.to_le_bytes());
+        self.put(frame.to_le_bytes());
+    }
+
+    fn pad(&mut self, length: usize) {
+        self.0.resize(length, 0);
+    }
+}
+
+pub(crate) fn pack_topology(
+    flag: u8,
+    number: u32,
+    voxel_size: f64,
+    points: &[Vec3],
+    (triangles, edges, tags): (&[[u32; 3]], &[[u32; 2]], &[u8]),
+) -> Vec<u8> {
+    let mut bytes = Bytes::new(12 * points.len() + 13 * triangles.len() + 8 * edges.len() + 4);
+    bytes.start(1, flag, 0, number, 0);
+    bytes.put(voxel_size.to_le_bytes());
+    for count in [points.len(), triangles.len(), edges.len()] {
+        bytes.put((count as u32).to_le_bytes());
+    }
+    bytes.pad(HEADER);
+    for value in points.as_flattened() {
+        bytes.put((*value as f32).to_le_bytes());
+    }
+    for corner in triangles.as_flattened().iter().chain(edges.as_flattened()) {
+        bytes.put(corner.to_le_bytes());
+    }
+    bytes.0.extend_from_slice(tags);
+    bytes.pad(bytes.0.len().next_multiple_of(4));
+    bytes.0
+}
+
+pub(crate) fn pack_frame(
+    head: FrameHead,
+    field: Field,
+    time: f64,
+    points: &[Vec3],
+    values: &[f64],
+) -> Vec<u8> {
+    let mut bytes = Bytes::new(8 * points.len());
+    bytes.start(2, head.flags, field as u16, head.topology, head.frame);
+    bytes.put(time.to_le_bytes());
+    bytes.put((points.len() as u32).to_le_bytes());
+    bytes.put(head.seq.to_le_bytes());
+    let axes: [Range; 3] = std::array::from_fn(|axis| Range::of(points.iter().map(|p| p[axis])));
+    let range = Range::of(values.iter().copied());
+    for axis in &axes {
+        bytes.put(axis.low.to_le_bytes());
+    }
+    for axis in &axes {
+        bytes.put(axis.width().to_le_bytes());
+    }
+    bytes.put(range.low.to_le_bytes());
+    bytes.put(range.high.to_le_bytes());
+    for (point, value) in points.iter().zip(values) {
+        for axis in 0..3 {
+            bytes.put(axes[axis].quantize(point[axis]).to_le_bytes());
+        }
+        bytes.put(range.quantize(*value).to_le_bytes());
+    }
+    bytes.0
+}
+
+/// The range of some numbers as the client reads it.
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+impl Range {
+    /// That of all finite numbers; 0 to 0 where there are none.
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let finite = values.filter(|v| v.is_finite());
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(v), high.max(v))
+        });
+        if low > high {
+            return Self {
+                low: 0.0,
+                high: 0.0,
+            };
+        }
+        Self {
+            low: low as f32,
+            high: high as f32,
+        }
+    }
+
+    fn width(&self) -> f32 {
+        self.high - self.low
+    }
+
+    /// What is not a number becomes 0.
+    fn quantize(&self, value: f64) -> u16 {
+        let width = f64::from(self.width());
+        if width > 0.0 {
+            // Casts to integers stop at the ends of their range.
+            ((value - f64::from(self.low)) / width * f64::from(u16::MAX)).round() as u16
+        } else {
+            0
+        }
+    }
+}

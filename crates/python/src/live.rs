@@ -1,0 +1,377 @@
+//! `_core.Live` and `_core.Display`: a run that goes on between calls, and what is shown of it.
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::{PyBytes, PyDict};
+use voxsoft_frames::{Display, Field, FrameHead};
+use voxsoft_solid::vector::{Vec3, norm, sub};
+use voxsoft_solid::{Problem, State};
+use voxsoft_xpbd::{Damping, Dynamics, Live, LiveStatus, Look};
+
+use crate::gate;
+use crate::simulate::{PyProblem, from_rows, rows, to_python};
+
+/// A surface or tetrahedra of a body, to be packed into frames.
+#[pyclass(frozen, name = "Display", module = "voxsoft._core")]
+pub struct PyDisplay {
+    problem: Arc<Problem>,
+    display: Display,
+}
+
+fn field(id: u16) -> PyResult<Field> {
+    let last = Field::ALL.len() - 1;
+    let message = || PyValueError::new_err(format!("no field {id}: there are 0 to {last}"));
+    Field::from_id(id).ok_or_else(message)
+}
+
+#[pymethods]
+impl PyDisplay {
+    /// Triangles of vertices, each with a tag for the client; a voxel size (m) above zero leaves face
+    /// diagonals out of the edges.
+    #[staticmethod]
+    fn surface(
+        problem: PyRef<'_, PyProblem>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxel_size: f64,
+    ) -> PyResult<Self> {
+        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
+        let tags = tags.as_array().to_vec();
+        let problem = Arc::clone(&problem.problem);
+        let display = Display::surface(problem.body(), &triangles, &tags, voxel_size);
+        let display = display.map_err(to_python)?;
+        Ok(Self { problem, display })
+    }
+
+    /// Tetrahedra of vertices, drawn a little smaller than they are.
+    #[staticmethod]
+    fn tets(
+        problem: PyRef<'_, PyProblem>,
+        tets: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxel_size: f64,
+    ) -> PyResult<Self> {
+        let tets: Vec<[u32; 4]> = rows("tets", &tets)?;
+        let tags = tags.as_array().to_vec();
+        let problem = Arc::clone(&problem.problem);
+        let display = Display::tets(problem.body(), &tets, &tags, voxel_size);
+        let display = display.map_err(to_python)?;
+        Ok(Self { problem, display })
+    }
+
+    /// The body vertices that are shown, in ascending order: those of the points of a surface.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, self.display.vertices())
+    }
+
+    #[getter]
+    fn points(&self) -> usize {
+        self.display.points()
+    }
+
+    fn pack_topology<'py>(&self, py: Python<'py>, topology: u32) -> Bound<'py, PyBytes> {
+        let bytes = py.detach(|| self.display.topology(self.problem.body(), topology));
+        PyBytes::new(py, &bytes)
+    }
+
+    /// The frame of positions (m) that come from elsewhere.
+    #[pyo3(signature = (positions, *, topology, frame, field, seq=0, flags=0, time=0.0, velocities=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn pack_frame<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+        topology: u32,
+        frame: u32,
+        field: u16,
+        seq: u32,
+        flags: u8,
+        time: f64,
+        velocities: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let body = self.problem.body();
+        let mut state = State::at_rest(body);
+        let read = |what: &str, array: &PyReadonlyArray2<'_, f64>| {
+            let read: Vec<Vec3> = rows(what, array)?;
+            let (got, expected) = (read.len(), body.rest().len());
+            let message = || format!("{what}: {got} rows, expected {expected}");
+            (got == expected)
+                .then_some(read)
+                .ok_or_else(|| PyValueError::new_err(message()))
+        };
+        state.positions = read("positions", &positions)?;
+        if let Some(velocities) = velocities {
+            state.velocities = read("velocities", &velocities)?;
+        }
+        state.time = time;
+        let head = FrameHead {
+            topology,
+            frame,
+            seq,
+            flags,
+        };
+        let field = self::field(field)?;
+        let bytes = py.detach(|| self.display.frame(body, &state, field, head));
+        Ok(PyBytes::new(py, &bytes))
+    }
+}
+
+/// A problem in motion. Any thread may call any method; they take turns.
+#[pyclass(frozen, name = "Live", module = "voxsoft._core")]
+pub struct PyLive {
+    surface: PyDisplay,
+    live: Mutex<Live>,
+}
+
+impl PyLive {
+    /// Locks in the calling thread, never in one of the pool: that could take up another call of the same
+    /// run while it waits in a loop, and would wait for itself.
+    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Live>> {
+        let message = "an earlier call of this run panicked; please report it";
+        self.live
+            .lock_py_attached(py)
+            .map_err(|_| PyRuntimeError::new_err(message))
+    }
+
+    /// Does something that is soon done.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Live) -> T + Send,
+    ) -> PyResult<T> {
+        let mut guard = self.lock(py)?;
+        let live = &mut *guard;
+        Ok(py.detach(|| work(live)))
+    }
+
+    fn report<'py>(
+        &self,
+        py: Python<'py>,
+        go_on: impl Fn(&AtomicBool) -> bool + Sync,
+        substeps: u32,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let started = Instant::now();
+        let mut guard = self.lock(py)?;
+        let live = &mut *guard;
+        let (look, taken) = gate::run(py, |cancel| {
+            let mut taken = 0;
+            let look = live.advance_while(substeps, &mut || {
+                taken += 1;
+                go_on(cancel)
+            });
+            (look, taken)
+        })?;
+        drop(guard);
+        let report = look_report(py, &look)?;
+        report.set_item("taken", taken)?;
+        report.set_item("seconds", started.elapsed().as_secs_f64())?;
+        Ok(report)
+    }
+}
+
+fn look_report<'py>(py: Python<'py>, look: &Look) -> PyResult<Bound<'py, PyDict>> {
+    let report = PyDict::new(py);
+    let status = match look.status {
+        LiveStatus::Moving => "moving",
+        LiveStatus::AtRest => "at-rest",
+        LiveStatus::Diverged => "diverged",
+    };
+    report.set_item("status", status)?;
+    report.set_item("time", look.time)?;
+    report.set_item("substep", look.substep)?;
+    report.set_item("substeps", look.substeps)?;
+    report.set_item("back_offs", look.back_offs)?;
+    report.set_item("residual", look.residual)?;
+    report.set_item("elastic", look.elastic)?;
+    report.set_item("kinetic", look.kinetic)?;
+    let breakdown = look.breakdown.map(|b| (b.vertex, b.rest, b.when));
+    report.set_item("breakdown", breakdown)?;
+    Ok(report)
+}
+
+/// A grab as Python sees it: number, vertex, target, force in N, stretch in m.
+type PyGrab = (u32, u32, Vec3, Vec3, f64);
+
+#[pymethods]
+impl PyLive {
+    #[new]
+    #[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
+        damping=None, retardation=0.0, tolerance=1e-4, deterministic=false))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn new(
+        py: Python<'_>,
+        problem: PyRef<'_, PyProblem>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxel_size: f64,
+        time_step: f64,
+        substeps: Option<u32>,
+        iterations: u32,
+        damping: Option<f64>,
+        retardation: f64,
+        tolerance: f64,
+        deterministic: bool,
+    ) -> PyResult<Self> {
+        let settings = Dynamics {
+            time_step,
+            substeps,
+            iterations,
+            damping: damping.map_or(Damping::Critical, Damping::Rate),
+            retardation,
+            tolerance,
+            deterministic,
+            ..Dynamics::default()
+        };
+        let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;
+        let problem = Arc::clone(&surface.problem);
+        let live = gate::run(py, |_| Live::new(Problem::clone(&problem), settings))?;
+        Ok(Self {
+            surface,
+            live: Mutex::new(live),
+        })
+    }
+
+    #[getter]
+    fn substep(&self, py: Python<'_>) -> PyResult<f64> {
+        self.with(py, |live| live.substep())
+    }
+
+    /// Takes as many substeps, fewer at rest or after a breakdown.
+    fn advance<'py>(&self, py: Python<'py>, substeps: u32) -> PyResult<Bound<'py, PyDict>> {
+        let go_on = |cancel: &AtomicBool| !cancel.load(Ordering::Relaxed);
+        self.report(py, go_on, substeps)
+    }
+
+    /// Takes substeps for so many seconds of the clock, at least one and no more than asked.
+    #[pyo3(signature = (seconds, max_substeps=u32::MAX))]
+    fn advance_for<'py>(
+        &self,
+        py: Python<'py>,
+        seconds: f64,
+        max_substeps: u32,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let budget = Duration::try_from_secs_f64(seconds).map_err(|_| {
+            PyValueError::new_err(format!("seconds must be zero or more, got {seconds}"))
+        })?;
+        let started = Instant::now();
+        let go_on =
+            |cancel: &AtomicBool| started.elapsed() < budget && !cancel.load(Ordering::Relaxed);
+        self.report(py, go_on, max_substeps)
+    }
+
+    /// Makes a load `factor` times its final value; `None` gives it its history back.
+    #[pyo3(signature = (load, factor))]
+    fn set_load(&self, py: Python<'_>, load: usize, factor: Option<f64>) -> PyResult<()> {
+        self.with(py, |live| live.set_load(load, factor))?
+            .map_err(to_python)
+    }
+
+    fn grab(
+        &self,
+        py: Python<'_>,
+        number: u32,
+        vertex: u32,
+        target: Vec3,
+        stiffness: f64,
+    ) -> PyResult<()> {
+        self.with(py, |live| live.grab(number, vertex, target, stiffness))?
+            .map_err(to_python)
+    }
+
+    fn release(&self, py: Python<'_>, number: u32) -> PyResult<bool> {
+        self.with(py, |live| live.release(number))
+    }
+
+    fn grabs(&self, py: Python<'_>) -> PyResult<Vec<PyGrab>> {
+        self.with(py, |live| {
+            let positions = &live.state().positions;
+            let one = |(number, grab): &(u32, voxsoft_xpbd::Grab)| {
+                let position = positions[grab.vertex as usize];
+                let stretch = norm(sub(grab.anchor, position));
+                let force = grab.force(position);
+                (*number, grab.vertex, grab.target, force, stretch)
+            };
+            live.grabs().iter().map(one).collect()
+        })
+    }
+
+    fn reset(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, Live::reset)
+    }
+
+    #[pyo3(signature = (positions, time=0.0))]
+    fn seek(
+        &self,
+        py: Python<'_>,
+        positions: PyReadonlyArray2<'_, f64>,
+        time: f64,
+    ) -> PyResult<()> {
+        let positions = rows("positions", &positions)?;
+        self.with(py, |live| live.seek(positions, time))?
+            .map_err(to_python)
+    }
+
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = self.with(py, |live| live.state().positions.clone())?;
+        Ok(from_rows(py, &positions))
+    }
+
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let velocities = self.with(py, |live| live.state().velocities.clone())?;
+        Ok(from_rows(py, &velocities))
+    }
+
+    /// The body vertices that are shown, in ascending order.
+    #[getter]
+    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        self.surface.vertices(py)
+    }
+
+    fn pack_topology<'py>(&self, py: Python<'py>, topology: u32) -> Bound<'py, PyBytes> {
+        self.surface.pack_topology(py, topology)
+    }
+
+    /// The frame of the present state on the surface, or on another display of the same problem.
+    #[pyo3(signature = (topology, frame, field, seq=0, flags=0, display=None))]
+    #[expect(clippy::too_many_arguments, reason = "a frame's head")]
+    fn pack_frame<'py>(
+        &self,
+        py: Python<'py>,
+        topology: u32,
+        frame: u32,
+        field: u16,
+        seq: u32,
+        flags: u8,
+        display: Option<PyRef<'_, PyDisplay>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let shown = display.as_deref().unwrap_or(&self.surface);
+        if !Arc::ptr_eq(&shown.problem, &self.surface.problem) {
+            let message = "display: it belongs to another problem";
+            return Err(PyValueError::new_err(message));
+        }
+        let field = self::field(field)?;
+        let head = FrameHead {
+            topology,
+            frame,
+            seq,
+            flags,
+        };
+        // A copy, so that the run can go on meanwhile.
+        let state = self.with(py, |live| live.state().clone())?;
+        let body = shown.problem.body();
+        let bytes = py.detach(|| shown.display.frame(body, &state, field, head));
+        Ok(PyBytes::new(py, &bytes))
+    }
+}

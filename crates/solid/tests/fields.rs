@@ -1,0 +1,225 @@
+//! Fields of affine deformations against closed forms.
+
+use std::f64::consts::SQRT_2;
+
+use voxsoft_solid::fields::{Field, Fields};
+use voxsoft_solid::matrix::{Mat3, apply, multiply};
+use voxsoft_solid::vector::{Vec3, rotate};
+use voxsoft_solid::{
+    Body, Filling, HyperelasticMaterial, LatticeMaterial, Material, Mesh, Model, State,
+};
+use voxsoft_voxel::{Grid, tet_mesh};
+
+const SIDE: f64 = 4e-3;
+const EDGE: f64 = 30e3;
+const BULK: f64 = 110e3;
+const C10: f64 = 12e3;
+
+fn body(material: Material) -> Body {
+    let mut grid = Grid::empty([3, 3, 2], [0.0; 3], SIDE, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [3.0 * SIDE, 3.0 * SIDE, 2.0 * SIDE], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let count = tets.tets.len();
+    let mesh = Mesh {
+        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+        tet_part: vec![0; count],
+        tet_block: (0..count as u32).map(|t| t / 5).collect(),
+        vertices: tets.vertices,
+        block_fraction: vec![1.0; count / 5],
+        block_filling: vec![Filling::FULL; count / 5],
+        ..Mesh::default()
+    };
+    Body::new(&mesh, &[material]).unwrap()
+}
+
+fn lattice() -> Body {
+    body(
+        LatticeMaterial::from_moduli(EDGE, BULK, 1000.0)
+            .unwrap()
+            .into(),
+    )
+}
+
+fn rubber() -> Body {
+    let model = Model::NeoHookean { c10: C10 };
+    body(
+        HyperelasticMaterial::new(model, BULK, 1000.0)
+            .unwrap()
+            .into(),
+    )
+}
+
+/// All values of a field where every vertex is moved by `F`, turned and carried off.
+fn values(body: &Body, f: &Mat3, field: Field) -> Vec<f64> {
+    let place = |x: &Vec3| {
+        let [a, b, c] = rotate(apply(f, *x), [0.6, 0.0, 0.8], 0.9);
+        [a + 0.1, b, c - 0.2]
+    };
+    let state = State {
+        positions: body.rest().iter().map(place).collect(),
+        velocities: vec![[0.0; 3]; body.rest().len()],
+        time: 0.0,
+    };
+    let all = (0..body.rest().len() as u32).collect();
+    Fields::new(body, all).evaluate(body, &state, field)
+}
+
+fn check(body: &Body, f: &Mat3, field: Field, expected: f64, scale: f64) {
+    for value in values(body, f, field) {
+        // Rounding: sums of some dozen terms.
+        let error = (value - expected).abs() / scale;
+        assert!(error < 1e-12, "{field:?}: {value} instead of {expected}");
+    }
+}
+
+fn diagonal(d: Vec3) -> Mat3 {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { d[i] } else { 0.0 }))
+}
+
+/// The energy density of a lattice voxel: a spring along each axis and two along the diagonals of each
+/// face orientation, half of them there in each voxel.
+fn lattice_energy(f: &Mat3, diagonals: &[Vec3]) -> f64 {
+    let spring = |direction: Vec3, length: f64, stiffness: f64| {
+        let [x, y, z] = apply(f, direction);
+        stiffness * ((x * x + y * y + z * z).sqrt() - length).powi(2) / 2.0
+    };
+    let along: f64 = (0..3)
+        .map(|i| {
+            spring(
+                std::array::from_fn(|j| f64::from(u8::from(i == j))),
+                1.0,
+                EDGE,
+            )
+        })
+        .sum();
+    let across: f64 = diagonals
+        .iter()
+        .map(|d| spring(*d, SQRT_2, EDGE * SQRT_2 / 2.0))
+        .sum();
+    let volume = f[0][0] * (f[1][1] * f[2][2] - f[1][2] * f[2][1])
+        - f[0][1] * (f[1][0] * f[2][2] - f[1][2] * f[2][0])
+        + f[0][2] * (f[1][0] * f[2][1] - f[1][1] * f[2][0]);
+    along + across + BULK * (volume - 1.0).powi(2) / 2.0
+}
+
+const DIAGONALS: [Vec3; 6] = [
+    [1.0, 1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [0.0, 1.0, 1.0],
+    [0.0, 1.0, -1.0],
+];
+
+#[test]
+fn a_lattice_under_uniaxial_and_biaxial_stretch() {
+    let body = lattice();
+    for d in [[1.4, 1.0, 1.0], [0.8, 1.0, 1.0], [1.3, 0.9, 1.2]] {
+        let f = diagonal(d);
+        check(
+            &body,
+            &f,
+            Field::Stretch,
+            d.into_iter().fold(0.0, f64::max),
+            1.0,
+        );
+        let energy = lattice_energy(&f, &DIAGONALS);
+        check(&body, &f, Field::EnergyDensity, energy, EDGE);
+        // σ = λ ∂W/∂λ / J along each axis, by hand.
+        let volume = d[0] * d[1] * d[2];
+        let sigma: [f64; 3] = std::array::from_fn(|i| {
+            let mut slope = EDGE * (d[i] - 1.0) + BULK * (volume - 1.0) * volume / d[i];
+            for j in (0..3).filter(|&j| j != i) {
+                let length = d[i].hypot(d[j]);
+                slope += EDGE * SQRT_2 * (length - SQRT_2) * d[i] / length;
+            }
+            slope * d[i] / volume
+        });
+        let mean = sigma.iter().sum::<f64>() / 3.0;
+        let deviator: f64 = sigma.iter().map(|s| (s - mean).powi(2)).sum();
+        check(&body, &f, Field::Pressure, -mean, EDGE);
+        check(&body, &f, Field::VonMises, (1.5 * deviator).sqrt(), EDGE);
+    }
+}
+
+#[test]
+fn rubber_under_uniaxial_stretch_and_pressure() {
+    let body = rubber();
+    for stretch in [0.7, 1.5, 2.0_f64] {
+        let side = stretch.powf(-0.5);
+        let f = diagonal([stretch, side, side]);
+        // An incompressible neo-Hookean bar: σ = 2 C₁₀ (λ² − 1/λ), and no mean stress without a change of
+        // volume.
+        let sigma = 2.0 * C10 * (stretch * stretch - 1.0 / stretch);
+        check(&body, &f, Field::VonMises, sigma.abs(), BULK);
+        check(&body, &f, Field::Pressure, 0.0, BULK);
+        check(&body, &f, Field::Stretch, stretch.max(side), 1.0);
+        let invariant = stretch * stretch + 2.0 / stretch - 3.0;
+        check(&body, &f, Field::EnergyDensity, C10 * invariant, BULK);
+    }
+    let squeezed = diagonal([0.95; 3]);
+    let volume = 0.95_f64.powi(3);
+    check(
+        &body,
+        &squeezed,
+        Field::Pressure,
+        BULK * (1.0 - volume),
+        BULK,
+    );
+    check(&body, &squeezed, Field::VonMises, 0.0, BULK);
+}
+
+#[test]
+fn simple_shear_has_its_stretch_and_shear_stress() {
+    let shear = 0.6_f64;
+    let f = multiply(
+        &diagonal([1.0; 3]),
+        &[[1.0, shear, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+    );
+    let body = rubber();
+    // λ − 1/λ = γ.
+    let stretch = shear / 2.0 + (1.0 + shear * shear / 4.0).sqrt();
+    check(&body, &f, Field::Stretch, stretch, 1.0);
+    // σ = 2 C₁₀ dev(b): τ = 2 C₁₀ γ and a normal difference 2 C₁₀ γ².
+    let deviator = (2.0 * C10).powi(2) * (2.0 * shear.powi(2) + (2.0 / 3.0 * shear.powi(4)));
+    check(&body, &f, Field::VonMises, (1.5 * deviator).sqrt(), BULK);
+}
+
+#[test]
+fn displacement_and_speed_are_those_of_vertices() {
+    let body = lattice();
+    let mut state = State::at_rest(&body);
+    state.positions[5][0] += 3e-3;
+    state.positions[5][2] -= 4e-3;
+    state.velocities[5] = [0.0, 2.0, 0.0];
+    let fields = Fields::new(&body, vec![5, 2]);
+    let expected = [(0, 5e-3), (1, 3e-3), (2, 0.0), (3, -4e-3), (8, 2.0)];
+    for (id, value) in expected {
+        let got = fields.evaluate(&body, &state, Field::from_id(id).unwrap());
+        assert!(
+            (got[0] - value).abs() < 1e-15 && got[1] == 0.0,
+            "{id}: {got:?}"
+        );
+    }
+    assert_eq!(Field::from_id(9), None);
+}
+
+/// A voxel's stress is that of its own deformation: what lies beyond the neighbours does not count.
+#[test]
+fn vertices_average_their_own_voxels_only() {
+    let body = rubber();
+    let mut state = State::at_rest(&body);
+    let far: Vec<usize> = (0..body.rest().len())
+        .filter(|&v| body.rest()[v][0] > 2.5 * SIDE)
+        .collect();
+    for &v in &far {
+        state.positions[v][0] += 1e-3;
+    }
+    let near = (0..body.rest().len() as u32).filter(|&v| body.rest()[v as usize][0] < 1.5 * SIDE);
+    let fields = Fields::new(&body, near.collect());
+    let values = fields.evaluate(&body, &state, Field::VonMises);
+    assert!(values.iter().all(|&v| v < 1e-9 * C10));
+    let fields = Fields::new(&body, far.iter().map(|&v| v as u32).collect());
+    let values = fields.evaluate(&body, &state, Field::VonMises);
+    assert!(values.iter().all(|&v| v > 0.1 * C10));
+}
