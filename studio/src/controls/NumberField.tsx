@@ -25,7 +25,8 @@ export interface NumberFieldProps {
 
 /** A number with its unit: type "5 mm" or "0.5 cm", arrow keys, drag the label, or slide. */
 export function NumberField(props: NumberFieldProps) {
-  const { label, value, min, max, onChange } = props;
+  const { label, min, max } = props;
+  const { value, change, settle } = useWish(props.value, props.onChange);
   const id = useId();
   const unit = shownUnit(props.unit ?? "1");
   const factor = factorOf(unit);
@@ -50,12 +51,12 @@ export function NumberField(props: NumberFieldProps) {
     }
     setDraft(null);
     setProblem(null);
-    if (read.value !== value) onChange(read.value, true);
+    if (read.value !== value) change(read.value, true);
   };
 
   const nudge = (count: number) => {
     setDraft(null);
-    onChange(clamp(round(value + count * step)), true);
+    change(clamp(round(value + count * step)), true);
   };
 
   const scrub = {
@@ -68,11 +69,11 @@ export function NumberField(props: NumberFieldProps) {
       if (!drag.current) return;
       const pixels = (event.clientX - drag.current.x) * (event.shiftKey ? 0.1 : 1);
       const next = clamp(round(drag.current.start + Math.round(pixels / 4) * step));
-      if (next !== value) onChange(next, false);
+      if (next !== value) change(next, false);
     },
     onPointerUp() {
-      if (drag.current && drag.current.start !== value) onChange(value, true);
       drag.current = null;
+      settle();
     },
   };
 
@@ -83,7 +84,7 @@ export function NumberField(props: NumberFieldProps) {
       <label
         className={`field-label scrub${changed ? " changed" : ""}`}
         htmlFor={id}
-        onDoubleClick={() => props.fallback !== undefined && onChange(props.fallback, true)}
+        onDoubleClick={() => props.fallback !== undefined && change(props.fallback, true)}
         {...scrub}
       >
         {label}
@@ -100,10 +101,10 @@ export function NumberField(props: NumberFieldProps) {
             value={value / factor}
             disabled={props.disabled}
             onChange={(event) =>
-              onChange(clamp(Number((Number(event.target.value) * factor).toPrecision(12))), false)
+              change(clamp(Number((Number(event.target.value) * factor).toPrecision(12))), false)
             }
-            onPointerUp={() => onChange(value, true)}
-            onKeyUp={() => onChange(value, true)}
+            onPointerUp={settle}
+            onKeyUp={settle}
           />
         )}
         <span className="number">
@@ -135,6 +136,38 @@ export function NumberField(props: NumberFieldProps) {
       {note && <span className="field-note">{note}</span>}
     </div>
   );
+}
+
+// How long an answer may take before the field shows what it is told instead of what was asked, ms.
+const PATIENCE = 800;
+
+/**
+ * What was asked for last, until the owner of the value has answered: the answer may take a
+ * moment, and a slider that jumps back meanwhile cannot be moved by keys.
+ */
+function useWish(told: number, onChange: NumberFieldProps["onChange"]) {
+  const [wish, setWish] = useState<number | null>(null);
+  const unsettled = useRef<number | null>(null);
+  useEffect(() => {
+    if (wish === null) return;
+    if (wish === told) {
+      setWish(null);
+      return;
+    }
+    const timer = setTimeout(() => setWish(null), PATIENCE);
+    return () => clearTimeout(timer);
+  }, [wish, told]);
+  const change = (next: number, settled: boolean) => {
+    setWish(next);
+    unsettled.current = settled ? null : next;
+    onChange(next, settled);
+  };
+  const settle = () => {
+    const last = unsettled.current;
+    unsettled.current = null;
+    if (last !== null) onChange(last, true);
+  };
+  return { value: wish ?? told, change, settle };
 }
 
 function stepFor(

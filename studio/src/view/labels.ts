@@ -24,9 +24,14 @@ export class Labels {
     const gone = new Set(this.shown.keys());
     for (const label of labels) {
       gone.delete(label.key);
-      const known = this.shown.get(label.key);
-      const element = known?.element ?? document.createElement(label.onClick ? "button" : "span");
-      if (!known) {
+      let element = this.shown.get(label.key)?.element;
+      // What can be clicked is a button; a word that becomes clickable becomes one.
+      if (element && element instanceof HTMLButtonElement !== Boolean(label.onClick)) {
+        element.remove();
+        element = undefined;
+      }
+      if (!element) {
+        element = document.createElement(label.onClick ? "button" : "span");
         element.className = `view-label ${label.kind}`;
         if (element instanceof HTMLButtonElement) element.type = "button";
         element.dataset.testid = `label-${label.key}`;

@@ -12,6 +12,7 @@ import {
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
+import type { DocumentEvent } from "../protocol";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView, type View } from "../store/view";
@@ -33,6 +34,11 @@ ColorManagement.enabled = false;
 
 const TELL_EVERY = 120;
 const HOVER_EVERY = 100;
+
+// Another document, not another revision of the same one, is a reason to fit the view.
+function nameOf(document: DocumentEvent | null): string | null {
+  return document && `${document.path} ${document.name}`;
+}
 
 export class Viewport {
   readonly element = document.createElement("div");
@@ -65,7 +71,7 @@ export class Viewport {
   private lastSeq = 0;
   private extremes: { low: number; high: number } | null = null;
   private fitNext = true;
-  private documentName: string | null = null;
+  private documentName = nameOf(useStudio.getState().document);
   private drawnListeners = new Set<() => void>();
 
   constructor() {
@@ -100,8 +106,8 @@ export class Viewport {
         if (now.stat?.grabs.length === 0 && before.stat?.grabs.length) this.grabs.forgetPinned();
         this.request();
       }
-      const name = now.document && `${now.document.path} ${now.document.name}`;
-      if (name && name !== this.documentName) {
+      const name = nameOf(now.document);
+      if (name !== null && name !== this.documentName) {
         this.documentName = name;
         this.fitNext = true;
       }
