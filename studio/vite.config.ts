@@ -22,6 +22,18 @@ export default defineConfig({
         entryFileNames: "assets/[name].js",
         chunkFileNames: "assets/[name].js",
         assetFileNames: "assets/[name][extname]",
+        codeSplitting: {
+          groups: [
+            { name: "three", test: /node_modules[\\/]three/ },
+            { name: "plots", test: /node_modules[\\/]uplot/ },
+            {
+              name: "editor",
+              test: /node_modules[\\/](@codemirror|@lezer|crelt|style-mod|w3c-keyname)/,
+            },
+            { name: "dock", test: /node_modules[\\/]dockview/ },
+            { name: "react", test: /node_modules[\\/](react|react-dom|scheduler|zustand)[\\/]/ },
+          ],
+        },
       },
     },
   },

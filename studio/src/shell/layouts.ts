@@ -53,7 +53,7 @@ export const LAYOUTS: Readonly<Record<Mode, Layout>> = {
   },
 };
 
-// Below this width a column at the right becomes tabs of the row at the bottom.
+// Below this width there is no column at the right.
 const NARROW = 1400;
 
 /** Leave out panes that are not there, and groups that are then empty. */
@@ -63,20 +63,25 @@ export function present(groups: readonly Tabs[]): string[][] {
     .filter((tabs) => tabs.length > 0) as string[][];
 }
 
+/** Add tabs to the last of some groups. */
+function withTabs(groups: string[][], tabs: string[]): string[][] {
+  const last = groups.at(-1);
+  return last ? [...groups.slice(0, -1), [...last, ...tabs]] : [tabs];
+}
+
 /** Build the default layout of a mode in an empty dock. */
 export function build(api: DockviewApi, mode: Mode, width: number, height: number): void {
   const layout = LAYOUTS[mode];
-  const left = present(layout.left);
+  let left = present(layout.left);
   let bottom = present(layout.bottom);
   let right = present(layout.right);
   const main = present([layout.main])[0] ?? ["log"];
+  // A narrow window keeps its width for the view: the right column becomes tabs elsewhere.
   if (width < NARROW && right.length > 0 && mode !== "runs") {
-    bottom =
-      bottom.length > 0
-        ? [...bottom.slice(0, -1), [...(bottom.at(-1) ?? []), ...right.flat()]]
-        : [];
-    if (bottom.length > 0) right = [];
-    else right = [right.flat()];
+    const others = right.flat();
+    if (bottom.length > 0) bottom = withTabs(bottom, others);
+    else left = withTabs(left, others);
+    right = [];
   }
   addTabs(api, main, undefined);
   const anchor = main[0] as string;

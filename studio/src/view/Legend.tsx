@@ -35,7 +35,10 @@ export function Legend() {
         {about.title}
         {unitText(unit) && <span className="muted"> {unitText(unit)}</span>}
       </button>
-      {!shut && (
+      {!shut && high <= low && range !== "locked" && (
+        <p className="muted legend-flat">{formatNumber(low / factor, 3)} everywhere</p>
+      )}
+      {!shut && (high > low || range === "locked") && (
         <>
           <div className="legend-scale">
             <div className="legend-bar" style={{ background: gradient(colormap, bands) }} />
