@@ -1,5 +1,4 @@
 // The form of the design: one document with the text beside it.
-import { useMemo } from "react";
 import { Button, Empty, Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
 import { Adder, EntryList, EntryMap } from "./Entries";
@@ -11,33 +10,9 @@ import { Goals } from "./Goals";
 import { Parameters } from "./Parameters";
 import { SchemaField, TableFields } from "./SchemaField";
 import { Shapes } from "./Shapes";
-import { helpOfKeys, type Schema } from "./schema";
+import { helpOfKeys } from "./schema";
+import { NO_DIAGNOSTICS, useFormOfDocument } from "./useForm";
 import "./design.css";
-
-const NO_DIAGNOSTICS: Form["diagnostics"] = [];
-
-function useFormOfDocument(): Form | null {
-  const hello = useStudio((state) => state.hello);
-  const document = useStudio((state) => state.document);
-  return useMemo(() => {
-    if (!hello || !document?.source) return null;
-    const { source } = document;
-    const keys = (section: string) => Object.keys((source[section] as object | undefined) ?? {});
-    return {
-      root: hello.design_schema as Schema,
-      source,
-      design: document.design,
-      diagnostics: document.diagnostics.length ? document.diagnostics : NO_DIAGNOSTICS,
-      names: {
-        shapes: keys("shapes"),
-        materials: [...keys("materials"), ...hello.materials.map((card) => card.name)],
-      },
-      materialTitles: Object.fromEntries(
-        hello.materials.map((card) => [card.name, `${card.name} (${card.model})`]),
-      ),
-    };
-  }, [hello, document]);
-}
 
 export default function DesignPane() {
   const form = useFormOfDocument();

@@ -18,8 +18,6 @@ export interface StudyDraft {
   readonly chosen: Readonly<Record<string, boolean>>;
   /** Ranges that differ from those of the design. */
   readonly ranges: Readonly<Record<string, Partial<Sweep>>>;
-  /** Objectives that were switched off. */
-  readonly dropped: Readonly<Record<string, boolean>>;
 }
 
 export const useStudyDraft = create<StudyDraft>(() => ({
@@ -30,7 +28,6 @@ export const useStudyDraft = create<StudyDraft>(() => ({
   seed: 0,
   chosen: {},
   ranges: {},
-  dropped: {},
 }));
 
 export function toggleSweep(parameter: string, on: boolean): void {

@@ -1,0 +1,31 @@
+// The form of the document that is open.
+import { useMemo } from "react";
+import { useStudio } from "../../store/studio";
+import type { Form } from "./form";
+import type { Schema } from "./schema";
+
+export const NO_DIAGNOSTICS: Form["diagnostics"] = [];
+
+/** What the form shows, or null while no text can be read as a table of values. */
+export function useFormOfDocument(): Form | null {
+  const hello = useStudio((state) => state.hello);
+  const document = useStudio((state) => state.document);
+  return useMemo(() => {
+    if (!hello || !document?.source) return null;
+    const { source } = document;
+    const keys = (section: string) => Object.keys((source[section] as object | undefined) ?? {});
+    return {
+      root: hello.design_schema as Schema,
+      source,
+      design: document.design,
+      diagnostics: document.diagnostics.length ? document.diagnostics : NO_DIAGNOSTICS,
+      names: {
+        shapes: keys("shapes"),
+        materials: [...keys("materials"), ...hello.materials.map((card) => card.name)],
+      },
+      materialTitles: Object.fromEntries(
+        hello.materials.map((card) => [card.name, `${card.name} (${card.model})`]),
+      ),
+    };
+  }, [hello, document]);
+}

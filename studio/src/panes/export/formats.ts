@@ -1,0 +1,97 @@
+// What can be taken away, and what each is for.
+
+export interface Format {
+  readonly id: string;
+  readonly title: string;
+  readonly ending: string;
+  readonly purpose: string;
+  /** Made in this page from the view. */
+  readonly here?: boolean;
+  /** Asks for the unit of lengths, which the file itself cannot tell. */
+  readonly asksUnit?: boolean;
+  /** Can be written as the body was built, or as it is now. */
+  readonly asksShape?: boolean;
+}
+
+export const FORMATS: readonly Format[] = [
+  {
+    id: "stl",
+    title: "Surface",
+    ending: ".stl",
+    purpose: "To print the body or cut its mold; other programs read it as triangles.",
+    asksUnit: true,
+    asksShape: true,
+  },
+  {
+    id: "vtu",
+    title: "Fields on the mesh",
+    ending: ".vtu",
+    purpose: "To look at displacement, stretch and stress in ParaView or PyVista.",
+  },
+  {
+    id: "inp",
+    title: "Finite-element model",
+    ending: ".inp",
+    purpose: "To solve the same body in Abaqus or CalculiX and check this result.",
+  },
+  {
+    id: "csv",
+    title: "Curves over time",
+    ending: ".csv",
+    purpose: "To plot probes, residual and energies in a spreadsheet or Python.",
+  },
+  {
+    id: "toml",
+    title: "Design",
+    ending: ".toml",
+    purpose: "To keep, cite or send the design: this page of text rebuilds everything.",
+  },
+  {
+    id: "run",
+    title: "Run folder",
+    ending: ".zip",
+    purpose: "To keep design, numbers and mesh together, so that anyone can repeat them.",
+  },
+  {
+    id: "png",
+    title: "Picture",
+    ending: ".png",
+    purpose: "For a paper or a slide: the view as it is, with its legend.",
+    here: true,
+  },
+  {
+    id: "html",
+    title: "Page that is alive",
+    ending: ".html",
+    purpose: "For people without VoxSoft: one file to turn, pull and inflate in any browser.",
+  },
+];
+
+export const UNITS = ["mm", "cm", "m", "in"] as const;
+export type Unit = (typeof UNITS)[number];
+
+export interface Options {
+  readonly unit: Unit | null;
+  readonly shape: "rest" | "now";
+  readonly scale: number;
+}
+
+/** Why a format cannot be written now, in words; null where it can. */
+export function obstacle(format: Format, options: Options, open: boolean): string | null {
+  if (!open) return "Open a design first.";
+  if (format.asksUnit && options.unit === null) {
+    return "Choose the unit: the file itself does not tell it.";
+  }
+  return null;
+}
+
+/** What is asked of the server. */
+export function request(format: Format, options: Options): Record<string, unknown> {
+  return {
+    format: format.id,
+    options: {
+      ...(format.asksUnit ? { unit: options.unit } : {}),
+      ...(format.asksShape ? { deformed: options.shape === "now" } : {}),
+    },
+  };
+}

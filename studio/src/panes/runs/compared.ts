@@ -1,0 +1,48 @@
+// What two designs side by side come to, as rows of a table.
+import { describeValue, formatKind } from "../../controls/kinds";
+import { formatNumber } from "../../controls/units";
+import type { ComparedEvent } from "../../protocol";
+
+export interface ComparedRow {
+  readonly name: string;
+  readonly a: string;
+  readonly b: string;
+  /** The change from a to b, where both are numbers. */
+  readonly change: string;
+  readonly differs: boolean;
+}
+
+/** Rows for all names of two tables, in their order; `kindOf` tells the units. */
+export function comparedRows(
+  a: Readonly<Record<string, unknown>>,
+  b: Readonly<Record<string, unknown>>,
+  kindOf: (name: string) => string,
+): ComparedRow[] {
+  const names = [...new Set([...Object.keys(a), ...Object.keys(b)])];
+  return names.map((name) => {
+    const [left, right] = [a[name], b[name]];
+    const text = (value: unknown) =>
+      typeof value === "number" ? formatKind(value, kindOf(name)) : describeValue(value);
+    return {
+      name,
+      a: text(left),
+      b: text(right),
+      change: changeOf(left, right, kindOf(name)),
+      differs: JSON.stringify(left) !== JSON.stringify(right),
+    };
+  });
+}
+
+function changeOf(a: unknown, b: unknown, kind: string): string {
+  if (typeof a !== "number" || typeof b !== "number" || a === b) return "";
+  const sign = b > a ? "+" : "";
+  if (a === 0) return `${sign}${formatKind(b - a, kind, 3)}`;
+  return `${sign}${formatNumber((100 * (b - a)) / Math.abs(a), 3)} %`;
+}
+
+/** Differences of the designs that are not told by the parameters already. */
+export function otherDifferences(compared: ComparedEvent): ComparedEvent["differences"] {
+  return compared.differences.filter(
+    ({ where }) => !where.startsWith("parameters.") || !where.endsWith(".value"),
+  );
+}

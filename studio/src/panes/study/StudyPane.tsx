@@ -1,0 +1,249 @@
+// Set a study up, start it, and see how far it is.
+import { useEffect, useRef } from "react";
+import { Button, Empty, Section, Select, Toggle } from "../../controls/Choice";
+import { formatKind, siUnit } from "../../controls/kinds";
+import { NumberField } from "../../controls/NumberField";
+import { parseQuantity } from "../../controls/units";
+import type { JobEvent } from "../../protocol";
+import { usePage } from "../../store/page";
+import { send } from "../../store/session";
+import { useStudio } from "../../store/studio";
+import { FormContext } from "../design/form";
+import { Goals } from "../design/Goals";
+import { TextField } from "../design/TextField";
+import { useFormOfDocument } from "../design/useForm";
+import { JobCard } from "../jobs/JobCard";
+import { jobsOf, useJob } from "./current";
+import { changeRange, toggleSweep, useStudyDraft } from "./draft";
+import { type Choice, choices, countOf, gridSize, obstacle, studySpec } from "./setup";
+import "../design/design.css";
+import "./study.css";
+
+/** Show a job that was started here as soon as it is known. */
+export function useNewJob(kind: JobEvent["kind"]): () => void {
+  const jobs = useStudio((state) => state.jobs);
+  const before = useRef<ReadonlySet<string> | null>(null);
+  useEffect(() => {
+    if (before.current === null) return;
+    const fresh = jobsOf(jobs, kind).find((job) => !before.current?.has(job.id));
+    if (!fresh) return;
+    before.current = null;
+    usePage.setState({ job: fresh.id });
+  }, [jobs, kind]);
+  return () => {
+    before.current = new Set(Object.keys(useStudio.getState().jobs));
+  };
+}
+
+export function JobChooser(props: { kind: JobEvent["kind"]; label: string }) {
+  const jobs = useStudio((state) => state.jobs);
+  const current = useJob(props.kind);
+  const all = jobsOf(jobs, props.kind);
+  if (all.length < 2 || !current) return null;
+  return (
+    <div className="section">
+      <Select
+        label={props.label}
+        value={current.id}
+        options={all.map((job) => ({
+          value: job.id,
+          label: `${job.name || job.id} (${job.state})`,
+        }))}
+        onChange={(job) => usePage.setState({ job })}
+      />
+    </div>
+  );
+}
+
+export default function StudyPane() {
+  const document = useStudio((state) => state.document);
+  const samplers = useStudio((state) => state.hello?.samplers) ?? [];
+  const cores = useStudio((state) => state.hello?.cores) ?? 1;
+  const draft = useStudyDraft();
+  const form = useFormOfDocument();
+  const job = useJob("study");
+  const expect = useNewJob("study");
+  if (!document || !form) {
+    return (
+      <Empty title="No design to vary">
+        <p>Open a template or a design file; its parameters are then varied here.</p>
+      </Empty>
+    );
+  }
+  const all = choices(document.parameters, draft);
+  const chosen = all.filter((one) => one.on);
+  const objectives = Object.keys((form.source.objectives as object | undefined) ?? {}).length;
+  const trouble = document.valid
+    ? obstacle(all, objectives, draft, samplers)
+    : "Mend the errors of the design first.";
+  const grid = gridSize(chosen);
+  const designs = draft.sampler === "grid" ? grid : draft.budget;
+  const start = () => {
+    expect();
+    send({ t: "job_start", spec: studySpec(all, draft) });
+  };
+  return (
+    <div className="pane study" data-testid="study-form">
+      {job && <JobCard job={job} unit="designs" />}
+      <JobChooser kind="study" label="Study" />
+      <Section title="Vary">
+        {all.length === 0 && (
+          <p className="muted">The design has no parameters; add some in its form.</p>
+        )}
+        {all.map((choice) => (
+          <Vary key={choice.parameter.name} choice={choice} grid={draft.sampler === "grid"} />
+        ))}
+      </Section>
+      <FormContext value={form}>
+        <Goals />
+      </FormContext>
+      <Section title="Search">
+        <Select
+          label="Sampler"
+          value={draft.sampler}
+          title={samplers.find((one) => one.name === draft.sampler)?.title ?? ""}
+          options={samplers.map((one) => ({
+            value: one.name,
+            label: one.name,
+            disabled: one.single_objective && objectives > 1,
+          }))}
+          onChange={(sampler) => useStudyDraft.setState({ sampler })}
+        />
+        <p className="sampler-note muted">
+          {samplers.find((one) => one.name === draft.sampler)?.title}
+        </p>
+        {draft.sampler === "grid" ? (
+          <div className="field">
+            <span className="field-label">Designs</span>
+            <span className="field-value">{grid === null ? "needs steps" : grid}</span>
+          </div>
+        ) : (
+          <NumberField
+            label="Budget"
+            title="How many designs are tried at most."
+            value={draft.budget}
+            min={1}
+            max={100_000}
+            step={1}
+            onChange={(budget) => useStudyDraft.setState({ budget: Math.round(budget) })}
+          />
+        )}
+        <Select
+          label="At once"
+          title="How many designs are solved at the same time."
+          value={draft.workers === null ? "" : String(draft.workers)}
+          options={[
+            { value: "", label: "as suits this machine" },
+            ...Array.from({ length: cores }, (_, i) => ({
+              value: String(i + 1),
+              label: i === 0 ? "1 design" : `${i + 1} designs`,
+            })),
+          ]}
+          onChange={(workers) =>
+            useStudyDraft.setState({ workers: workers === "" ? null : Number(workers) })
+          }
+        />
+        <NumberField
+          label="Seed"
+          title="The same seed gives the same study."
+          value={draft.seed}
+          min={0}
+          step={1}
+          onChange={(seed) => useStudyDraft.setState({ seed: Math.round(seed) })}
+        />
+        <TextField
+          label="Name"
+          value={draft.name}
+          onCommit={(name) => {
+            useStudyDraft.setState({ name });
+            return null;
+          }}
+        />
+      </Section>
+      <div className="start">
+        {trouble && <p className="muted">{trouble}</p>}
+        <Button kind="primary" testId="study-start" disabled={trouble !== null} onClick={start}>
+          {designs ? `Try ${designs.toLocaleString("en")} designs` : "Start"}
+        </Button>
+      </div>
+    </div>
+  );
+}
+
+function Vary(props: { choice: Choice; grid: boolean }) {
+  const { parameter, on, sweep, problem } = props.choice;
+  const { name, kind } = parameter;
+  const count = countOf(sweep);
+  const set = (key: "low" | "high") => (text: string) => {
+    const read = parseQuantity(text, parameter.display_unit || "1");
+    if ("problem" in read) return read.problem;
+    changeRange(name, { [key]: read.value });
+    return null;
+  };
+  const setStep = (text: string) => {
+    if (text.trim() === "" || text.trim() === "–") {
+      changeRange(name, { step: null });
+      return null;
+    }
+    const read = parseQuantity(text, parameter.display_unit || "1");
+    if ("problem" in read) return read.problem;
+    changeRange(name, { step: read.value });
+    return null;
+  };
+  return (
+    <div className={`vary${on ? " is-on" : ""}`} data-testid={`vary-${name}`}>
+      <Toggle
+        label={name}
+        title={parameter.description}
+        checked={on}
+        onChange={(next) => toggleSweep(name, next)}
+      />
+      {on ? (
+        <span className="vary-count muted">
+          {count === null ? "any value" : count === 1 ? "1 value" : `${count} values`}
+        </span>
+      ) : (
+        <span className="vary-count muted">{formatKind(parameter.value, kind)}</span>
+      )}
+      {on && (
+        <div className="vary-range">
+          <TextField
+            bare
+            right
+            label={`${name} from`}
+            value={formatKind(sweep.low, kind, 8)}
+            problem={problem ?? undefined}
+            onCommit={set("low")}
+          />
+          <span className="muted">to</span>
+          <TextField
+            bare
+            right
+            label={`${name} to`}
+            value={formatKind(sweep.high, kind, 8)}
+            problem={problem ?? undefined}
+            onCommit={set("high")}
+          />
+          <span className="muted">by</span>
+          <TextField
+            bare
+            right
+            label={`${name} step`}
+            title="Empty it for any value in between."
+            value={sweep.step === null ? "–" : formatKind(sweep.step, kind, 8)}
+            onCommit={setStep}
+          />
+        </div>
+      )}
+      {on && sweep.step === null && siUnit(kind) !== "1" && !props.grid && (
+        <Toggle
+          label="in decades"
+          title="For moduli and other quantities that span powers of ten."
+          checked={sweep.log}
+          onChange={(log) => changeRange(name, { log })}
+        />
+      )}
+      {on && problem && <p className="field-note bad">{problem}</p>}
+    </div>
+  );
+}

@@ -1,0 +1,56 @@
+// The study that the panes speak of.
+import { useEffect, useMemo } from "react";
+import type { JobEvent, TrialsEvent } from "../../protocol";
+import { usePage } from "../../store/page";
+import { useStudio } from "../../store/studio";
+import { attend } from "./selection";
+import { type Axis, axesOf, frontOf } from "./trials";
+
+export interface CurrentStudy {
+  readonly id: string;
+  readonly job: JobEvent | null;
+  readonly study: TrialsEvent;
+  readonly axes: readonly Axis[];
+  readonly front: ReadonlySet<number>;
+}
+
+/** All jobs of a kind, oldest first. */
+export function jobsOf(
+  jobs: Readonly<Record<string, JobEvent>>,
+  kind: JobEvent["kind"],
+): readonly JobEvent[] {
+  return Object.values(jobs).filter((job) => job.kind === kind);
+}
+
+/** The chosen job of a kind, or else the newest one. */
+export function useJob(kind: JobEvent["kind"]): JobEvent | null {
+  const chosen = usePage((page) => page.job);
+  const jobs = useStudio((state) => state.jobs);
+  return useMemo(() => {
+    const job = chosen === null ? undefined : jobs[chosen];
+    return job?.kind === kind ? job : (jobsOf(jobs, kind).at(-1) ?? null);
+  }, [chosen, jobs, kind]);
+}
+
+/** The trials of the chosen study, of one that runs, or of a past one that was opened. */
+export function useStudy(): CurrentStudy | null {
+  const chosen = usePage((page) => page.job);
+  const job = useJob("study");
+  const all = useStudio((state) => state.trials);
+  const id = chosen !== null && all[chosen] ? chosen : (job?.id ?? Object.keys(all).at(-1) ?? null);
+  const study = id === null ? undefined : all[id];
+  const found = useMemo(
+    () => (study ? { axes: axesOf(study), front: frontOf(study) } : null),
+    [study],
+  );
+  useEffect(() => {
+    if (id !== null) attend(id);
+  }, [id]);
+  return useMemo(
+    () =>
+      id !== null && study && found
+        ? { id, job: job?.id === id ? job : null, study, ...found }
+        : null,
+    [id, job, study, found],
+  );
+}

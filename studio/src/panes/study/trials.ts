@@ -1,0 +1,189 @@
+// What the plots and the table of a study need of its trials.
+import { describeValue, formatKind } from "../../controls/kinds";
+import type { TrialEvent, TrialsEvent } from "../../protocol";
+
+/** A quantity that each trial has: a parameter, an objective or another metric. */
+export interface Axis {
+  readonly key: string;
+  readonly name: string;
+  readonly role: "parameter" | "objective" | "metric";
+  readonly kind: string;
+  /** The values of a parameter that is no number, in order. */
+  readonly choices: readonly string[] | null;
+}
+
+export function isDone(trial: TrialEvent): boolean {
+  return trial.objectives !== null && Object.values(trial.objectives).every(Number.isFinite);
+}
+
+/** Parameters, then objectives, then the other metrics of a study. */
+export function axesOf(study: TrialsEvent): Axis[] {
+  const { trials, kinds } = study;
+  const metrics = [...new Set(trials.flatMap((trial) => Object.keys(trial.metrics)))].filter(
+    (name) => !study.objectives.includes(name) && !study.parameters.includes(name),
+  );
+  const axis = (role: Axis["role"], name: string): Axis => ({
+    key: `${role}:${name}`,
+    name,
+    role,
+    kind: kinds[name] ?? "number",
+    choices: role === "parameter" ? wordsOf(trials, name) : null,
+  });
+  return [
+    ...study.parameters.map((name) => axis("parameter", name)),
+    ...study.objectives.map((name) => axis("objective", name)),
+    ...metrics.map((name) => axis("metric", name)),
+  ];
+}
+
+function wordsOf(trials: readonly TrialEvent[], name: string): readonly string[] | null {
+  const words = new Set<string>();
+  for (const trial of trials) {
+    const value = trial.parameters[name];
+    if (value !== undefined && typeof value !== "number") words.add(describeValue(value));
+  }
+  return words.size > 0 ? [...words].sort() : null;
+}
+
+/** The value of a trial on an axis; NaN where it has none. */
+export function valueOn(trial: TrialEvent, axis: Axis): number {
+  if (axis.role === "parameter") {
+    const value = trial.parameters[axis.name];
+    if (axis.choices) return axis.choices.indexOf(describeValue(value));
+    return typeof value === "number" ? value : Number.NaN;
+  }
+  const from = axis.role === "objective" ? trial.objectives : trial.metrics;
+  return from?.[axis.name] ?? Number.NaN;
+}
+
+/** A value of an axis as text with its unit. */
+export function textOn(value: number, axis: Axis, digits = 4): string {
+  if (axis.choices) return axis.choices[Math.round(value)] ?? "–";
+  return formatKind(value, axis.kind, digits);
+}
+
+/** Smallest and largest finite value; equal ones are set apart so that they can be drawn. */
+export function rangeOf(values: readonly number[]): [number, number] {
+  let low = Infinity;
+  let high = -Infinity;
+  for (const value of values) {
+    if (!Number.isFinite(value)) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  if (low > high) return [0, 1];
+  if (low === high) {
+    const half = Math.abs(low) * 0.05 || 0.5;
+    return [low - half, high + half];
+  }
+  return [low, high];
+}
+
+/** Whether `a` is at least as good as `b` in all objectives and better in one. */
+function dominates(a: TrialEvent, b: TrialEvent, study: TrialsEvent): boolean {
+  let better = false;
+  for (const [i, name] of study.objectives.entries()) {
+    const sign = study.directions[i] === "maximize" ? -1 : 1;
+    const left = sign * (a.objectives?.[name] ?? Number.NaN);
+    const right = sign * (b.objectives?.[name] ?? Number.NaN);
+    if (!(left <= right)) return false;
+    if (left < right) better = true;
+  }
+  return better;
+}
+
+/** Numbers of the trials that no other feasible one beats. */
+export function frontOf(study: TrialsEvent): Set<number> {
+  const good = study.trials.filter((trial) => trial.feasible && isDone(trial));
+  return new Set(
+    good
+      .filter((trial) => !good.some((other) => dominates(other, trial, study)))
+      .map((trial) => trial.index),
+  );
+}
+
+/** The trial with the best first objective among the feasible ones. */
+export function bestOf(study: TrialsEvent): TrialEvent | null {
+  const name = study.objectives[0];
+  if (name === undefined) return null;
+  const sign = study.directions[0] === "maximize" ? -1 : 1;
+  let best: TrialEvent | null = null;
+  for (const trial of study.trials) {
+    if (!trial.feasible || !isDone(trial)) continue;
+    const value = sign * (trial.objectives?.[name] ?? Number.NaN);
+    if (best === null || value < sign * (best.objectives?.[name] ?? Number.NaN)) best = trial;
+  }
+  return best;
+}
+
+/** The best value so far after each feasible trial, in the order of the trials. */
+export function bestSoFar(study: TrialsEvent, objective: number): { x: number; y: number }[] {
+  const name = study.objectives[objective];
+  if (name === undefined) return [];
+  const sign = study.directions[objective] === "maximize" ? -1 : 1;
+  const steps: { x: number; y: number }[] = [];
+  let best = Infinity;
+  for (const trial of [...study.trials].sort((a, b) => a.index - b.index)) {
+    if (trial.feasible && isDone(trial)) {
+      best = Math.min(best, sign * (trial.objectives?.[name] ?? Number.NaN));
+    }
+    if (best < Infinity) steps.push({ x: trial.index, y: sign * best });
+  }
+  return steps;
+}
+
+export type Brushes = Readonly<Record<string, readonly [number, number]>>;
+
+/** Whether a trial lies within all stretches that are brushed. */
+export function within(trial: TrialEvent, axes: readonly Axis[], brushes: Brushes): boolean {
+  return axes.every((axis) => {
+    const brush = brushes[axis.key];
+    if (!brush) return true;
+    const value = valueOn(trial, axis);
+    return value >= brush[0] && value <= brush[1];
+  });
+}
+
+const COMPARISON = /^([\w-]+)\s*(<=|>=|<|>|=)\s*(.+)$/;
+
+/**
+ * Whether a trial is meant by a filter such as `ok`, `diverged`, `#12` or `wall > 8 mm`.
+ *
+ * Several conditions stand with commas between; `read` turns a text with a unit into an SI value.
+ */
+export function matchesFilter(
+  trial: TrialEvent,
+  axes: readonly Axis[],
+  filter: string,
+  read: (text: string, kind: string) => number,
+): boolean {
+  return filter
+    .split(",")
+    .map((part) => part.trim().toLowerCase())
+    .filter((part) => part !== "")
+    .every((part) => {
+      const comparison = COMPARISON.exec(part);
+      const axis = comparison && axes.find((one) => one.name.toLowerCase() === comparison[1]);
+      if (comparison && axis) {
+        const value = valueOn(trial, axis);
+        const bound = axis.choices
+          ? axis.choices.findIndex((word) => word.toLowerCase() === comparison[3])
+          : read(comparison[3] ?? "", axis.kind);
+        switch (comparison[2]) {
+          case "<":
+            return value < bound;
+          case ">":
+            return value > bound;
+          case "<=":
+            return value <= bound;
+          case ">=":
+            return value >= bound;
+          default:
+            return Math.abs(value - bound) <= 1e-9 * Math.max(Math.abs(bound), 1e-12);
+        }
+      }
+      if (/^#\d+$/.test(part)) return trial.index === Number(part.slice(1));
+      const words = [trial.status, trial.feasible ? "" : "infeasible", trial.message].join(" ");
+      return words.toLowerCase().includes(part);
+    });
+}

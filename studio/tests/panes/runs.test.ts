@@ -1,0 +1,67 @@
+import { describe, expect, it } from "vitest";
+import { FORMATS, obstacle, request } from "../../src/panes/export/formats";
+import { comparedRows } from "../../src/panes/runs/compared";
+import { ago, inTrash, matchesSearch } from "../../src/panes/runs/rows";
+import type { RunRow } from "../../src/protocol";
+
+const row = (id: string): RunRow => ({
+  id,
+  kind: "study",
+  name: id,
+  status: "done",
+  best: "rise 4 mm",
+  when: "",
+  seconds: 1,
+  folder: "",
+  thumbnail: null,
+  message: "",
+  trials: 3,
+});
+
+it("finds rows that hold all words of a search", () => {
+  expect(matchesSearch(row("arm"), "Study RISE")).toBe(true);
+  expect(matchesSearch(row("arm"), "study leg")).toBe(false);
+  expect(matchesSearch(row("arm"), "")).toBe(true);
+});
+
+it("says how long ago something was", () => {
+  const now = Date.parse("2026-03-10T12:00:00Z");
+  expect(ago("2026-03-10T11:59:55Z", now)).toBe("just now");
+  expect(ago("2026-03-10T11:59:00Z", now)).toBe("1 minute ago");
+  expect(ago("2026-03-08T11:00:00Z", now)).toBe("2 days ago");
+  expect(ago("2025-12-24T11:00:00Z", now)).toBe("2025-12-24");
+  expect(ago("never", now)).toBe("–");
+});
+
+it("finds a deleted run again, also where one of that name was deleted before", () => {
+  expect(inTrash([row("arm"), row("arm-2"), row("arm-long")], "arm")).toBe("arm-2");
+  expect(inTrash([row("arm")], "arm")).toBe("arm");
+  expect(inTrash([], "arm")).toBe("arm");
+});
+
+it("sets two designs side by side, with units and changes", () => {
+  const kind = (name: string) => (name === "wall" ? "length" : "number");
+  const rows = comparedRows({ wall: 0.01, n: 2 }, { wall: 0.012, n: 2, more: "x" }, kind);
+  expect(rows).toEqual([
+    { name: "wall", a: "10 mm", b: "12 mm", change: "+20 %", differs: true },
+    { name: "n", a: "2", b: "2", change: "", differs: false },
+    { name: "more", a: "–", b: "x", change: "", differs: true },
+  ]);
+});
+
+describe("export", () => {
+  const options = { unit: null, shape: "rest", scale: 2 } as const;
+  const stl = FORMATS.find((one) => one.id === "stl");
+  it("asks for the unit of a surface before it writes one", () => {
+    if (!stl) throw new Error("no surface");
+    expect(obstacle(stl, options, true)).toMatch(/unit/);
+    expect(obstacle(stl, { ...options, unit: "mm" }, true)).toBeNull();
+    expect(request(stl, { ...options, unit: "mm", shape: "now" })).toEqual({
+      format: "stl",
+      options: { unit: "mm", deformed: true },
+    });
+  });
+  it("says in a sentence what each file is for", () => {
+    for (const format of FORMATS) expect(format.purpose).toMatch(/^[A-Z].*\.$/);
+  });
+});
