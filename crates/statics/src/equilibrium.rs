@@ -4,9 +4,10 @@
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
+use voxsoft_solid::matrix::axial;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Problem, elastic};
+use voxsoft_solid::{Body, Brick, Problem, elastic};
 
 use crate::point::Point;
 use crate::settings::{LinearSolver, Observer, Progress, Settings};
@@ -25,6 +26,8 @@ pub(crate) enum Failure {
     Cancelled,
     /// A linear system was not solved iteratively.
     Stalled,
+    /// The linear answer turns a voxel by this angle (rad), more than was allowed.
+    Turned(f64),
 }
 
 impl From<FactorError> for Failure {
@@ -70,6 +73,9 @@ pub(crate) struct Equilibrium<'a> {
     pub held: Vec<[bool; 3]>,
     pub iterations: u32,
     pub back_offs: u32,
+    /// How far the linear answer may turn a voxel from rest (rad), as long as only that is known of the
+    /// body.
+    pub largest_turn: Option<f64>,
 }
 
 /// Iterations with strains carried along: most steps take less than ten.
@@ -109,6 +115,7 @@ impl<'a> Equilibrium<'a> {
             held,
             iterations: 0,
             back_offs: 0,
+            largest_turn: None,
         })
     }
 
@@ -262,6 +269,12 @@ impl<'a> Equilibrium<'a> {
                     iterations: iteration,
                     residual: relative,
                 });
+            }
+            if let Some(limit) = self.largest_turn.take() {
+                let turn = largest_turn(body, positions, &moves);
+                if turn > limit {
+                    return Err(Failure::Turned(turn));
+                }
             }
             strains = Some(Strains::predict(body, positions, &moves));
             for (x, m) in positions.iter_mut().zip(&moves) {
@@ -502,6 +515,17 @@ impl<'a> Equilibrium<'a> {
 pub(crate) fn is_standstill(relative: f64, largest: f64, size: f64, moved: f64) -> bool {
     let rounding = f64::max(STANDSTILL * size, STANDSTILL_OF_MOTION * moved);
     relative <= STANDSTILL_RESIDUAL && largest < rounding
+}
+
+/// The largest angle (rad) by which displacements from rest turn a voxel, to first order.
+fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
+    let moved: Vec<Vec3> = positions
+        .iter()
+        .zip(moves)
+        .map(|(x, m)| add(*x, *m))
+        .collect();
+    let turn = |brick: &Brick| norm(axial(&brick.deformation(&moved))) / 2.0;
+    body.bricks().iter().map(turn).fold(0.0, f64::max)
 }
 
 /// The farthest that a clamp carries a vertex.

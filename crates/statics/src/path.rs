@@ -17,6 +17,13 @@ pub(crate) const EASY: u32 = 6;
 /// Steps up to this part of the load are tried again with a line search before they are cut: a quick
 /// way that fails is mostly helped by a shorter step.
 const SAFE_STEP: f64 = 0.05;
+/// A first step whose linear answer turns a voxel by more than this (rad) seldom converges, and finds
+/// that out in some ten iterations.
+const LARGEST_TURN: f64 = 1.0;
+/// The turn of the step that is taken instead.
+const GOOD_TURN: f64 = 0.5;
+/// A step that would leave less than a tenth of itself goes to the end.
+const LAST: f64 = 1.1;
 /// How often the floor may change its mind at one point.
 const FLOOR_ROUNDS: usize = 40;
 
@@ -116,7 +123,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
 
 pub(crate) fn status_of(failure: Failure) -> Status {
     match failure {
-        Failure::Lost | Failure::Stalled => Status::NotConverged,
+        Failure::Lost | Failure::Stalled | Failure::Turned(_) => Status::NotConverged,
         Failure::Singular => Status::Mechanism,
         Failure::Memory(bytes) => Status::OutOfMemory(bytes),
         Failure::Cancelled => Status::Cancelled,
@@ -226,9 +233,14 @@ impl Path<'_, '_> {
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let mut cuts = 0;
+        self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let now = self.point.pressure;
-            let next = (now + step).min(1.0);
+            let next = if now + LAST * step < 1.0 {
+                now + step
+            } else {
+                1.0
+            };
             let point = Point::all(next);
             let mut trial = self.positions.clone();
             let found = self.find(&mut trial, point, settings, step <= SAFE_STEP);
@@ -251,6 +263,10 @@ impl Path<'_, '_> {
                     // A long step may come upon a branch that the path does not lead to.
                     cuts += 1;
                     Failure::Lost
+                }
+                Err(Failure::Turned(turn)) => {
+                    step = (step * GOOD_TURN / turn).max(settings.least_step);
+                    continue;
                 }
                 Err(failure) => failure,
             };

@@ -11,10 +11,14 @@ from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExec
 from contextlib import suppress
 from typing import Any, Final, Protocol, TypeVar
 
+from voxsoft._memory import memory_limit
 from voxsoft.errors import MissingPackageError, StudyError
 
 #: Seconds to wait for a Dask scheduler.
 DASK_TIMEOUT: Final = 10.0
+#: What a worker process takes with a small body: 25 MB were measured, its share of common pages
+#: included, and as much again for larger ones.
+_WORKER_BYTES: Final = 50 * 10**6
 
 Answer = TypeVar("Answer")
 
@@ -56,8 +60,8 @@ def make_workers(executor: Executor | None, scheduler: str | None, count: int | 
     Raises
     ------
     StudyError
-        Both an executor and a scheduler, a count below 1, workers that do not start, or a
-        scheduler that does not answer.
+        Both an executor and a scheduler, a count below 1 or of more processes than fit in memory,
+        workers that do not start, or a scheduler that does not answer.
     MissingPackageError
         A scheduler without the package `distributed`.
     """
@@ -68,6 +72,14 @@ def make_workers(executor: Executor | None, scheduler: str | None, count: int | 
     if scheduler is not None:
         return DaskCluster(scheduler)
     slots = count or _usable_cores()
+    if count is not None and executor is None and count * _WORKER_BYTES > memory_limit():
+        raise StudyError(
+            "workers",
+            f"{slots} processes take about {slots * _WORKER_BYTES / 1e9:.1f} GB, and "
+            f"{memory_limit() / 1e9:.1f} GB of memory are free",
+            f"use one for each core, {_usable_cores()} here; at most "
+            f"{max(1, memory_limit() // _WORKER_BYTES)} fit",
+        )
     return LocalProcesses(slots) if executor is None else ForeignExecutor(executor, slots)
 
 
