@@ -1,12 +1,13 @@
 import { createRoot } from "react-dom/client";
 import { ServerEngine } from "./engine/server";
 import { App } from "./shell/App";
-import { watchPage } from "./store/page";
+import { watchAddress, watchTheme } from "./store/page";
 import { connect } from "./store/session";
 import "./theme.css";
 import "./controls/controls.css";
 
-watchPage();
+watchTheme();
+watchAddress();
 const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 connect(new ServerEngine(`${scheme}//${location.host}/ws`));
 createRoot(document.getElementById("root") as HTMLElement).render(<App />);

@@ -2,7 +2,7 @@ import { Button, Empty, Progress, Section, Select } from "../controls/Choice";
 import { NumberField } from "../controls/NumberField";
 import { factorOf, formatNumber, formatQuantity } from "../controls/units";
 import type { BodyLoad } from "../protocol";
-import { send } from "../store/session";
+import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
 import { viewport } from "../view/instance";
@@ -38,7 +38,7 @@ export default function RunPane() {
         ))}
       </Section>
       <Pulls />
-      <Solver />
+      {currentEngine()?.kind === "server" && <Solver />}
     </div>
   );
 }

@@ -2,7 +2,7 @@ import { useEffect, useRef } from "react";
 import { Button } from "../controls/Choice";
 import { stepFrames, togglePlay } from "../shell/actions";
 import { Icon } from "../shell/icons";
-import { send } from "../store/session";
+import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
 import "./run.css";
 
@@ -65,15 +65,17 @@ export function Transport() {
       >
         <Icon name="reset" />
       </Button>
-      <Button
-        kind="quiet"
-        label="Solve for the state at rest (R)"
-        testId="rest"
-        disabled={solving}
-        onClick={() => send({ t: "rest" })}
-      >
-        <Icon name="rest" /> Rest
-      </Button>
+      {currentEngine()?.kind === "server" && (
+        <Button
+          kind="quiet"
+          label="Solve for the state at rest (R)"
+          testId="rest"
+          disabled={solving}
+          onClick={() => send({ t: "rest" })}
+        >
+          <Icon name="rest" /> Rest
+        </Button>
+      )}
       <input
         className="scrubber"
         type="range"

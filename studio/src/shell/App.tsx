@@ -1,4 +1,5 @@
 import { useEffect } from "react";
+import { PANES } from "../panes/registry";
 import { openSheet } from "../store/page";
 import { useStudio } from "../store/studio";
 import { listenForKeys, provideDock } from "./actions";
@@ -11,7 +12,7 @@ import { TopBar } from "./TopBar";
 import { wantsTour } from "./tour";
 import "./shell.css";
 
-provideDock({ show: showPane, reset: resetLayout });
+provideDock({ panes: PANES, show: showPane, reset: resetLayout });
 
 export function App() {
   useEffect(listenForKeys, []);

@@ -1,6 +1,5 @@
 // Every action with a name: the palette lists them, keys start them, the help sheet shows them.
 
-import { PANES } from "../panes/registry";
 import { MODE_TITLES, MODES, openSheet, setMode, type ThemeChoice, usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -15,21 +14,28 @@ export interface Action {
   run(): void;
 }
 
+export interface DockActions {
+  readonly panes: readonly { readonly id: string; readonly title: string }[];
+  show(id: string): void;
+  reset(): void;
+}
+
 let viewActions: readonly Action[] = [];
-let dockActions: { show(id: string): void; reset(): void } = { show: () => {}, reset: () => {} };
+let dock: DockActions | null = null;
 
 /** The view brings its own actions when it is loaded. */
 export function provideViewActions(actions: readonly Action[]): void {
   viewActions = actions;
 }
 
-export function provideDock(actions: typeof dockActions): void {
-  dockActions = actions;
+/** The dock brings its panes; a page without one has none to show. */
+export function provideDock(actions: DockActions): void {
+  dock = actions;
 }
 
 /** Bring a pane to the front. */
 export function showPane(id: string): void {
-  dockActions.show(id);
+  dock?.show(id);
 }
 
 export function togglePlay(): void {
@@ -150,7 +156,7 @@ function simple(): Action[] {
       id: "layout",
       title: "Reset the layout of this mode",
       group: "Page",
-      run: () => dockActions.reset(),
+      run: () => dock?.reset(),
     },
     { id: "theme-dark", title: "Dark theme", group: "Page", run: () => setTheme("dark") },
     { id: "theme-light", title: "Light theme", group: "Page", run: () => setTheme("light") },
@@ -163,6 +169,11 @@ function simple(): Action[] {
   ];
 }
 
+const ALONE = new Set([
+  ...["play", "step", "back", "step10", "back10", "live", "reset"],
+  ...["palette", "shortcuts", "theme-dark", "theme-light", "theme-system"],
+]);
+
 /** All actions that make sense now. */
 export function actions(): Action[] {
   const modes = MODES.map(
@@ -174,12 +185,12 @@ export function actions(): Action[] {
       run: () => setMode(mode),
     }),
   );
-  const panes = PANES.map(
+  const panes = (dock?.panes ?? []).map(
     (pane): Action => ({
       id: `pane-${pane.id}`,
       title: `Show ${pane.title}`,
       group: "Panes",
-      run: () => dockActions.show(pane.id),
+      run: () => dock?.show(pane.id),
     }),
   );
   const templates = (useStudio.getState().hello?.templates ?? []).map(
@@ -190,6 +201,8 @@ export function actions(): Action[] {
       run: () => openDocument({ t: "open", what: "template", name: template.name }),
     }),
   );
+  // A page that runs by itself has a body and time, and no document, modes or panes.
+  if (!dock) return [...simple().filter((one) => ALONE.has(one.id)), ...viewActions];
   return [...simple(), ...viewActions, ...modes, ...panes, ...templates];
 }
 

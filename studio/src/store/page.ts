@@ -77,22 +77,26 @@ export function themeInForce(choice: ThemeChoice): "dark" | "light" {
   return matchMedia("(prefers-color-scheme: light)").matches ? "light" : "dark";
 }
 
-/** Keep document and storage in step with the store; called once. */
-export function watchPage(): void {
-  const show = (page: Page) => {
-    document.documentElement.dataset.theme = themeInForce(page.theme);
-    keepAs(KEY, { theme: page.theme });
-    const address = new URLSearchParams({
-      mode: page.mode,
-      ...(page.job ? { job: page.job } : {}),
-    });
-    const hash = `#${address}`;
-    if (location.hash !== hash) history.replaceState(null, "", hash);
+/** Keep the theme in step with the store and the system; called once. */
+export function watchTheme(): void {
+  const show = ({ theme }: Page) => {
+    document.documentElement.dataset.theme = themeInForce(theme);
+    keepAs(KEY, { theme });
   };
   show(usePage.getState());
   usePage.subscribe(show);
   matchMedia("(prefers-color-scheme: light)").addEventListener("change", () =>
     show(usePage.getState()),
   );
+}
+
+/** Keep the address in step with the store; called once. */
+export function watchAddress(): void {
+  const show = (page: Page) => {
+    const hash = `#${new URLSearchParams({ mode: page.mode, ...(page.job ? { job: page.job } : {}) })}`;
+    if (location.hash !== hash) history.replaceState(null, "", hash);
+  };
+  show(usePage.getState());
+  usePage.subscribe(show);
   addEventListener("hashchange", () => usePage.setState(readAddress()));
 }

@@ -1,0 +1,467 @@
+// A scene that plays without a server: what the native session does, over the core in the page.
+// Nothing here knows whether it runs in a worker; time is handed in.
+import type { AnyEvent, BodyEvent, Field, GrabState, StatEvent } from "../protocol";
+import { PROTOCOL } from "../protocol";
+import type { Draft } from "./engine";
+
+/** What of the core a player needs; `engine/core.ts` gives it. */
+export interface Run {
+  readonly notes: string;
+  /** Vertex of the body for each vertex that is shown. */
+  readonly shown: Uint32Array;
+  advance(substeps: number): Look;
+  setLoad(load: number, factor: number): void;
+  grab(
+    number: number,
+    vertex: number,
+    target: readonly [number, number, number],
+    stiffness: number,
+  ): void;
+  release(number: number): void;
+  pull(number: number): { force: [number, number, number]; stretch: number } | null;
+  reset(): void;
+  seek(positions: Float64Array, time: number): void;
+  positions(): Float64Array;
+  topology(number: number): ArrayBuffer;
+  frame(topology: number, frame: number, field: number, seq: number, flags: number): ArrayBuffer;
+}
+
+export interface Look {
+  readonly status: "moving" | "at-rest" | "diverged";
+  readonly time: number;
+  /** Length of a substep, s. */
+  readonly substep: number;
+  readonly substeps: number;
+  readonly residual: number;
+  readonly elastic: number;
+  readonly kinetic: number;
+}
+
+/** What the writer of a scene says about it. */
+export interface Notes {
+  readonly version: string;
+  readonly name: string;
+  readonly text: string;
+  readonly sentence: string;
+  readonly fields: Field[];
+  readonly body: BodyEvent;
+}
+
+export interface Audience {
+  event(event: AnyEvent): void;
+  binary(message: ArrayBuffer): void;
+}
+
+const PAUSED = 1;
+const DIVERGED = 2;
+const AT_REST = 4;
+const CREDITS = 2;
+/** Wall-clock time that one turn may take, ms: the rest belongs to drawing and input. */
+const TURN = 12;
+const TELL_EVERY = 100;
+const MOST_STORED = 64 * 1024 * 1024;
+
+export class Player {
+  readonly notes: Notes;
+  private playing = false;
+  private past: number | null = null;
+  private look: Look;
+  private frame = 0;
+  private stored: {
+    frame: number;
+    time: number;
+    field: number;
+    message: ArrayBuffer;
+    positions: Float64Array;
+  }[] = [];
+  private storedBytes = 0;
+  private credits = CREDITS;
+  private fresh = true;
+  private field = 0;
+  private seq = 0;
+  private loads: number[];
+  private grabs = new Map<
+    number,
+    { vertex: number; target: [number, number, number]; stiffness: number }
+  >();
+  private probed: number[] = [];
+  private rows: (number | null)[][] = [];
+  private lastTold = -Infinity;
+  private lastTurn: number | null = null;
+  private realTime = 0;
+  private stepMs = 0;
+  private simulated = 0;
+  private readonly rest: Float64Array;
+
+  constructor(
+    private readonly run: Run,
+    private readonly audience: Audience,
+  ) {
+    this.notes = JSON.parse(run.notes) as Notes;
+    this.loads = this.notes.body.loads.map((load) => load.value);
+    this.rest = run.positions();
+    this.look = run.advance(0);
+  }
+
+  /** Tell everything from the start, as to a new tab. */
+  greet(): void {
+    const { notes } = this;
+    this.audience.event({
+      t: "hello",
+      version: notes.version,
+      protocol: PROTOCOL,
+      design_schema: {},
+      templates: [],
+      materials: [],
+      samplers: [],
+      calibration_methods: [],
+      methods: ["xpbd"],
+      metrics: [],
+      fields: notes.fields,
+      runs_folder: "",
+      cores: 1,
+    });
+    this.audience.event({
+      t: "document",
+      rev: 1,
+      text: notes.text,
+      name: notes.name,
+      path: null,
+      dirty: false,
+      valid: true,
+      parameters: [],
+      design: null,
+      source: null,
+      diagnostics: [],
+      can_undo: false,
+      can_redo: false,
+    });
+    this.audience.event({ ...notes.body, smooth: false });
+    this.audience.binary(this.run.topology(notes.body.topology));
+    this.tell();
+  }
+
+  /** Carry out a command; gives whether time has work to do. */
+  take(command: Draft & { seq: number }): boolean {
+    if (command.t !== "ack") this.seq = command.seq;
+    switch (command.t) {
+      case "play":
+        this.goLive();
+        this.playing = true;
+        this.lastTurn = null;
+        break;
+      case "pause":
+        this.playing = false;
+        break;
+      case "step":
+        this.goLive();
+        this.playing = false;
+        for (let i = 0; i < (command.n ?? 1); i++) this.step(1 / 60, Number.POSITIVE_INFINITY);
+        break;
+      case "reset":
+        this.resetAll();
+        break;
+      case "load":
+        this.load(command.index, command.value ?? null, command.factor ?? null);
+        break;
+      case "grab":
+        this.grab(command);
+        break;
+      case "release":
+        this.run.release(command.id);
+        this.grabs.delete(command.id);
+        break;
+      case "seek":
+        this.playing = false;
+        this.past = command.frame;
+        break;
+      case "live":
+        this.goLive();
+        break;
+      case "view":
+        this.field = command.field ?? this.field;
+        break;
+      case "pick":
+        this.pick(command.vertex);
+        break;
+      case "probe":
+        this.probed.push(command.vertex);
+        break;
+      case "ack":
+        this.credits += 1;
+        this.send();
+        return this.busy;
+      default:
+        this.audience.event({
+          t: "error",
+          seq: command.seq,
+          where: "",
+          what: "This page runs by itself and cannot do that",
+          hint: "Open its design in the studio: voxsoft studio FILE",
+        });
+    }
+    this.fresh = true;
+    this.tell();
+    this.send();
+    return this.busy;
+  }
+
+  get busy(): boolean {
+    return this.playing;
+  }
+
+  /** Let time go on as far as the wall clock has, within a turn's budget. */
+  turn(now: number): void {
+    if (!this.playing) return;
+    const passed = this.lastTurn === null ? 1 / 60 : Math.min(0.1, (now - this.lastTurn) / 1000);
+    this.lastTurn = now;
+    this.step(passed, now + TURN);
+    this.send();
+    if (now - this.lastTold >= TELL_EVERY) {
+      this.lastTold = now;
+      this.realTime = passed > 0 ? this.simulated / passed : 0;
+      this.tell();
+    }
+  }
+
+  private step(seconds: number, until: number): void {
+    const start = performance.now();
+    const from = this.look.time;
+    let taken = 0;
+    while (this.look.time - from < seconds && (taken === 0 || performance.now() < until)) {
+      const left = Math.ceil((seconds - (this.look.time - from)) / this.look.substep);
+      const count = Math.max(1, Math.min(8, left));
+      this.look = this.run.advance(count);
+      taken += count;
+      if (this.look.status !== "moving") break;
+    }
+    this.simulated = this.look.time - from;
+    this.stepMs = (performance.now() - start) / Math.max(1, taken);
+    if (this.look.status !== "moving") this.playing = false;
+    this.frame += 1;
+    this.fresh = true;
+    this.store();
+    this.rows.push(this.row());
+    if (this.look.status !== "moving") this.tell();
+  }
+
+  private row(): (number | null)[] {
+    const { time, residual, elastic, kinetic } = this.look;
+    const positions = this.run.positions();
+    const probes = this.notes.body.probes.map((probe) => this.moved(positions, probe.vertices));
+    const picked = this.probed.map((vertex) => this.moved(positions, [vertex]));
+    return [time, residual, elastic, kinetic, ...probes, ...picked].map((x) =>
+      Number.isFinite(x) ? x : null,
+    );
+  }
+
+  // Length of the mean displacement of some shown vertices.
+  private moved(positions: Float64Array, vertices: readonly number[]): number {
+    const sum = [0, 0, 0];
+    for (const shown of vertices) {
+      const vertex = this.run.shown[shown] ?? 0;
+      for (let axis = 0; axis < 3; axis++) {
+        sum[axis]! += positions[3 * vertex + axis]! - this.rest[3 * vertex + axis]!;
+      }
+    }
+    return Math.hypot(...sum) / Math.max(1, vertices.length);
+  }
+
+  private flags(): number {
+    const { status } = this.look;
+    return (
+      (this.playing ? 0 : PAUSED) |
+      (status === "diverged" ? DIVERGED : 0) |
+      (status === "at-rest" ? AT_REST : 0)
+    );
+  }
+
+  private pack(): ArrayBuffer {
+    return this.run.frame(this.notes.body.topology, this.frame, this.field, this.seq, this.flags());
+  }
+
+  private store(): void {
+    const message = this.pack();
+    const positions = this.run.positions();
+    const { field, frame } = this;
+    this.stored.push({ frame, time: this.look.time, field, message, positions });
+    this.storedBytes += message.byteLength + positions.byteLength;
+    while (this.storedBytes > MOST_STORED && this.stored.length > 1) {
+      const old = this.stored.shift()!;
+      this.storedBytes -= old.message.byteLength + old.positions.byteLength;
+    }
+  }
+
+  private at(frame: number): Player["stored"][number] | null {
+    return this.stored.find((one) => one.frame >= frame) ?? this.stored.at(-1) ?? null;
+  }
+
+  private send(): void {
+    if (!this.fresh || this.credits <= 0) return;
+    this.fresh = false;
+    this.credits -= 1;
+    const old = this.past === null ? null : this.at(this.past);
+    this.audience.binary(old ? this.packPast(old) : this.pack());
+  }
+
+  // Colors are those of the field that is shown now: a frame stored with another is packed anew.
+  private packPast(old: Player["stored"][number]): ArrayBuffer {
+    if (old.field === this.field) return old.message.slice(0);
+    const now = { positions: this.run.positions(), time: this.look.time };
+    this.run.seek(old.positions, old.time);
+    const { topology } = this.notes.body;
+    const packed = this.run.frame(topology, old.frame, this.field, this.seq, PAUSED);
+    this.run.seek(now.positions, now.time);
+    return packed;
+  }
+
+  private goLive(): void {
+    this.past = null;
+  }
+
+  private resetAll(): void {
+    this.playing = false;
+    this.past = null;
+    for (const id of this.grabs.keys()) this.run.release(id);
+    this.grabs.clear();
+    this.run.reset();
+    this.look = this.run.advance(0);
+    this.stored = [];
+    this.storedBytes = 0;
+    this.frame += 1;
+    this.rows = [];
+    this.tellPlot(true);
+  }
+
+  private load(index: number, value: number | null, factor: number | null): void {
+    const load = this.notes.body.loads[index];
+    if (!load) return;
+    const share = factor ?? (load.value === 0 ? 0 : (value ?? 0) / load.value);
+    this.run.setLoad(index, share);
+    this.loads[index] = share * load.value;
+    this.wake();
+  }
+
+  private grab(command: Extract<Draft, { t: "grab" }>): void {
+    const vertex = this.run.shown[command.vertex];
+    if (vertex === undefined) return;
+    const stiffness = command.stiffness ?? 50;
+    this.run.grab(command.id, vertex, command.target, stiffness);
+    this.grabs.set(command.id, { vertex: command.vertex, target: command.target, stiffness });
+    this.wake();
+  }
+
+  // What was at rest is so no more.
+  private wake(): void {
+    if (this.look.status === "at-rest" && this.past === null) {
+      this.playing = true;
+      this.lastTurn = null;
+    }
+  }
+
+  private pick(shown: number): void {
+    const vertex = this.run.shown[shown];
+    if (vertex === undefined) return;
+    const positions = this.run.positions();
+    const at = (from: Float64Array): [number, number, number] => [
+      from[3 * vertex]!,
+      from[3 * vertex + 1]!,
+      from[3 * vertex + 2]!,
+    ];
+    const values = this.notes.fields.map((field) => {
+      const packed = this.run.frame(this.notes.body.topology, 0, field.id, 0, 0);
+      if (packed.byteLength === 0)
+        return { field: field.id, name: field.name, value: null, unit: field.unit };
+      const view = new DataView(packed);
+      const [low, high] = [view.getFloat32(56, true), view.getFloat32(60, true)];
+      const q = view.getUint16(64 + 8 * shown + 6, true);
+      return {
+        field: field.id,
+        name: field.name,
+        value: low + ((high - low) * q) / 65535,
+        unit: field.unit,
+      };
+    });
+    this.audience.event({
+      t: "picked",
+      vertex: shown,
+      rest: at(this.rest),
+      position: at(positions),
+      values,
+    });
+  }
+
+  private tellPlot(clear = false): void {
+    const { body } = this.notes;
+    const names = [
+      "time",
+      "residual",
+      "elastic",
+      "kinetic",
+      ...body.probes.map((probe) => probe.name),
+      ...this.probed.map((vertex) => `vertex ${vertex}`),
+    ];
+    const units = ["s", "1", "J", "J", ...names.slice(4).map(() => "m")];
+    const rows = this.rows.filter((row) => row.length === names.length);
+    this.audience.event({ t: "plot", topology: body.topology, names, units, rows, clear });
+    this.rows = [];
+  }
+
+  private tell(): void {
+    if (this.rows.length > 0) this.tellPlot();
+    this.audience.event(this.stat());
+  }
+
+  private stat(): StatEvent {
+    const { look, past } = this;
+    const old = past === null ? null : this.at(past);
+    const state =
+      old !== null
+        ? "past"
+        : look.status === "diverged"
+          ? "diverged"
+          : this.playing
+            ? "playing"
+            : look.status === "at-rest" && look.time > 0
+              ? "at-rest"
+              : "paused";
+    const grabs: GrabState[] = [...this.grabs].map(([id, grab]) => {
+      const pull = this.run.pull(id);
+      return { id, ...grab, force: pull?.force ?? [0, 0, 0], stretch: pull?.stretch ?? 0 };
+    });
+    return {
+      t: "stat",
+      topology: this.notes.body.topology,
+      state,
+      sentence: this.sentence(state),
+      time: old?.time ?? look.time,
+      step_ms: this.stepMs,
+      substeps: look.substeps,
+      real_time_factor: this.realTime,
+      residual: finite(look.residual),
+      elastic: finite(look.elastic),
+      kinetic: finite(look.kinetic),
+      frame: old?.frame ?? this.frame,
+      first_frame: this.stored[0]?.frame ?? this.frame,
+      last_frame: this.frame,
+      frames_stored: this.stored.length,
+      bytes_stored: this.storedBytes,
+      solver: "xpbd",
+      progress: null,
+      loads: [...this.loads],
+      grabs,
+    };
+  }
+
+  private sentence(state: StatEvent["state"]): string {
+    const time = `${this.look.time.toFixed(3)} s`;
+    if (state === "at-rest") return `At rest after ${time}.`;
+    if (state === "diverged") return `Diverged at ${time}: reset, and load it less.`;
+    if (state === "past") return "A stored frame; LIVE goes back to the present.";
+    return state === "playing" ? "Time runs in this page." : this.notes.sentence;
+  }
+}
+
+function finite(x: number): number | null {
+  return Number.isFinite(x) ? x : null;
+}
