@@ -15,6 +15,7 @@ from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
 from voxsoft.cli.new import new
 from voxsoft.cli.run import run
+from voxsoft.cli.studio import studio
 from voxsoft.cli.study import optimize, sweep
 
 app = typer.Typer(
@@ -25,7 +26,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_show_locals=False,
 )
-for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, export):
+for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, export, studio):
     app.command()(command)
 app.add_typer(material)
 

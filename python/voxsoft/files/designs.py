@@ -60,7 +60,7 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     text = read_text(path)
     document = read_document(text, Path(path).name)
     try:
-        changed = _with_whole_paths(set_values(document, assignments), Path(path).parent)
+        changed = with_whole_paths(set_values(document, assignments), Path(path).parent)
         return Design.from_document(changed, parameters)
     except DesignError as error:
         problems = (_with_line(problem, text, Path(path).name) for problem in error.problems)
@@ -135,13 +135,13 @@ def read_document(text: str, name: str) -> Document:
         raise FileError(name, f"holds a value that cannot be read: {error}") from None
 
 
-def _with_whole_paths(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
+def with_whole_paths(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
     """Complete the relative paths of mesh shapes, which are meant from the file's folder."""
     if isinstance(value, list):
-        return [_with_whole_paths(entry, folder) for entry in value]
+        return [with_whole_paths(entry, folder) for entry in value]
     if not isinstance(value, dict):
         return value
-    table = {key: _with_whole_paths(entry, folder) for key, entry in value.items()}
+    table = {key: with_whole_paths(entry, folder) for key, entry in value.items()}
     if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
         # A path that is absolute already stays as it is.
         table["path"] = str(folder.absolute() / table["path"])
@@ -166,8 +166,18 @@ def _position(message: str, text: str, name: str) -> tuple[str, str]:
 _STEP: Final = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
 
 
+def steps_of(where: str) -> list[str | int]:
+    """Read the place that a problem names as keys and indices.
+
+    Examples
+    --------
+    >>> steps_of("parts[0].material")
+    ['parts', 0, 'material']
+    """
+    return [int(index) if index else key for index, key in _STEP.findall(where)]
+
+
 def _with_line(problem: Problem, text: str, name: str) -> Problem:
-    path: list[Any] = [int(index) if index else key for index, key in _STEP.findall(problem.where)]
-    line = line_of(text, path)
+    line = line_of(text, steps_of(problem.where))
     where = f"{name}, line {line}" if line else name
     return Problem(f"{where}, {problem.where}" if problem.where else where, *problem[1:])

@@ -130,12 +130,31 @@ def check(body: Design | Voxels) -> CheckReport:
         voxels, mesh, lost = _discretized(body)
     except VoxSoftError as error:
         return CheckReport(tuple(_errors(error)))
+    return examine(body, voxels, mesh, lost)
+
+
+def examine(
+    body: Design | Voxels, voxels: Voxels, mesh: Mesh, lost: float = 0.0, setup: Setup | None = None
+) -> CheckReport:
+    """Do what :func:`check` does for a body that is meshed already.
+
+    Parameters
+    ----------
+    body
+        What was meshed.
+    voxels, mesh
+        Its voxels, and their mesh.
+    lost
+        Volume of the material that found no voxel [m³].
+    setup
+        The design made ready, where it is known.
+    """
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
     cavities, leaks = _cavities(voxels, mesh), voxels.leaks
     if isinstance(body, Design):
         try:
-            setup = Setup(body, mesh)
+            setup = setup or Setup(body, mesh)
             cavities, leaks = _closed_by_layers(setup, voxels)
             setup.check()
             mass = setup.problem.mass

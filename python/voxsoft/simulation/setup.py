@@ -170,7 +170,7 @@ class Setup:
                     triangles = cavity.triangles.astype(np.uint32)
                     parts.pressure(triangles, load.value, history, voids)
             elif isinstance(load, Force):
-                vertices = self._vertices_in(load.region, where)
+                vertices = self.vertices_in(load.region, where)
                 share = np.tile(np.asarray(load.value) / len(vertices), (len(vertices), 1))
                 parts.forces(vertices, share, history)
             else:
@@ -208,7 +208,7 @@ class Setup:
         DesignError
             There are none.
         """
-        region = self._vertices_in(load.region, where)
+        region = self.vertices_in(load.region, where)
         inside = np.zeros(len(self.mesh.vertices), dtype=bool)
         inside[region] = True
         triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
@@ -220,11 +220,12 @@ class Setup:
     def clamped(self) -> list[NDArray[np.uint32]]:
         """The vertices of each clamp."""
         return [
-            self._vertices_in(clamp.region, f"clamps[{index}].region")
+            self.vertices_in(clamp.region, f"clamps[{index}].region")
             for index, clamp in enumerate(self.design.clamps)
         ]
 
-    def _vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
+    def vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
+        """Vertices that a region catches; `where` is the place an error names."""
         return vertices_in(region, self.mesh, self.design.shapes, where, self.points)
 
     def _check_cavities(self) -> None:

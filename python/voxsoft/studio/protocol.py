@@ -14,7 +14,7 @@ import msgspec
 
 from voxsoft.errors import VoxSoftError
 from voxsoft.studio.commands import AnyCommand
-from voxsoft.studio.events import AnyEvent
+from voxsoft.studio.events import Event
 
 #: Raised when a message changes its meaning; page and server must agree.
 PROTOCOL: Final = 1
@@ -54,7 +54,7 @@ def decode(text: str | bytes) -> AnyCommand:
         raise ProtocolError("message", str(error)) from None
 
 
-def encode(event: AnyEvent) -> str:
+def encode(event: Event) -> str:
     """Write one event; numbers that are not finite become null.
 
     Examples

@@ -1,0 +1,44 @@
+"""``voxsoft studio``: the page in the browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from voxsoft.cli.exits import errors_in_words
+from voxsoft.cli.output import plain, say
+
+
+def studio(
+    source: Annotated[
+        Path | None,
+        typer.Argument(help="A design file, or a run folder.", exists=True, readable=True),
+    ] = None,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page by itself.")
+    ] = True,
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Where to listen; 0: any free port.")
+    ] = 0,
+    runs: Annotated[Path, typer.Option("--runs", help="Folder of runs and studies.")] = Path(
+        "runs"
+    ),
+) -> None:
+    """Open the studio: see, edit, run, calibrate and optimise designs in the browser.
+
+    It listens on this machine only, and the address holds a token that no one else knows. Ctrl-C
+    ends it; changes that were not saved are there at the next start.
+    """
+    from voxsoft.studio.server import StudioServer
+
+    def ready(address: str) -> None:
+        say(f"studio at {plain(address)} (Ctrl-C ends it)")
+        if browser:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    with errors_in_words():
+        StudioServer(source, runs=runs, port=port).run(ready)

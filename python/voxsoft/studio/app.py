@@ -1,0 +1,260 @@
+"""The studio's web application: page, websocket, uploads and downloads."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from collections.abc import AsyncIterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, Final
+
+from starlette.applications import Starlette
+from starlette.requests import ClientDisconnect, Request
+from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.studio import commands, events
+from voxsoft.studio.protocol import PROTOCOL, ProtocolError, decode
+from voxsoft.studio.security import Guard, cookie_name
+from voxsoft.studio.session import Session
+from voxsoft.studio.tab import Tab
+from voxsoft.studio.uploads import LARGEST_UPLOAD, safe_name
+
+STATIC: Final = Path(__file__).with_name("static")
+#: Code by which a websocket is told that it speaks another protocol.
+OTHER_PROTOCOL: Final = 4000
+#: Seconds in which a tab must say hello.
+HELLO_WITHIN: Final = 20.0
+#: Wrong messages in a row after which a tab is cut off.
+MOST_WRONG: Final = 200
+
+_NO_PAGE: Final = """<!doctype html><meta charset="utf-8"><title>VoxSoft studio</title>
+<p>The server runs, but the page was not built: run <code>make studio</code> in the sources,
+or install VoxSoft from a wheel.</p>"""
+
+
+def make_app(session: Session, token: str, port: int) -> Guard:
+    """Join the routes of a session, behind its guard.
+
+    Parameters
+    ----------
+    session
+        What is shown.
+    token
+        What a browser must know.
+    port
+        Where the server listens.
+    """
+    pages = _Pages(session, port)
+    routes = [
+        Route("/", pages.index),
+        Route("/assets/{path:path}", pages.asset),
+        Route("/{name}", pages.file),
+        Route("/download/{id}", pages.download),
+        Route("/thumbnail/{run:path}", pages.thumbnail),
+        Route("/upload", pages.upload, methods=["POST"]),
+        Route("/export", pages.export, methods=["POST"]),
+        WebSocketRoute("/ws", pages.websocket),
+    ]
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        session.start()
+        yield
+        session.end()
+        pages.end()
+
+    return Guard(Starlette(routes=routes, lifespan=lifespan), token, port)
+
+
+class _Pages:
+    """The routes of one session."""
+
+    def __init__(self, session: Session, port: int) -> None:
+        self._session, self._port = session, port
+        # One thread for commands, so that they follow each other as they were sent.
+        self._commands = ThreadPoolExecutor(1, "studio-commands")
+        self._files = ThreadPoolExecutor(2, "studio-files")
+
+    def end(self) -> None:
+        self._commands.shutdown(wait=False, cancel_futures=True)
+        self._files.shutdown(wait=False, cancel_futures=True)
+
+    async def index(self, request: Request) -> Response:
+        page = STATIC / "index.html"
+        text = page.read_text(encoding="utf-8") if page.is_file() else _NO_PAGE
+        response = HTMLResponse(text, headers={"cache-control": "no-store"})
+        if token := request.query_params.get("token"):
+            response.set_cookie(
+                cookie_name(self._port), token, httponly=True, samesite="strict", path="/"
+            )
+        return response
+
+    async def asset(self, request: Request) -> Response:
+        return _static(Path("assets") / request.path_params["path"])
+
+    async def file(self, request: Request) -> Response:
+        return _static(Path(request.path_params["name"]))
+
+    async def download(self, request: Request) -> Response:
+        found = self._session.download(request.path_params["id"])
+        if found is None:
+            return _problem(404, "download", "is not there any more", "export it again")
+        return FileResponse(found, filename=found.name, headers={"cache-control": "no-store"})
+
+    async def thumbnail(self, request: Request) -> Response:
+        picture = await self._aside(self._session.thumbnail, request.path_params["run"])
+        if picture is None:
+            return _problem(404, "thumbnail", "there is none")
+        return FileResponse(picture, headers={"cache-control": "no-cache"})
+
+    async def upload(self, request: Request) -> Response:
+        try:
+            name = safe_name(request.query_params.get("name", ""))
+            content = await _body_within(request, LARGEST_UPLOAD, name)
+            stored = await self._aside(self._session.store_upload, name, content)
+        except _TooLargeError as error:
+            refused = _problem(413, error.where, error.what, error.hint)
+            refused.headers["connection"] = "close"  # or the rest would still be sent
+            return refused
+        except ClientDisconnect:
+            return Response(status_code=499)
+        except VoxSoftError as error:
+            return _problem(422, error.where, error.what, error.hint)
+        return JSONResponse({"name": stored, "size": len(content)})
+
+    async def export(self, request: Request) -> Response:
+        try:
+            asked = await request.json()
+            if not isinstance(asked, dict):
+                raise ValueError("an object is due")
+            options = asked.get("options") or {}
+            if not isinstance(options, dict):
+                raise ValueError("options: an object is due")
+            found = await self._aside(self._session.export, str(asked.get("format", "")), options)
+        except VoxSoftError as error:
+            return _problem(422, error.where, error.what, error.hint)
+        except (ValueError, UnicodeError, RecursionError) as error:
+            return _problem(400, "export", str(error))
+        return JSONResponse({"format": found.format, "url": found.url, "name": found.name})
+
+    async def websocket(self, socket: WebSocket) -> None:
+        await socket.accept()
+        tab = Tab(socket)
+        try:
+            if not await self._greet(socket, tab):
+                return
+        except (TimeoutError, WebSocketDisconnect, RuntimeError):
+            with contextlib.suppress(RuntimeError):
+                await socket.close(1008, "no hello")
+            return
+        tabs = self._session.tabs
+        tabs.join(tab)
+        pump = asyncio.create_task(tab.pump())
+        try:
+            await self._aside_in_order(self._session.welcome, tab)
+            await self._listen(socket, tab)
+        except (WebSocketDisconnect, RuntimeError):
+            pass  # the tab was closed
+        finally:
+            tab.closed = True
+            tabs.leave(tab)
+            pump.cancel()
+            with contextlib.suppress(BaseException):
+                await pump
+            self._session.left(tab)
+
+    async def _greet(self, socket: WebSocket, tab: Tab) -> bool:
+        """Hear the first message, which must say that both speak the same protocol."""
+        text = await asyncio.wait_for(_receive(socket), HELLO_WITHIN)
+        try:
+            hello = decode(text)
+        except ProtocolError as error:
+            hello = None
+            what = error.what
+        if isinstance(hello, commands.Hello) and hello.protocol == PROTOCOL:
+            tab.seq = hello.seq
+            return True
+        if isinstance(hello, commands.Hello):
+            what = f"the page speaks version {hello.protocol}, the server version {PROTOCOL}"
+            error_event = events.Error(
+                seq=hello.seq, where="hello", what=what, hint="reload the page"
+            )
+        else:
+            said = what if hello is None else "hello must come first"
+            error_event = events.Error(seq=0, where="hello", what=said)
+        from voxsoft.studio.protocol import encode
+
+        await socket.send_text(encode(error_event))
+        await socket.close(OTHER_PROTOCOL, "another protocol")
+        return False
+
+    async def _listen(self, socket: WebSocket, tab: Tab) -> None:
+        wrong = 0
+        while not tab.closed:
+            try:
+                command = decode(await _receive(socket))
+            except ProtocolError as error:
+                wrong += 1
+                tab.put(events.Error(seq=0, where=error.where, what=error.what, hint=error.hint))
+                if wrong >= MOST_WRONG:
+                    await socket.close(1008, "too many wrong messages")
+                    return
+                continue
+            wrong = 0
+            tab.seq = command.seq
+            if isinstance(command, commands.Ack):
+                tab.ack()
+                self._session.repaint(tab)
+            else:
+                await self._aside_in_order(self._session.handle, tab, command)
+
+    async def _aside_in_order(self, call: Any, *arguments: Any) -> Any:  # noqa: ANN401
+        return await asyncio.get_running_loop().run_in_executor(self._commands, call, *arguments)
+
+    async def _aside(self, call: Any, *arguments: Any) -> Any:  # noqa: ANN401
+        return await asyncio.get_running_loop().run_in_executor(self._files, call, *arguments)
+
+
+class _TooLargeError(FileError):
+    """More came than is taken."""
+
+
+async def _body_within(request: Request, limit: int, name: str) -> bytes:
+    """Read the body of a request, and stop as soon as it is too large."""
+    what = f"is larger than {limit // 2**20} MB"
+    hint = "coarsen the mesh, or open the file by its path: voxsoft studio FILE"
+    told = request.headers.get("content-length", "0")
+    if told.isdigit() and int(told) > limit:
+        raise _TooLargeError(name, what, hint)
+    parts, size = [], 0
+    async for part in request.stream():
+        size += len(part)
+        if size > limit:
+            raise _TooLargeError(name, what, hint)
+        parts.append(part)
+    return b"".join(parts)
+
+
+async def _receive(socket: WebSocket) -> str | bytes:
+    """The next message, text or not: what is not text is refused by the decoder."""
+    message = await socket.receive()
+    if message["type"] == "websocket.disconnect":
+        raise WebSocketDisconnect(message.get("code", 1000))
+    text = message.get("text")
+    return text if text is not None else message.get("bytes") or b""
+
+
+def _static(inner: Path) -> Response:
+    path = (STATIC / inner).resolve()
+    if not path.is_relative_to(STATIC.resolve()) or not path.is_file():
+        return _problem(404, str(inner), "there is no such file")
+    # The browser asks each time whether a file changed: another version keeps its names.
+    return FileResponse(path, headers={"cache-control": "no-cache"})
+
+
+def _problem(status: int, where: str, what: str, hint: str = "") -> JSONResponse:
+    return JSONResponse({"where": where, "what": what, "hint": hint}, status)

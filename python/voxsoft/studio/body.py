@@ -1,0 +1,311 @@
+"""From a design to the body that the page shows and the engine moves."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft._memory import memory_limit
+from voxsoft.design import Design, Force, Gravity, Pressure, Traction
+from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.discretize import voxels_of
+from voxsoft.errors import MeshError, VoxSoftError
+from voxsoft.mesh import Mesh
+from voxsoft.simulation import Setup
+from voxsoft.simulation.check import CheckReport, examine
+from voxsoft.studio import events
+from voxsoft.studio.message import Triple
+from voxsoft.studio.surface import Surface, pack_surface
+from voxsoft.units import format_quantity, parse
+from voxsoft.voxels import Voxels
+
+#: Bytes that a voxel takes with its mesh, its problem and its stepper; measured on blocks of 8,000
+#: and 64,000 voxels, and rounded up.
+BYTES_PER_VOXEL: Final = 6_000
+#: The part of the free memory that one body may take.
+SHARE_OF_MEMORY: Final = 0.5
+#: Colors of parts, distinct also for color-blind eyes (Okabe and Ito), lightened.
+PART_COLORS: Final = ("#e8b88a", "#8ab8dc", "#7fc8a9", "#d9a3c4", "#e6d27a", "#b9b9c9")
+#: Points of a clamp that are drawn.
+_SHOWN_POINTS: Final = 400
+
+
+@dataclass(frozen=True, eq=False)
+class StudioBody:
+    """A design, meshed and ready to be shown.
+
+    Attributes
+    ----------
+    topology
+        Number of this body; frames name it.
+    rev
+        Revision of the document that it was made of.
+    setup, voxels, surface
+        What was made of the design.
+    lost
+        Volume of the material that found no voxel [m³].
+    refusal
+        What keeps it from being solved, or None.
+    seconds
+        How long it took to make.
+    """
+
+    topology: int
+    rev: int
+    setup: Setup = field(repr=False)
+    voxels: Voxels = field(repr=False)
+    surface: Surface = field(repr=False)
+    lost: float
+    refusal: VoxSoftError | None
+    seconds: float
+
+    @classmethod
+    def of(cls, design: Design, rev: int, topology: int) -> StudioBody:
+        """Mesh a design; what only keeps it from being solved does not keep it from being shown.
+
+        Raises
+        ------
+        VoxSoftError
+            It cannot be meshed, or would need more memory than there is.
+        """
+        started = time.perf_counter()
+        refine = design.solver.refine
+        lost = 0.0
+        if design.fill == "fraction":
+            cut = CutVoxels.of(design, refine)
+            _refuse_too_large(cut.voxels.count)
+            voxels, mesh, lost = cut.voxels, cut.mesh(), cut.lost
+        else:
+            voxels = voxels_of(design)
+            _refuse_too_large(voxels.count * refine**3)
+            mesh = (voxels.refine(refine) if refine > 1 else voxels).mesh()
+        setup = Setup(design, mesh)
+        surface = Surface.of(setup.mesh)
+        refusal: VoxSoftError | None = None
+        try:
+            setup.check()
+            _ = setup.problem
+        except VoxSoftError as error:
+            refusal = error
+        seconds = time.perf_counter() - started
+        return cls(topology, rev, setup, voxels, surface, lost, refusal, seconds)
+
+    @property
+    def mesh(self) -> Mesh:
+        """The tetrahedra."""
+        return self.setup.mesh
+
+    @property
+    def load_values(self) -> list[float]:
+        """Size of each load in the end, SI."""
+        return [_load(self.setup, index).value for index in range(len(self.setup.design.loads))]
+
+    def under(self, factors: Sequence[float]) -> Setup:
+        """The same body with each load so many times as large."""
+        if all(factor == 1.0 for factor in factors):
+            return self.setup
+        design = self.setup.design
+        loads = tuple(
+            load.model_copy(update={"value": _scaled(load.value, factor)})
+            for load, factor in zip(design.loads, factors, strict=True)
+        )
+        return Setup(design.model_copy(update={"loads": loads}), self.mesh)
+
+    def packed(self) -> bytes:
+        """The surface as the page reads it."""
+        return pack_surface(self.surface, self.mesh, self.topology)
+
+    def report(self) -> CheckReport:
+        """What a doctor says of it; slower than the mesh itself."""
+        setup = self.setup
+        return examine(setup.design, self.voxels, self.mesh, self.lost, setup)
+
+    def event(self, report: CheckReport | None = None) -> events.Body:
+        """All that the page is told; without a report there are no findings and leaks yet."""
+        mesh, setup = self.mesh, self.setup
+        rest = mesh.vertices
+        problems = () if self.refusal is None else self.refusal.problems
+        findings = [
+            events.Finding(severity="error", where=p.where, what=p.what, hint=p.hint)
+            for p in problems
+        ]
+        if report is not None:
+            findings = [
+                events.Finding(severity=f.severity, where=f.where, what=f.what, hint=f.hint)
+                for f in report.findings
+            ]
+        problem = setup.problem if self.refusal is None else None
+        return events.Body(
+            topology=self.topology,
+            rev=self.rev,
+            voxels=self.voxels.count,
+            vertices=len(rest),
+            tets=len(mesh.tets),
+            surface_vertices=len(self.surface.vertices),
+            triangles=len(self.surface.triangles),
+            voxel_size=mesh.voxel_size or 0.0,
+            cavities=[
+                events.Cavity(
+                    volume=float(cavity.volume),
+                    area=float(cavity.area),
+                    center=_point(rest[np.unique(cavity.triangles)].mean(axis=0)),
+                )
+                for cavity in mesh.cavities
+            ],
+            leaks=[] if report is None else [_leak(leak, self.voxels) for leak in report.leaks],
+            mass=0.0 if problem is None else problem.mass,
+            volume=mesh.volume,
+            bounds=(_point(rest.min(axis=0)), _point(rest.max(axis=0))),
+            findings=findings,
+            clamps=_clamps(setup),
+            loads=[_load(setup, index) for index in range(len(setup.design.loads))],
+            probes=self._probes(),
+            parts=_parts(setup.design),
+            seconds=self.seconds,
+            memory=float(self.voxels.count * BYTES_PER_VOXEL),
+        )
+
+    def _probes(self) -> list[events.BodyProbe]:
+        try:
+            places = self.setup.places
+        except VoxSoftError:
+            return []
+        rest = self.mesh.vertices
+        return [
+            events.BodyProbe(
+                name=name,
+                center=_point(place.weights @ rest[place.vertices]),
+                vertices=self.surface.index_of(place.vertices).tolist(),
+            )
+            for name, place in places.items()
+        ]
+
+
+def _refuse_too_large(voxels: int) -> None:
+    due, free = voxels * BYTES_PER_VOXEL, memory_limit()
+    if due > SHARE_OF_MEMORY * free:
+        raise MeshError(
+            "voxel_size",
+            f"{voxels:,} voxels would need about {due / 1e9:.2g} GB of memory; "
+            f"{free / 1e9:.2g} GB are free",
+            "make the voxels larger",
+        )
+
+
+def _clamps(setup: Setup) -> list[events.BodyClamp]:
+    try:
+        clamped = setup.clamped
+    except VoxSoftError:
+        return []
+    found = []
+    for index, (clamp, vertices) in enumerate(zip(setup.design.clamps, clamped, strict=True)):
+        points = setup.mesh.vertices[vertices]
+        step = max(1, len(points) // _SHOWN_POINTS)
+        moved = " (moved)" if clamp.motion is not None else ""
+        axes = "" if clamp.axes == "xyz" else f" along {clamp.axes}"
+        found.append(
+            events.BodyClamp(
+                name=f"clamp {index + 1}{axes}{moved}",
+                vertices=len(points),
+                center=_point(points.mean(axis=0)),
+                points=[_point(point) for point in points[::step][:_SHOWN_POINTS]],
+            )
+        )
+    return found
+
+
+def _load(setup: Setup, index: int) -> events.BodyLoad:
+    load = setup.design.loads[index]
+    factor = load.history.factor[-1] if load.history else 1.0
+    at, direction = _place(setup, index)
+    if isinstance(load, Gravity):
+        value, kind, label = load.value, "acceleration", "gravity"
+    elif isinstance(load, Pressure):
+        where = "all cavities" if load.cavity == "all" else f"cavity {load.cavity}"
+        value, kind, label = load.value, "pressure", f"pressure in {where}"
+    elif isinstance(load, Force):
+        value, kind, label = float(np.linalg.norm(load.value)), "force", "force"
+    elif isinstance(load.value, float):
+        value, kind, label = load.value, "pressure", "pressure on a surface"
+    else:
+        value, kind, label = float(np.linalg.norm(load.value)), "pressure", "traction"
+    value *= factor
+    unit = format_quantity(value, kind).partition(" ")[2] if value else ""
+    unit = unit or {"acceleration": "m/s^2", "force": "N", "pressure": "kPa"}[kind]
+    return events.BodyLoad(
+        index=index,
+        kind=load.kind,
+        label=label,
+        value=value,
+        unit=unit,
+        factor=_factor(unit, kind),
+        min=min(0.0, 2.0 * value),
+        max=max(0.0, 2.0 * value) or 1.0,
+        at=at,
+        direction=direction,
+    )
+
+
+def _scaled(value: Any, factor: float) -> Any:  # noqa: ANN401 - a number, or three
+    if isinstance(value, tuple):
+        return tuple(factor * component for component in value)
+    return factor * value
+
+
+def _factor(unit: str, kind: str) -> float:
+    return parse(f"1 {unit}", kind)
+
+
+def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:
+    """Where a load is drawn, and which way it points."""
+    load, rest = setup.design.loads[index], setup.mesh.vertices
+    where = f"loads[{index}]"
+    try:
+        if isinstance(load, Gravity):
+            top = rest.mean(axis=0)
+            return _point(top), _unit(np.asarray(load.direction))
+        if isinstance(load, Pressure):
+            cavities = setup.mesh.cavities
+            cavity = cavities[0 if load.cavity == "all" else load.cavity]
+            return _point(rest[np.unique(cavity.triangles)].mean(axis=0)), (0.0, 0.0, 0.0)
+        if isinstance(load, Traction):
+            triangles = setup.loaded_triangles(load, where)
+            a, b, c = rest[triangles].transpose(1, 0, 2)
+            normal = np.cross(b - a, c - a).sum(axis=0)
+            vector = -normal if isinstance(load.value, float) else np.asarray(load.value)
+            return _point(rest[np.unique(triangles)].mean(axis=0)), _unit(vector)
+        vertices = setup.vertices_in(load.region, where)
+        return _point(rest[vertices].mean(axis=0)), _unit(np.asarray(load.value))
+    except (VoxSoftError, IndexError):  # said among the findings
+        return _point(rest.mean(axis=0)), (0.0, 0.0, 0.0)
+
+
+def _parts(design: Design) -> list[events.BodyPart]:
+    found = []
+    for index, part in enumerate(design.parts):
+        shape = part.shape if isinstance(part.shape, str) else part.shape.kind
+        material = part.material if isinstance(part.material, str) else part.material.model
+        color = PART_COLORS[index % len(PART_COLORS)]
+        found.append(events.BodyPart(name=part.name or shape, material=material, color=color))
+    return found
+
+
+def _leak(leak: Any, voxels: Voxels) -> events.Leak:  # noqa: ANN401 - a Leak of the grid
+    cell = np.asarray(leak.openings[0], dtype=np.float64)
+    point = np.asarray(voxels.origin) + (cell + 0.5) * voxels.voxel_size
+    return events.Leak(volume=float(leak.volume), point=_point(point))
+
+
+def _unit(vector: NDArray[np.float64]) -> Triple:
+    length = float(np.linalg.norm(vector))
+    return _point(vector / length) if length else (0.0, 0.0, 0.0)
+
+
+def _point(values: NDArray[np.float64]) -> Triple:
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)

@@ -1,0 +1,103 @@
+"""What the page may offer: templates, materials, samplers, fields, metrics."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from pathlib import Path
+from typing import Any, Final
+
+from voxsoft import metrics
+from voxsoft._core import __version__
+from voxsoft.design import Design, families
+from voxsoft.materials import card_names, load_card
+from voxsoft.search.samplers import SAMPLERS, SINGLE_OBJECTIVE
+from voxsoft.studio import events
+from voxsoft.studio.protocol import PROTOCOL
+
+#: Fields that color the body, by the number that frames carry.
+FIELDS: Final = (
+    events.Field(id=0, name="displacement", title="Displacement", unit="m", signed=False),
+    events.Field(id=1, name="dx", title="Displacement along x", unit="m", signed=True),
+    events.Field(id=2, name="dy", title="Displacement along y", unit="m", signed=True),
+    events.Field(id=3, name="dz", title="Displacement along z", unit="m", signed=True),
+    events.Field(id=4, name="stretch", title="Largest principal stretch", unit="", signed=False),
+    events.Field(id=5, name="stress", title="Von Mises stress", unit="Pa", signed=False),
+    events.Field(id=6, name="energy", title="Strain energy density", unit="J/m^3", signed=False),
+    events.Field(id=7, name="pressure", title="Pressure (mean stress)", unit="Pa", signed=True),
+    events.Field(id=8, name="speed", title="Speed", unit="m/s", signed=False),
+)
+
+#: A length that moduli of lattice cards are told for [m]; they hardly depend on it.
+_USUAL_VOXEL: Final = 2e-3
+
+
+def hello(runs_folder: Path) -> events.Hello:
+    """Say what this server can do."""
+    return events.Hello(
+        version=__version__,
+        protocol=PROTOCOL,
+        design_schema=_schema(),
+        templates=list(_templates()),
+        materials=list(_materials()),
+        samplers=[
+            events.Sampler(name=name, title=title, single_objective=name in SINGLE_OBJECTIVE)
+            for name, title in SAMPLERS.items()
+        ],
+        calibration_methods=["genetic", "gradient", "cma-es", "tpe", "random", "nsga-ii", "gp"],
+        methods=["auto", "xpbd", "statics"],
+        metrics=[
+            events.Metric(
+                name=name,
+                kind=kind,
+                needs_probe=name in metrics.PROBE_METRICS,
+                needs_cavity=name.startswith("cavity"),
+            )
+            for name, kind in metrics.METRICS.items()
+        ],
+        fields=list(FIELDS),
+        runs_folder=str(runs_folder),
+        cores=os.cpu_count() or 1,
+    )
+
+
+@cache
+def _schema() -> dict[str, Any]:
+    return Design.json_schema()
+
+
+@cache
+def _templates() -> tuple[events.Template, ...]:
+    return tuple(
+        events.Template(name=name, title=_title(text), text=text)
+        for name in families.FAMILIES
+        for text in [families.family_text(name)]
+    )
+
+
+def _title(text: str) -> str:
+    """The first sentence of a file's first comment."""
+    comment = " ".join(
+        line.lstrip("# ") for line in text.split("\n\n")[0].splitlines() if line.startswith("#")
+    )
+    return comment.partition(". ")[0].partition(": ")[0].rstrip(".")
+
+
+@cache
+def _materials() -> tuple[events.MaterialCard, ...]:
+    found = []
+    for name in card_names():
+        card = load_card(name)
+        material = card.material
+        young = getattr(material, "young", None)
+        value = young(_USUAL_VOXEL) if callable(young) else young
+        found.append(
+            events.MaterialCard(
+                name=name,
+                title=card.title,
+                source=card.source,
+                model=material.model,
+                young=float(value) if isinstance(value, (int, float)) else None,
+            )
+        )
+    return tuple(found)

@@ -1,0 +1,251 @@
+"""The document of the studio: a text in TOML that form, editor and view all show."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+from voxsoft.design import Design
+from voxsoft.design.formula import is_formula
+from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.errors import DesignError, FileError, VoxSoftError
+from voxsoft.files.designs import LARGEST_FILE, read_document, read_text, with_whole_paths
+from voxsoft.files.whole import write_whole
+from voxsoft.studio import events
+from voxsoft.studio.edits import with_value
+from voxsoft.studio.positions import diagnostics_of
+from voxsoft.units import KINDS, format_quantity, parse
+
+#: Changes of the same place that follow each other within this time are undone together [s].
+ONE_CHANGE: Final = 1.0
+#: How many changes can be undone.
+LONGEST_HISTORY: Final = 500
+#: How much text the history may hold [characters].
+LARGEST_HISTORY: Final = 50_000_000
+
+
+@dataclass
+class DesignDocument:
+    """One text, what it means, and how it came to be.
+
+    Attributes
+    ----------
+    text
+        The text as it stands, good or not.
+    name
+        What to call it: the file's name.
+    path
+        The file, or None for a document that was never saved.
+    folder
+        Where relative paths of meshes begin.
+    rev
+        Grows with each change.
+    design
+        That of the last text that was good, or None if there was none.
+    diagnostics
+        What is wrong with the text as it stands.
+    """
+
+    text: str
+    name: str
+    path: Path | None = None
+    folder: Path = field(default_factory=Path.cwd)
+    rev: int = 1
+    design: Design | None = None
+    source: PlainDocument | None = None
+    diagnostics: list[events.Diagnostic] = field(default_factory=list)
+    saved: str | None = None
+    _undo: list[str] = field(default_factory=list)
+    _redo: list[str] = field(default_factory=list)
+    _last_place: object = None
+    _last_time: float = 0.0
+
+    def __post_init__(self) -> None:
+        self._read()
+
+    @classmethod
+    def of_file(cls, path: Path) -> DesignDocument:
+        """Open a design file, also one whose text is no design yet.
+
+        Raises
+        ------
+        FileError
+            It cannot be read as text.
+        """
+        text = read_text(path)
+        whole = path.absolute()
+        return cls(text, path.name, whole, whole.parent, saved=text)
+
+    @property
+    def valid(self) -> bool:
+        """Whether the text as it stands is a design."""
+        return not any(each.severity == "error" for each in self.diagnostics)
+
+    @property
+    def dirty(self) -> bool:
+        """Whether the text differs from what was saved last."""
+        return self.text != self.saved
+
+    def replace(self, text: str, place: object = None, *, now: float | None = None) -> bool:
+        """Take another text; returns whether it is another one.
+
+        Parameters
+        ----------
+        text
+            The text, good or not.
+        place
+            What was changed; changes of one place that follow each other are undone together.
+        now
+            The time of the change [s].
+
+        Raises
+        ------
+        FileError
+            A text of more than 10 MB.
+        """
+        if len(text.encode("utf-8", "surrogatepass")) > LARGEST_FILE:
+            raise FileError(self.name, "is larger than 10 MB, too large for a design")
+        if text == self.text:
+            return False
+        now = time.monotonic() if now is None else now
+        together = place is not None and place == self._last_place
+        if not (together and now - self._last_time < ONE_CHANGE and self._undo):
+            self._undo.append(self.text)
+            while len(self._undo) > LONGEST_HISTORY or (
+                len(self._undo) > 1 and sum(map(len, self._undo)) > LARGEST_HISTORY
+            ):
+                del self._undo[0]
+        self._last_place, self._last_time = place, now
+        self._redo.clear()
+        self._become(text)
+        return True
+
+    def edit(self, path: list[str | int], value: object, *, now: float | None = None) -> bool:
+        """Set one value by its path, keeping comments; returns whether the text changed.
+
+        Raises
+        ------
+        DesignError
+            The text is not TOML, or the path leads nowhere.
+        """
+        return self.replace(with_value(self.text, path, value), tuple(path), now=now)
+
+    def undo(self) -> bool:
+        """Take back the last change; returns whether there was one."""
+        return self._swap(self._undo, self._redo)
+
+    def redo(self) -> bool:
+        """Make the change again that was taken back last; returns whether there was one."""
+        return self._swap(self._redo, self._undo)
+
+    def remember(self, text: str) -> None:
+        """Let undo lead to a text that was there before this document."""
+        self._undo.append(text)
+
+    def save(self, path: Path | None = None) -> Path:
+        """Write the text to its file, or to another, which is its file from then on.
+
+        Raises
+        ------
+        FileError
+            No file is known, or it cannot be written.
+        """
+        target = (path or self.path or Path()).absolute()
+        if path is None and self.path is None:
+            raise FileError("save", "the document has no file yet", 'give a name like "arm.toml"')
+        if target.suffix.lower() != ".toml":
+            raise FileError(str(path), "is no name of a design file", 'end it with ".toml"')
+        write_whole(target, self.text)
+        self.path, self.folder, self.name, self.saved = (
+            target,
+            target.parent,
+            target.name,
+            self.text,
+        )
+        return target
+
+    def event(self) -> events.Document:
+        """Everything as the page wants it."""
+        design = self.design
+        return events.Document(
+            rev=self.rev,
+            text=self.text,
+            name=self.name,
+            path=None if self.path is None else str(self.path),
+            dirty=self.dirty,
+            valid=self.valid,
+            parameters=self._parameters(),
+            design=None if design is None else design.model_dump(by_alias=True, exclude_none=True),
+            source=self.source,
+            diagnostics=self.diagnostics,
+            can_undo=bool(self._undo),
+            can_redo=bool(self._redo),
+        )
+
+    def _swap(self, taken: list[str], given: list[str]) -> bool:
+        if not taken:
+            return False
+        given.append(self.text)
+        self._last_place = None
+        self._become(taken.pop())
+        return True
+
+    def _become(self, text: str) -> None:
+        self.text = text
+        self.rev += 1
+        self._read()
+
+    def _read(self) -> None:
+        """Read the text; where it is no design the last good one stays."""
+        self.diagnostics = []
+        try:
+            document = read_document(self.text, self.name)
+            self.source = document
+            self.design = Design.from_document(with_whole_paths(document, self.folder))
+        except VoxSoftError as error:
+            self.diagnostics = diagnostics_of(error, self.text)
+
+    def _parameters(self) -> list[events.Parameter]:
+        if self.design is None:
+            return []
+        written: Any = (self.source or {}).get("parameters", {})
+        return [
+            _parameter(name, parameter, written.get(name) if isinstance(written, dict) else None)
+            for name, parameter in self.design.parameters.items()
+        ]
+
+
+def _parameter(name: str, parameter: Any, written: object) -> events.Parameter:  # noqa: ANN401
+    text = written.get("value") if isinstance(written, dict) else written
+    shown = text if isinstance(text, str) else format_quantity(parameter.value, parameter.kind)
+    unit = _unit_of(shown, parameter.kind) or _unit_of(
+        format_quantity(parameter.max or parameter.value, parameter.kind), parameter.kind
+    )
+    return events.Parameter(
+        name=name,
+        value=parameter.value,
+        kind=parameter.kind,
+        text=shown,
+        min=parameter.min,
+        max=parameter.max,
+        step=parameter.step,
+        display_unit=unit,
+        factor=parse(f"1 {unit}", parameter.kind) if unit else 1.0,
+        formula=is_formula(shown),
+        description=parameter.description,
+    )
+
+
+def _unit_of(text: str, kind: str) -> str:
+    """The unit that a quantity is written with; the preferred one of its kind where none is."""
+    units = KINDS[kind].units
+    if is_formula(text):
+        return ""
+    _, _, unit = text.strip().partition(" ")
+    try:
+        parse(f"1 {unit}", kind)
+    except (VoxSoftError, DesignError):
+        return units[0] if units else ""
+    return unit.strip()

@@ -1,0 +1,134 @@
+"""Changes of a design's text by path, which keep its comments and its layout."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import AoT
+
+from voxsoft.errors import DesignError
+from voxsoft.records import place
+
+Path = Sequence[str | int]
+
+#: Lists of a design that are written as repeated sections.
+_SECTIONS: Final = frozenset({"parts", "loads", "clamps", "layers"})
+
+
+def with_value(text: str, path: Path, value: object) -> str:
+    r"""Set one value of a text in TOML.
+
+    Parameters
+    ----------
+    text
+        The text of a design.
+    path
+        Keys and indices; tables on the way are made, and an index one past the last appends.
+    value
+        Text, a number, a boolean, a list or a table; None removes the key.
+
+    Raises
+    ------
+    DesignError
+        The text is not TOML, the path leads nowhere, or TOML has no form for the value.
+
+    Examples
+    --------
+    >>> print(with_value('wall = "5 mm"  # thin', ["wall"], "6 mm"))
+    wall = "6 mm"  # thin
+    """
+    try:
+        document = tomlkit.parse(text)
+        _set(document, list(path), value)
+        return tomlkit.dumps(document)
+    except (TOMLKitError, RecursionError) as error:
+        raise DesignError(
+            place(path), f"cannot be set: {error}", "mend the text first, then use the form"
+        ) from None
+    except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
+        raise DesignError(place(path), f"cannot be set: {error}") from None
+
+
+def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -> None:
+    above: Any = None
+    here: Any = document
+    for at, step in enumerate(path[:-1]):
+        above, here = here, _inside(here, step, path[: at + 1], follower=path[at + 1])
+    last = path[-1]
+    if value is None:
+        del here[last]
+        if isinstance(here, AoT) and not here:
+            # An empty list would be written as a key of whatever section stands before it.
+            del above[path[-2]]
+    elif isinstance(last, int):
+        _set_entry(here, last, value, path)
+    elif len(path) == 1:
+        here[last] = _kept(here.get(last), _item(value, top=True, name=last))
+    else:
+        here[last] = _kept(here.get(last), _item(value))
+
+
+def _inside(here: Any, step: str | int, path: list[str | int], follower: str | int) -> Any:  # noqa: ANN401
+    """Go one step down, making what is missing."""
+    if isinstance(step, str) and step not in here:
+        if isinstance(follower, int):
+            here[step] = tomlkit.aot() if step in _SECTIONS else tomlkit.array()
+        else:
+            here[step] = tomlkit.table() if len(path) == 1 else tomlkit.inline_table()
+    elif isinstance(step, int) and step == len(here):
+        here.append(tomlkit.table() if isinstance(here, AoT) else tomlkit.inline_table())
+    inner = here[step]
+    if not isinstance(inner, (Mapping, list)):
+        raise TypeError(f"{place(path)} holds {inner!r}, nothing below it can be set")
+    return inner
+
+
+def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> None:  # noqa: ANN401
+    if not isinstance(here, list) or not 0 <= index <= len(here):
+        raise IndexError(f"{place(path)} is past the end")
+    if isinstance(here, AoT):
+        if not isinstance(value, Mapping):
+            raise TypeError("a table is due")
+        table = tomlkit.table()
+        for key, inner in value.items():
+            table[key] = _item(inner)
+        if index == len(here):
+            here.append(table)
+        else:
+            here[index] = table
+    elif index == len(here):
+        here.append(_item(value))
+    else:
+        here[index] = _item(value)
+
+
+def _item(value: object, *, top: bool = False, name: str = "") -> Any:  # noqa: ANN401
+    """A value as TOML writes it: tables inline, but for those at the top."""
+    if isinstance(value, Mapping):
+        table = tomlkit.table() if top else tomlkit.inline_table()
+        for key, inner in value.items():
+            table[key] = _item(inner)
+        return table
+    if isinstance(value, list):
+        if top and name in _SECTIONS and all(isinstance(each, Mapping) for each in value):
+            sections = tomlkit.aot()
+            for each in value:
+                sections.append(_item(each, top=True))
+            return sections
+        array = tomlkit.array()
+        for each in value:
+            array.append(_item(each))
+        return array
+    return tomlkit.item(value)
+
+
+def _kept(before: Any, after: Any) -> Any:  # noqa: ANN401
+    """Keep the comment and the blanks behind the value that is replaced."""
+    trivia = getattr(before, "trivia", None)
+    if trivia is not None and hasattr(after, "trivia"):
+        after.trivia.comment, after.trivia.comment_ws = trivia.comment, trivia.comment_ws
+        after.trivia.trail = trivia.trail
+    return after

@@ -1,0 +1,47 @@
+"""What the studio says of a simulation, in plain words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from voxsoft.units import format_quantity
+
+
+def said_time(seconds: float) -> str:
+    """Say a time with three digits.
+
+    Examples
+    --------
+    >>> said_time(0.81234)
+    '0.812 s'
+    """
+    return format_quantity(float(f"{seconds:.3g}"), "time") if seconds else "0 s"
+
+
+def at_rest(seconds: float, tolerance: float) -> str:
+    """Say that a body came to rest.
+
+    Examples
+    --------
+    >>> at_rest(0.8, 1e-5)
+    'At rest after 0.8 s: forces balance within 1e-05 of the load.'
+    """
+    return f"At rest after {said_time(seconds)}: forces balance within {tolerance:.0e} of the load."
+
+
+def diverged(seconds: float, place: Sequence[float] | None) -> str:
+    """Say that a body could not be followed, where, and what to try.
+
+    Examples
+    --------
+    >>> diverged(0.31, (0.01, 0.0, 0.02))
+    'Diverged at 0.31 s near (10.0, 0.0, 20.0) mm: the material cannot carry the load there. \
+Try a smaller load, a stiffer material or thicker walls, then reset.'
+    """
+    near = ""
+    if place is not None:
+        near = f" near ({', '.join(f'{1e3 * value:.1f}' for value in place)}) mm"
+    return (
+        f"Diverged at {said_time(seconds)}{near}: the material cannot carry the load there. "
+        "Try a smaller load, a stiffer material or thicker walls, then reset."
+    )

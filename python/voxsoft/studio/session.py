@@ -1,0 +1,345 @@
+"""What all tabs share: the document, the body, the jobs and the runs."""
+
+from __future__ import annotations
+
+import json
+import re
+import threading
+import uuid
+from contextlib import suppress
+from functools import singledispatchmethod
+from pathlib import Path
+from typing import Any, Final
+
+from voxsoft.design import families
+from voxsoft.errors import FileError, StudyError, VoxSoftError
+from voxsoft.files.run_folder import make_folder
+from voxsoft.files.whole import write_whole
+from voxsoft.simulation.check import CheckReport
+from voxsoft.studio import commands, events
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.catalog import hello
+from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.engine import Engine
+from voxsoft.studio.mesher import Mesher
+from voxsoft.studio.outlet import Tabs
+from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.tab import Tab
+from voxsoft.studio.uploads import design_of_array, design_of_mesh, safe_name, unpack_folder
+
+#: Folder of the studio's own files below the runs.
+OWN_FOLDER: Final = ".studio"
+#: The text that was being edited, kept for the next start.
+DRAFT: Final = "draft.json"
+#: Seconds after a change in which the draft is written.
+DRAFT_WITHIN: Final = 1.0
+
+_HEAVY: Final = (".stl", ".obj", ".ply")
+
+
+class Session:
+    """The studio behind its tabs.
+
+    Parameters
+    ----------
+    runs
+        Folder of the runs; made when something is written.
+    source
+        What to open: a design file or a run folder; default: the last draft, or a template.
+
+    Raises
+    ------
+    FileError
+        The source cannot be read.
+    """
+
+    def __init__(self, runs: Path, source: Path | None = None) -> None:
+        self.runs = runs.absolute()
+        self.own = self.runs / OWN_FOLDER
+        self.tabs = Tabs()
+        self.engine = Engine(self.tabs)
+        self._mesher = Mesher(self._meshed, self._examined, self._not_meshed)
+        self._lock = threading.RLock()
+        self._author: Tab | None = None
+        self._downloads: dict[str, Path] = {}
+        self._draft_timer: threading.Timer | None = None
+        self._notes: list[str] = []
+        self.document = self._first_document(source)
+
+    def start(self) -> None:
+        """Start the threads, and mesh the document."""
+        self.engine.start()
+        self._mesher.start()
+        self._mesh()
+
+    def end(self) -> None:
+        """Stop the threads; the draft is written."""
+        self._write_draft()
+        self._mesher.end()
+        self.engine.end()
+
+    def welcome(self, tab: Tab) -> None:
+        """Tell a new tab all that it needs."""
+        with self._lock:
+            self.tabs.tell_one(tab, hello(self.runs))
+            self.tabs.tell_one(tab, self.document.event())
+            for note in self._notes:
+                self.tabs.tell_one(tab, events.Log(level="info", text=note))
+            self._notes.clear()
+        self.engine.welcome(tab)
+
+    def left(self, tab: Tab) -> None:
+        """Forget a tab that was closed."""
+        if self._author is tab:
+            self._author = None
+
+    def repaint(self, tab: Tab) -> None:
+        """Give a tab that took a frame the next one, if it differs."""
+        self.engine.repaint(tab)
+
+    def handle(self, tab: Tab, command: commands.Command) -> None:
+        """Obey a command; what cannot be done is told to its tab."""
+        try:
+            with self._lock:
+                self._obey(command, tab)
+        except VoxSoftError as error:
+            for problem in error.problems:
+                self.tabs.tell_one(
+                    tab,
+                    events.Error(
+                        seq=command.seq, where=problem.where, what=problem.what, hint=problem.hint
+                    ),
+                )
+        except Exception as error:  # one tab's command must not end the studio for all
+            what = f"{type(error).__name__}: {error}"
+            self.tabs.tell_one(tab, events.Error(seq=command.seq, where="studio", what=what))
+
+    @singledispatchmethod
+    def _obey(self, command: commands.Command, tab: Tab) -> None:
+        """Do what a command asks; the engine does what is about time and pictures."""
+        self.engine.obey(command, tab)
+
+    @_obey.register
+    def _(self, command: commands.Hello, tab: Tab) -> None:
+        raise StudyError("hello", "was said already")
+
+    # The document
+
+    @_obey.register
+    def _(self, command: commands.Text, tab: Tab) -> None:
+        if command.rev != self.document.rev and self._author not in (None, tab):
+            self.tabs.tell_one(tab, self.document.event())
+            raise FileError(
+                "text",
+                "was changed in another tab meanwhile; what was typed here was not taken",
+                "look at the text as it is now, and change it again",
+            )
+        self._author = tab
+        self._changed(self.document.replace(command.text, "text"))
+
+    @_obey.register
+    def _(self, command: commands.Edit, tab: Tab) -> None:
+        self._author = tab
+        self._changed(self.document.edit(command.path, command.value))
+
+    @_obey.register
+    def _(self, command: commands.Undo, tab: Tab) -> None:
+        self._author = tab
+        self._changed(self.document.undo())
+
+    @_obey.register
+    def _(self, command: commands.Redo, tab: Tab) -> None:
+        self._author = tab
+        self._changed(self.document.redo())
+
+    @_obey.register
+    def _(self, command: commands.Save, tab: Tab) -> None:
+        path = None if command.path is None else Path(command.path)
+        written = self.document.save(path)
+        self._write_draft()
+        self.tabs.tell(self.document.event())
+        self.tabs.tell(events.Saved(what="document", path=str(written)))
+
+    @_obey.register
+    def _(self, command: commands.Open, tab: Tab) -> None:
+        self._author = tab
+        match command.what:
+            case "template":
+                text = families.family_text(command.name)
+                self._open(DesignDocument(text, f"{command.name}.toml", folder=self.runs.parent))
+            case "file":
+                self._open(self._document_of(Path(command.name)))
+            case "upload":
+                self._open_upload(command.name)
+            case _:
+                raise FileError("open", f"{command.what} is not known yet")
+
+    def _open(self, document: DesignDocument) -> None:
+        """Show another document; the one before can be brought back by undo."""
+        before = self.document
+        document.rev = before.rev + 1
+        if before.dirty and before.text != document.text:
+            document.remember(before.text)
+        self.document = document
+        self.engine.forget()
+        self._announce()
+
+    def _open_upload(self, name: str) -> None:
+        file = self.own / "uploads" / safe_name(name)
+        suffix = file.suffix
+        if not file.is_file():
+            raise FileError(name, "was not uploaded", "drop the file on the page again")
+        if suffix == ".toml":
+            opened = DesignDocument.of_file(file)
+            opened.path, opened.saved = None, None
+            opened.folder = self.runs.parent
+            self._open(opened)
+        elif suffix in _HEAVY:
+            text = design_of_mesh(file)
+            self._open(DesignDocument(text, f"{file.stem}.toml", folder=self.runs.parent))
+        elif suffix == ".npy":
+            text = design_of_array(file)
+            self._open(DesignDocument(text, f"{file.stem}.toml", folder=self.runs.parent))
+        elif suffix == ".zip":
+            folder = unpack_folder(file, self._free_folder(file.stem))
+            self._open(self._document_of(folder))
+        else:
+            raise FileError(name, "holds measurements", "open it in the Calibrate pane")
+
+    def _free_folder(self, name: str) -> Path:
+        """A folder among the runs that is not there yet."""
+        stem = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "run"
+        for number in range(1, 10_000):
+            folder = self.runs / (stem if number == 1 else f"{stem}-{number}")
+            if not folder.exists():
+                return make_folder(folder)
+        raise FileError(str(self.runs), f'has too many folders called "{stem}"')
+
+    def _changed(self, changed: bool) -> None:
+        if changed:
+            self._announce()
+
+    def _announce(self) -> None:
+        """Tell everyone of the document as it is now, and mesh it if it is good."""
+        self.tabs.tell(self.document.event())
+        self._mesh()
+        self._write_draft_soon()
+
+    def _mesh(self) -> None:
+        if self.document.valid and self.document.design is not None:
+            self._mesher.ask(self.document.design, self.document.rev)
+
+    # The mesher's answers, on its thread
+
+    def _meshed(self, body: StudioBody) -> None:
+        self.engine.show(body)
+
+    def _examined(self, body: StudioBody, report: CheckReport) -> None:
+        self.engine.tell_report(body, report)
+
+    def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
+        with self._lock:
+            if rev == self.document.rev:
+                self.document.diagnostics = diagnostics_of(error, self.document.text)
+                self.tabs.tell(self.document.event())
+
+    # Files
+
+    def store_upload(self, name: str, content: bytes) -> str:
+        """Keep a file that was dropped on the page; returns the name it has here.
+
+        Raises
+        ------
+        FileError
+            It cannot be written.
+        """
+        folder = make_folder(self.own / "uploads")
+        write_whole(folder / safe_name(name), content)
+        return safe_name(name)
+
+    def download(self, key: str) -> Path | None:
+        """The file that an export left for a download."""
+        found = self._downloads.get(key)
+        return found if found is not None and found.is_file() else None
+
+    def offer(self, file: Path, format: str) -> events.Exported:
+        """Make a file ready to be fetched."""
+        key = uuid.uuid4().hex
+        self._downloads[key] = file
+        return events.Exported(format=format, url=f"/download/{key}", name=file.name)
+
+    def export(self, format: str, options: dict[str, Any]) -> events.Exported:
+        """Write what is shown in a format, ready to be fetched."""
+        raise FileError("export", f"{format!r} is no format that is known")
+
+    def thumbnail(self, run: str) -> Path | None:
+        """The picture of a run, if there is one."""
+        return None
+
+    # The draft
+
+    def _first_document(self, source: Path | None) -> DesignDocument:
+        draft = self._read_draft()
+        if source is not None:
+            document = self._document_of(source)
+            same = draft is not None and draft["path"] == str(document.path)
+        elif draft is not None:
+            known = draft["path"] and Path(draft["path"]).is_file()
+            document = (
+                self._document_of(Path(draft["path"]))
+                if known
+                else DesignDocument(draft["text"], draft["name"], folder=self.runs.parent)
+            )
+            same = bool(known)
+        else:
+            text = families.family_text("cylinder")
+            return DesignDocument(text, "cylinder.toml", folder=self.runs.parent, saved=text)
+        if same and draft is not None and draft["text"] != document.text:
+            document.replace(draft["text"])
+            self._notes.append("Changes that were not saved are back; undo goes to the file.")
+        return document
+
+    def _document_of(self, path: Path) -> DesignDocument:
+        """Open a design file, or the design of a run folder as a new document."""
+        if not path.is_dir():
+            return DesignDocument.of_file(path)
+        file = path / "design.toml"
+        if not file.is_file():
+            raise FileError(str(path), "is no run folder: it holds no design.toml")
+        opened = DesignDocument.of_file(file)
+        opened.path, opened.name = None, f"{path.name}.toml"
+        return opened
+
+    def _read_draft(self) -> dict[str, Any] | None:
+        with suppress(OSError, ValueError):
+            draft = json.loads((self.own / DRAFT).read_text(encoding="utf-8"))
+            if isinstance(draft, dict) and all(
+                isinstance(draft.get(key), str) for key in ("text", "name", "path")
+            ):
+                return draft
+        return None
+
+    def _write_draft_soon(self) -> None:
+        if self._draft_timer is not None:
+            self._draft_timer.cancel()
+        self._draft_timer = threading.Timer(DRAFT_WITHIN, self._write_draft)
+        self._draft_timer.daemon = True
+        self._draft_timer.start()
+
+    def _write_draft(self) -> None:
+        with self._lock:
+            if self._draft_timer is not None:
+                self._draft_timer.cancel()
+                self._draft_timer = None
+            document = self.document
+            draft = self.own / DRAFT
+            try:
+                if document.dirty:
+                    make_folder(self.own)
+                    path = "" if document.path is None else str(document.path)
+                    content = {"text": document.text, "name": document.name, "path": path}
+                    write_whole(draft, json.dumps(content, ensure_ascii=False))
+                elif draft.exists():
+                    draft.unlink()
+            except (OSError, VoxSoftError) as error:
+                self.tabs.tell(events.Log(level="warning", text=f"the draft is not kept: {error}"))

@@ -1,0 +1,147 @@
+"""A studio that runs for real, and a tab that talks to it."""
+
+import asyncio
+import json
+import struct
+import threading
+from contextlib import asynccontextmanager
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+import websockets
+
+from voxsoft.studio.protocol import PROTOCOL
+from voxsoft.studio.server import StudioServer
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+class Page:
+    """What a tab of the browser does, without a browser."""
+
+    def __init__(self, socket):
+        self._socket = socket
+        self._seq = 0
+        self.frames = []
+        self.topologies = []
+        self.log = []
+
+    async def send(self, tag, **fields):
+        self._seq += 1
+        await self._socket.send(json.dumps({"t": tag, "seq": self._seq, **fields}))
+        return self._seq
+
+    async def send_raw(self, data):
+        await self._socket.send(data)
+
+    async def receive(self, seconds=20.0):
+        """The next message: an event as a namespace, or a binary message as its header."""
+        message = await asyncio.wait_for(self._socket.recv(), seconds)
+        if isinstance(message, bytes):
+            return self._binary(message)
+        event = json.loads(message)
+        self.log.append(event)
+        return SimpleNamespace(**event)
+
+    def _binary(self, message):
+        head = struct.unpack_from("<IBBHIIdII", message)
+        names = ("magic", "kind", "flags", "field", "topology", "frame", "time", "n", "seq")
+        found = SimpleNamespace(**dict(zip(names, head, strict=True)), bytes=message)
+        found.t = {1: "topology", 2: "frame"}[found.kind]
+        (self.topologies if found.kind == 1 else self.frames).append(found)
+        return found
+
+    async def until(self, tag, condition=lambda _: True, seconds=20.0, ack=True):
+        """Read on until a message of a kind that meets a condition."""
+        async with asyncio.timeout(seconds):
+            while True:
+                message = await self.receive()
+                if message.t == "frame" and ack:
+                    await self.send("ack", frame=message.frame)
+                if message.t == tag and condition(message):
+                    return message
+
+    async def shown(self, condition, seconds=20.0):
+        """Read on until a statistic meets a condition and its frame has come; in any order."""
+        stat = None
+        async with asyncio.timeout(seconds):
+            while True:
+                frame = self.frames[-1] if self.frames else None
+                if stat is not None and frame is not None:
+                    same = (frame.topology, frame.frame) == (stat.topology, stat.frame)
+                    resting = bool(frame.flags & 4) == (stat.state == "at-rest")
+                    if condition(stat) and same and resting:
+                        return stat, frame
+                message = await self.receive()
+                if message.t == "frame":
+                    await self.send("ack", frame=message.frame)
+                elif message.t == "stat":
+                    stat = message
+
+    async def quiet(self, seconds=0.3):
+        """Read what comes until nothing does for a while."""
+        while True:
+            try:
+                await self.receive(seconds)
+            except TimeoutError:
+                return
+
+    async def close(self):
+        await self._socket.close()
+
+
+class Studio:
+    """A server on a thread of its own."""
+
+    def __init__(self, runs, source=None):
+        self.server = StudioServer(source, runs=runs)
+        self.session = self.server.session
+        self.token, self.port = self.server.token, self.server.port
+        self.origin = f"http://127.0.0.1:{self.port}"
+        self._ready = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def _run(self):
+        self.server.run(lambda _: self._ready.set())
+
+    def start(self):
+        self._thread.start()
+        assert self._ready.wait(20)
+        return self
+
+    def stop(self):
+        self.server.stop()
+        self._thread.join(20)
+        assert not self._thread.is_alive()
+
+    @asynccontextmanager
+    async def page(self, hello=True, **options):
+        url = f"ws://127.0.0.1:{self.port}/ws?token={self.token}"
+        settings = {"origin": self.origin, "max_size": None, **options}
+        async with websockets.connect(url, **settings) as socket:
+            page = Page(socket)
+            if hello:
+                await page.send("hello", protocol=PROTOCOL)
+                await page.until("document", ack=False)
+            yield page
+
+
+@pytest.fixture
+def make_studio(tmp_path):
+    """Start studios in a folder of the test; they are stopped at its end."""
+    started = []
+
+    def make(source=EXAMPLES / "cylinder.toml", runs=None):
+        studio = Studio(runs or tmp_path / "runs", source).start()
+        started.append(studio)
+        return studio
+
+    yield make
+    for studio in started:
+        studio.stop()
+
+
+@pytest.fixture
+def studio(make_studio):
+    return make_studio()

@@ -1,0 +1,99 @@
+"""Only this machine's own browser, with the token of this run, gets in."""
+
+import asyncio
+import socket
+
+import httpx
+import pytest
+import websockets
+
+
+def get(studio, path="/", **headers):
+    return httpx.get(f"{studio.origin}{path}", headers=headers)
+
+
+@pytest.mark.parametrize("path", ["/", "/assets/index.js", "/download/x", "/thumbnail/x"])
+def test_without_the_token_nothing_is_served(studio, path):
+    answer = get(studio, path)
+    assert answer.status_code == 403
+    assert "the address that `voxsoft studio` printed" in answer.json()["what"]
+    assert get(studio, f"{path}?token=wrong").status_code == 403
+
+
+def test_the_token_becomes_a_cookie_that_scripts_cannot_read(studio):
+    answer = get(studio, f"/?token={studio.token}")
+    assert answer.status_code == 200
+    cookie = answer.headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "SameSite=strict" in cookie
+    assert answer.headers["cache-control"] == "no-store"
+    pair = cookie.partition(";")[0]
+    assert get(studio, cookie=pair).status_code == 200
+    assert get(studio, cookie=f"{pair}x").status_code == 403
+
+
+@pytest.mark.parametrize("host", ["evil.example", "127.0.0.1", "127.0.0.1:1", "localhost.evil:80"])
+def test_another_host_is_refused(studio, host):
+    answer = get(studio, f"/?token={studio.token}", host=host)
+    assert answer.status_code == 403
+    assert "not the studio's own" in answer.json()["what"]
+
+
+@pytest.mark.parametrize("origin", ["http://evil.example", "null", "https://127.0.0.1", ""])
+def test_another_origin_is_refused(studio, origin):
+    assert get(studio, f"/?token={studio.token}", origin=origin).status_code == 403
+
+
+def test_a_change_without_an_origin_is_refused(studio):
+    url = f"{studio.origin}/upload?name=a.toml&token={studio.token}"
+    assert httpx.post(url, content=b"").status_code == 403
+    assert httpx.post(url, content=b"", headers={"origin": studio.origin}).status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("path", "options"),
+    [
+        ("/ws", {"origin": "own"}),
+        ("/ws?token=wrong", {"origin": "own"}),
+        ("/ws?token=right", {"origin": None}),
+        ("/ws?token=right", {"origin": "http://evil.example"}),
+        ("/ws?token=right", {"origin": "own", "host": "evil.example"}),
+    ],
+    ids=["no token", "wrong token", "no origin", "other origin", "other host"],
+)
+def test_a_websocket_of_anyone_else_is_refused(studio, path, options):
+    origin = studio.origin if options["origin"] == "own" else options["origin"]
+    host = options.get("host", "127.0.0.1")
+    url = f"ws://{host}:{studio.port}{path.replace('right', studio.token)}"
+
+    async def attempt():
+        # An open connection to this machine, whatever the name in the address.
+        sock = socket.create_connection(("127.0.0.1", studio.port))
+        async with websockets.connect(url, origin=origin, sock=sock):
+            pass
+
+    with pytest.raises(websockets.exceptions.InvalidStatus) as refused:
+        asyncio.run(attempt())
+    assert refused.value.response.status_code == 403
+
+
+def test_it_listens_on_loopback_only(studio):
+    assert studio.server._listener.getsockname()[0] == "127.0.0.1"
+
+
+def test_the_page_may_load_nothing_from_elsewhere(studio):
+    headers = get(studio, f"/?token={studio.token}").headers
+    policy = headers["content-security-policy"]
+    assert policy.startswith("default-src 'none'; script-src 'self' 'wasm-unsafe-eval';")
+    assert "unsafe-eval'" not in policy.replace("wasm-unsafe-eval'", "")
+    assert headers["cross-origin-opener-policy"] == "same-origin"
+    assert headers["cross-origin-embedder-policy"] == "require-corp"
+    assert headers["x-content-type-options"] == "nosniff"
+
+
+@pytest.mark.parametrize(
+    "path", ["/assets/../server.py", "/assets/%2e%2e/server.py", "/..%2fapp.py"]
+)
+def test_only_the_bundle_is_served(studio, path):
+    answer = get(studio, path, cookie=f"voxsoft_studio_{studio.port}={studio.token}")
+    assert answer.status_code == 404
