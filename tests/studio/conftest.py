@@ -56,7 +56,7 @@ class Page:
         """Read on until a message of a kind that meets a condition."""
         async with asyncio.timeout(seconds):
             while True:
-                message = await self.receive()
+                message = await self.receive(None)
                 if message.t == "frame" and ack:
                     await self.send("ack", frame=message.frame)
                 if message.t == tag and condition(message):

@@ -29,12 +29,15 @@ class Generation:
         Smallest mean error of this generation, m; infinite if all failed.
     parameters
         Of its best candidate, SI.
+    spread
+        Smallest and largest value of each parameter among its candidates, SI.
     """
 
     best_fitness: float
     mean_fitness: float
     best_error: float
     parameters: Mapping[str, float]
+    spread: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

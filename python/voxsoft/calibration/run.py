@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -35,6 +36,11 @@ class CalibrationEvent:
         Candidates simulated so far.
     mean_error
         Smallest so far, m.
+    generation
+        The generation that has just finished; None at the start of a further stage.
+    fits
+        Simulates the best candidate so far and lays it beside the measurements; empty where none
+        came to rest.
     """
 
     stage: Literal["search", "refinement", "profiles"]
@@ -42,6 +48,8 @@ class CalibrationEvent:
     total: int
     evaluations: int
     mean_error: float
+    generation: Generation | None = None
+    fits: Callable[[], tuple[Fit, ...]] = tuple
 
 
 ProgressCallback = Callable[[CalibrationEvent], None]
@@ -162,7 +170,17 @@ def calibrate(
             best = min(batch if best is None else [best, *batch], key=lambda each: each.error)
             history.append(_generation(misfit, batch))
             done = len(history)
-            report(CalibrationEvent("search", done, generations, misfit.evaluations, best.error))
+            report(
+                CalibrationEvent(
+                    "search",
+                    done,
+                    generations,
+                    misfit.evaluations,
+                    best.error,
+                    history[-1],
+                    partial(_fits, misfit, best),
+                )
+            )
         found = _require_rest(best)
         stage = _stage(misfit, found)
         if refine:
@@ -194,6 +212,13 @@ def calibrate(
             "tolerance": TOLERANCE,
         },
     )
+
+
+def _fits(misfit: Misfit, candidate: Evaluation) -> tuple[Fit, ...]:
+    compared = misfit.compare(candidate.genes)
+    if isinstance(compared, str):
+        return ()
+    return tuple(Fit(*pair) for pair in zip(misfit.experiments, compared, strict=True))
 
 
 def _material_of(experiments: Sequence[Experiment]) -> Material:
@@ -240,7 +265,15 @@ def _generation(misfit: Misfit, batch: Batch) -> Generation:
         mean_fitness=float(np.mean([each.fitness for each in batch])),
         best_error=float(errors_of(batch).min()),
         parameters=misfit.space.parameters(best.genes),
+        spread=_spread([misfit.space.parameters(each.genes) for each in batch]),
     )
+
+
+def _spread(candidates: Sequence[Mapping[str, float]]) -> dict[str, tuple[float, float]]:
+    return {
+        name: (min(each[name] for each in candidates), max(each[name] for each in candidates))
+        for name in candidates[0]
+    }
 
 
 def _stage(misfit: Misfit, found: Evaluation) -> Stage:

@@ -12,20 +12,29 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.design import families
-from voxsoft.errors import FileError, StudyError, VoxSoftError
+from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
+from voxsoft.files.cards import load_card_file, save_card
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
+from voxsoft.studio.compared import compared
 from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.edits import with_value
 from voxsoft.studio.engine import Engine
+from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.runs import RunList, kind_of
+from voxsoft.studio.studying import design_text_of, stored_study, trials_event
 from voxsoft.studio.tab import Tab
+from voxsoft.studio.tables import guessed_columns, mapped_text, measured
+from voxsoft.studio.task import DESIGN, Table, Task
 from voxsoft.studio.uploads import design_of_array, design_of_mesh, safe_name, unpack_folder
+from voxsoft.units import format_quantity
 
 #: Folder of the studio's own files below the runs.
 OWN_FOLDER: Final = ".studio"
@@ -34,6 +43,11 @@ DRAFT: Final = "draft.json"
 #: Seconds after a change in which the draft is written.
 DRAFT_WITHIN: Final = 1.0
 
+_KIND_NAMES: Final[dict[type, str]] = {
+    commands.RunSpec: "run",
+    commands.StudySpec: "study",
+    commands.CalibrateSpec: "calibration",
+}
 _HEAVY: Final = (".stl", ".obj", ".ply")
 
 
@@ -58,6 +72,9 @@ class Session:
         self.own = self.runs / OWN_FOLDER
         self.tabs = Tabs()
         self.engine = Engine(self.tabs)
+        self.jobs = Jobs(self.tabs, self._runs_changed)
+        self.list = RunList(self.runs, self.own, self.jobs.running_in)
+        self._tables: dict[str, tuple[str, list[commands.ColumnMap] | None]] = {}
         self._mesher = Mesher(self._meshed, self._examined, self._not_meshed)
         self._lock = threading.RLock()
         self._author: Tab | None = None
@@ -73,8 +90,9 @@ class Session:
         self._mesh()
 
     def end(self) -> None:
-        """Stop the threads; the draft is written."""
+        """Stop the threads and the jobs; the draft is written."""
         self._write_draft()
+        self.jobs.end()
         self._mesher.end()
         self.engine.end()
 
@@ -87,6 +105,8 @@ class Session:
                 self.tabs.tell_one(tab, events.Log(level="info", text=note))
             self._notes.clear()
         self.engine.welcome(tab)
+        self.jobs.welcome(tab)
+        self.tabs.tell_one(tab, self.list.event())
 
     def left(self, tab: Tab) -> None:
         """Forget a tab that was closed."""
@@ -171,8 +191,10 @@ class Session:
                 self._open(self._document_of(Path(command.name)))
             case "upload":
                 self._open_upload(command.name)
-            case _:
-                raise FileError("open", f"{command.what} is not known yet")
+            case "run":
+                self._open_run(command.name, tab)
+            case "trial":
+                self._open_trial(command.name)
 
     def _open(self, document: DesignDocument) -> None:
         """Show another document; the one before can be brought back by undo."""
@@ -205,6 +227,136 @@ class Session:
             self._open(self._document_of(folder))
         else:
             raise FileError(name, "holds measurements", "open it in the Calibrate pane")
+
+    def _open_run(self, name: str, tab: Tab) -> None:
+        """Open the design of a run, and tell what its folder holds."""
+        folder = self.list.folder_of(name)
+        if kind_of(folder) == "study":
+            result = stored_study(folder)
+            self.tabs.tell_one(tab, trials_event(name, result))
+        self._open(self._document_of(folder))
+
+    def _open_trial(self, name: str) -> None:
+        """Open the design of one trial: that of its study, with the trial's parameters."""
+        run, _, number = name.rpartition("/")
+        folder = self.list.folder_of(run)
+        trial = next(
+            (each for each in stored_study(folder).trials if str(each.number) == number), None
+        )
+        if trial is None:
+            raise FileError(name, "is no trial of that study")
+        document = self._document_of(folder)
+        design = document.design
+        if design is None:
+            raise FileError(name, "belongs to a design that cannot be read")
+        text = document.text
+        for parameter, value in trial.parameters.items():
+            kind = design.parameters[parameter].kind
+            shown = format_quantity(value, kind) if isinstance(value, float) else value
+            table = (document.source or {}).get("parameters", {}).get(parameter)
+            inner = ["value"] if isinstance(table, dict) else []
+            text = with_value(text, ["parameters", parameter, *inner], shown)
+        opened = DesignDocument(text, f"{run}-{number}.toml", folder=document.folder)
+        self._open(opened)
+
+    # Jobs
+
+    @_obey.register
+    def _(self, command: commands.JobStart, tab: Tab) -> None:
+        spec, document = command.spec, self.document
+        if not document.valid or document.design is None:
+            raise StudyError("job", "the design is not valid", "mend what the editor underlines")
+        tables = []
+        if isinstance(spec, commands.CalibrateSpec):
+            tables = [self._table(each) for each in spec.data]
+        stem = spec.name or f"{document.design.name}-{_KIND_NAMES[type(spec)]}"
+        folder = self._free_folder(stem)
+        task = Task(
+            id=folder.name,
+            name=folder.name,
+            design=document.text,
+            base=str(document.folder),
+            spec=spec,
+            tables=tables,
+        )
+        write_whole(folder / DESIGN, document.text)
+        self.jobs.start(task, folder)
+        self._runs_changed()
+
+    @_obey.register
+    def _(self, command: commands.JobPause, tab: Tab) -> None:
+        self.jobs.pause(command.id)
+
+    @_obey.register
+    def _(self, command: commands.JobStop, tab: Tab) -> None:
+        self.jobs.stop(command.id)
+
+    @_obey.register
+    def _(self, command: commands.JobResume, tab: Tab) -> None:
+        if self.jobs.known(command.id) is not None and self.jobs.resume(command.id):
+            return
+        folder = self.list.folder_of(command.id)
+        task = Task.read(folder)
+        task.id = task.name = folder.name
+        self.jobs.start(task, folder)
+        self._runs_changed()
+
+    @_obey.register
+    def _(self, command: commands.Measurement, tab: Tab) -> None:
+        event, _ = measured(command.name, command.text, command.columns, command.select)
+        self._tables[command.name] = (command.text, command.columns)
+        self.tabs.tell_one(tab, event)
+
+    def _table(self, data: commands.MeasuredData) -> Table:
+        """A table that was sent before, mapped."""
+        if data.name not in self._tables:
+            raise FileError(data.name, "was not sent", "drop the file on the page again")
+        text, columns = self._tables[data.name]
+        event, found = measured(data.name, text, data.columns or columns, data.select)
+        if found is None:
+            first = event.problems[0]
+            raise MeasurementError(first.where, first.what, first.hint)
+        mapped = mapped_text(text, data.columns or columns or guessed_columns(text))
+        return Table(name=data.name, text=mapped, select=data.select)
+
+    @_obey.register
+    def _(self, command: commands.CardSave, tab: Tab) -> None:
+        folder = self.list.folder_of(command.job)
+        card = next((file for file in sorted(folder.glob("*.toml")) if file.name != DESIGN), None)
+        if card is None:
+            raise FileError(command.job, "holds no material card", "wait until it is done")
+        found = load_card_file(card).model_copy(update={"name": command.name})
+        target = self.document.folder / f"{safe_name(command.name + '.toml')}"
+        save_card(found, target)
+        self.tabs.tell(events.Saved(what="card", path=str(target)))
+
+    # Runs
+
+    @_obey.register
+    def _(self, command: commands.Runs, tab: Tab) -> None:
+        self.tabs.tell_one(tab, self.list.event())
+
+    @_obey.register
+    def _(self, command: commands.RunRename, tab: Tab) -> None:
+        self.list.rename(command.id, command.name)
+        self._runs_changed()
+
+    @_obey.register
+    def _(self, command: commands.RunDelete, tab: Tab) -> None:
+        self.list.delete(command.id)
+        self._runs_changed()
+
+    @_obey.register
+    def _(self, command: commands.RunRestore, tab: Tab) -> None:
+        self.list.restore(command.id)
+        self._runs_changed()
+
+    @_obey.register
+    def _(self, command: commands.Compare, tab: Tab) -> None:
+        self.tabs.tell_one(tab, compared(self.list, command.a, command.b))
+
+    def _runs_changed(self) -> None:
+        self.tabs.tell(self.list.event())
 
     def _free_folder(self, name: str) -> Path:
         """A folder among the runs that is not there yet."""
@@ -274,7 +426,7 @@ class Session:
 
     def thumbnail(self, run: str) -> Path | None:
         """The picture of a run, if there is one."""
-        return None
+        return self.list.picture(run)
 
     # The draft
 
@@ -303,11 +455,16 @@ class Session:
         """Open a design file, or the design of a run folder as a new document."""
         if not path.is_dir():
             return DesignDocument.of_file(path)
-        file = path / "design.toml"
+        file, name = path / DESIGN, f"{path.name}.toml"
+        with suppress(VoxSoftError):  # a folder that the studio did not write
+            task = Task.read(path)
+            return DesignDocument(task.design, name, folder=Path(task.base))
+        if not file.is_file() and (path / "study.json").is_file():
+            return DesignDocument(design_text_of(path), name, folder=self.runs.parent)
         if not file.is_file():
             raise FileError(str(path), "is no run folder: it holds no design.toml")
         opened = DesignDocument.of_file(file)
-        opened.path, opened.name = None, f"{path.name}.toml"
+        opened.path, opened.saved, opened.name = None, None, name
         return opened
 
     def _read_draft(self) -> dict[str, Any] | None:

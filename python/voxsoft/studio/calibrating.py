@@ -1,0 +1,160 @@
+"""The job of a calibration."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import files
+from voxsoft.calibration import Calibration, CalibrationEvent, Experiment, calibrate
+from voxsoft.calibration.result import Fit
+from voxsoft.calibration.table import read_measurement
+from voxsoft.files.cards import card_text
+from voxsoft.studio import events
+from voxsoft.studio.commands import CalibrateSpec
+from voxsoft.studio.message import Triple
+from voxsoft.studio.task import Task
+from voxsoft.units import format_quantity
+
+if TYPE_CHECKING:
+    from voxsoft.studio.worker import Progress
+
+#: The card that a calibration leaves in its folder.
+CARD: Final = "card"
+
+
+def run_calibration(task: Task, progress: Progress) -> str:
+    """Fit the material of a task's design; returns what came out."""
+    spec = task.spec
+    assert isinstance(spec, CalibrateSpec)
+    design = task.read_design()
+    experiments = [
+        Experiment(design, read_measurement(table.text, name=table.name, select=table.select))
+        for table in task.tables
+    ]
+    progress.at(0, spec.generations)
+    smallest = np.inf
+
+    def tell(event: CalibrationEvent) -> None:
+        nonlocal smallest
+        if event.generation is not None:
+            found = event.generation
+            progress.tell(
+                events.Generation(
+                    job=task.id,
+                    index=event.done,
+                    best=found.best_fitness,
+                    mean=found.mean_fitness,
+                    error=found.best_error if np.isfinite(found.best_error) else None,
+                    parameters=dict(found.parameters),
+                    spread=dict(found.spread),
+                )
+            )
+            if event.mean_error < smallest:
+                smallest = event.mean_error
+                progress.tell(overlay_event(task.id, event.fits()))
+        done = event.done if event.stage == "search" else spec.generations
+        best = ""
+        if np.isfinite(event.mean_error):
+            best = f"mean error {_length(event.mean_error)}"
+        progress.at(done, spec.generations, best=best, stage=event.stage)
+
+    answer = calibrate(
+        experiments,
+        spec.method,
+        parameters=spec.bounds,
+        free_scale=spec.free_scale,
+        seed=spec.seed,
+        workers=spec.workers,
+        generations=spec.generations,
+        population=spec.population,
+        refine=spec.refine,
+        identify=spec.identify,
+        progress=tell,
+    )
+    name = _card_name(task.name)
+    files.write_calibration(answer, progress.folder, name)
+    progress.tell(overlay_event(task.id, answer.fits))
+    progress.tell(calibrated_event(task.id, answer, card_text(answer.card(name))))
+    return f"Mean error {_length(answer.mean_error)}, largest {_length(answer.max_error)}."
+
+
+def overlay_event(job: str, fits: Sequence[Fit]) -> events.Overlay:
+    """Measured and simulated stations, as points of the design's space."""
+    return events.Overlay(
+        job=job,
+        experiments=[
+            events.OverlayExperiment(
+                name=fit.experiment.name,
+                measured=_points(fit, fit.comparison.measured),
+                simulated=_points(fit, fit.comparison.simulated),
+                error=fit.errors.tolist(),
+                percent=fit.percent.tolist(),
+            )
+            for fit in fits
+        ],
+    )
+
+
+def calibrated_event(job: str, answer: Calibration, card: str) -> events.Calibrated:
+    """The result of a calibration as the page wants it."""
+    profiles = {profile.name: profile for profile in answer.profiles}
+    return events.Calibrated(
+        job=job,
+        parameters=[
+            events.FittedParameter(
+                name=name,
+                value=value,
+                kind=answer.kinds[name],
+                text=format_quantity(float(f"{value:.4g}"), answer.kinds[name]),
+                low=answer.bounds[name][0],
+                high=answer.bounds[name][1],
+                identifiable=answer.identifiable.get(name),
+                sentence=profiles[name].sentence if name in profiles else "not asked",
+            )
+            for name, value in answer.parameters.items()
+        ],
+        table=[
+            events.StationError(
+                experiment=fit.experiment.name,
+                station=station,
+                measured=fit.comparison.measured[at].tolist(),
+                simulated=fit.comparison.simulated[at].tolist(),
+                error=float(fit.errors[at]),
+                percent=float(fit.percent[at]),
+            )
+            for fit in answer.fits
+            for at, station in enumerate(fit.experiment.measurement.station_names)
+        ],
+        quantities=list(answer.fits[0].experiment.measurement.quantities),
+        identifiable=answer.identifiable,
+        fitness=answer.fitness,
+        mean_error=answer.mean_error,
+        max_error=answer.max_error,
+        material=answer.material.model_dump(mode="json", exclude_none=True),
+        card=card,
+    )
+
+
+def _points(fit: Fit, values: NDArray[np.float64]) -> list[Triple]:
+    """Where stations are in the design's space, m; unmeasured coordinates are those at rest."""
+    experiment = fit.experiment
+    moved = values - experiment.offsets
+    points = experiment.points.copy()
+    for column, axis in enumerate(experiment.measurement.axes):
+        points[:, axis] += moved[:, column]
+    return [(float(x), float(y), float(z)) for x, y, z in points]
+
+
+def _length(value: float) -> str:
+    return format_quantity(float(f"{value:.3g}"), "length")
+
+
+def _card_name(name: str) -> str:
+    """A name that a design can write: lower case, letters, digits and hyphens."""
+    import re
+
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-") or CARD

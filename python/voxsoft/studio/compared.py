@@ -1,0 +1,83 @@
+"""Two runs or trials side by side."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from voxsoft.design import Design
+from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.files.designs import read_document, read_text, with_whole_paths
+from voxsoft.records import place
+from voxsoft.studio import events
+from voxsoft.studio.runs import RunList, kind_of, read_summary
+from voxsoft.studio.studying import design_text_of, stored_study
+from voxsoft.studio.task import DESIGN
+
+
+def compared(runs: RunList, a: str, b: str) -> events.Compared:
+    """Set two runs, or trials written "RUN/NUMBER", side by side.
+
+    Raises
+    ------
+    VoxSoftError
+        One of them cannot be read.
+    """
+    first, first_document = _side(runs, a)
+    second, second_document = _side(runs, b)
+    return events.Compared(
+        a=first, b=second, differences=list(_differences(first_document, second_document, []))
+    )
+
+
+def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
+    run, _, number = name.rpartition("/")
+    folder = runs.folder_of(run or name)
+    file = folder / DESIGN
+    text = read_text(file) if file.is_file() else design_text_of(folder)
+    document = read_document(text, name)
+    parameters: dict[str, Any] = {}
+    metrics: dict[str, float | None] = {}
+    status = ""
+    if run:
+        trial = next((t for t in stored_study(folder).trials if str(t.number) == number), None)
+        if trial is None:
+            raise FileError(name, "is no trial of that study")
+        parameters, status = dict(trial.parameters), trial.status
+        metrics = {**trial.objectives, **trial.metrics}
+        design = Design.from_document(with_whole_paths(document, folder))
+        text = design.with_parameters(**parameters).to_toml()
+        document = tomllib.loads(text)
+    else:
+        with suppress(VoxSoftError):
+            design = Design.from_document(with_whole_paths(document, folder))
+            parameters = {key: each.value for key, each in design.parameters.items()}
+        with suppress(OSError, VoxSoftError):
+            told = read_summary(folder)
+            status = str(told.get("status", "ok"))
+            if kind_of(folder) == "run":
+                metrics = dict(told.get("metrics", {}))
+    thumbnail = f"/thumbnail/{folder.name}" if runs.picture(folder.name) else None
+    side = events.Side(
+        id=name,
+        name=name,
+        status=status,
+        parameters=parameters,
+        metrics=metrics,
+        thumbnail=thumbnail,
+        text=text,
+    )
+    return side, document
+
+
+def _differences(a: object, b: object, path: list[str | int]) -> Iterator[events.Difference]:
+    if isinstance(a, dict) and isinstance(b, dict):
+        for key in [*a, *(key for key in b if key not in a)]:
+            yield from _differences(a.get(key), b.get(key), [*path, key])
+    elif isinstance(a, list) and isinstance(b, list) and len(a) == len(b):
+        for index, pair in enumerate(zip(a, b, strict=True)):
+            yield from _differences(*pair, [*path, index])
+    elif a != b:
+        yield events.Difference(where=place(path), a=a, b=b)

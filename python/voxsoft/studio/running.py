@@ -1,0 +1,65 @@
+"""The job of one simulation."""
+
+from __future__ import annotations
+
+import math
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from voxsoft import files
+from voxsoft.simulation import Result, simulate
+from voxsoft.studio.commands import RunSpec
+from voxsoft.studio.task import Task
+
+if TYPE_CHECKING:
+    from voxsoft.studio.worker import Progress
+
+#: The picture of a run in the list of runs.
+THUMBNAIL: Final = "thumbnail.png"
+#: Seconds between two words on how far a run is.
+_SAID_EVERY: Final = 0.25
+
+
+def run_once(task: Task, progress: Progress) -> str:
+    """Simulate the design of a task, and write its run folder; returns what came out."""
+    assert isinstance(task.spec, RunSpec)
+    design = task.read_design()
+    progress.at(0, 100, stage="meshing")
+    last, largest = time.monotonic(), 0.0
+
+    def tell(_: int, when: float, residual: float) -> None:
+        nonlocal last, largest
+        now = time.monotonic()
+        if now - last < _SAID_EVERY:
+            return
+        last = now
+        largest = max(largest, residual if math.isfinite(residual) else 0.0)
+        percent = _percent(design.solver.end_time, when, residual, largest)
+        progress.at(percent, 100, stage=f"residual {residual:.1e} of the load")
+
+    result = simulate(design, progress=tell, **task.spec.solver)
+    files.write_run(result, progress.folder)
+    draw(result, progress.folder)
+    progress.at(100, 100)
+    return f"{result.message[:1].upper()}{result.message[1:]}."
+
+
+def draw(result: Result, folder: Path) -> None:
+    """Draw the picture of a result for the list of runs."""
+    from voxsoft.files.figures import save_figure  # matplotlib is slow to load
+    from voxsoft.plot import plot_body
+
+    save_figure(plot_body(result), folder / THUMBNAIL)
+
+
+def _percent(end: float | None, when: float, residual: float, largest: float) -> int:
+    """How far a run is: of its end time, or of the digits its residual must still lose."""
+    from voxsoft.simulation.rest import DEFAULT_TOLERANCE
+
+    if end:
+        return min(99, round(100 * when / end))
+    if not largest > residual > 0:
+        return 0
+    lost = math.log(largest / residual) / math.log(largest / DEFAULT_TOLERANCE)
+    return min(99, max(0, round(100 * lost)))
