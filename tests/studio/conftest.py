@@ -24,7 +24,7 @@ class Page:
         self._socket = socket
         self._seq = 0
         self.frames = []
-        self.topologies = []
+        self.smooth = None
         self.log = []
 
     async def send(self, tag, **fields):
@@ -48,8 +48,11 @@ class Page:
         head = struct.unpack_from("<IBBHIIdII", message)
         names = ("magic", "kind", "flags", "field", "topology", "frame", "time", "n", "seq")
         found = SimpleNamespace(**dict(zip(names, head, strict=True)), bytes=message)
-        found.t = {1: "topology", 2: "frame"}[found.kind]
-        (self.topologies if found.kind == 1 else self.frames).append(found)
+        found.t = {1: "topology", 2: "frame", 3: "smooth"}[found.kind]
+        if found.kind == 2:
+            self.frames.append(found)
+        elif found.kind == 3:
+            self.smooth = found
         return found
 
     async def until(self, tag, condition=lambda _: True, seconds=20.0, ack=True):
@@ -145,3 +148,21 @@ def make_studio(tmp_path):
 @pytest.fixture
 def studio(make_studio):
     return make_studio()
+
+
+@pytest.fixture(scope="module")
+def at_rest(tmp_path_factory):
+    """A studio whose cylinder was played, and then brought to rest."""
+    studio = Studio(tmp_path_factory.mktemp("studio") / "runs", EXAMPLES / "cylinder.toml").start()
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("play")
+            await page.shown(lambda s: s.state == "at-rest")
+            await page.send("rest")
+            await page.shown(lambda s: s.state == "at-rest" and "residual" in s.sentence)
+
+    asyncio.run(asyncio.wait_for(scenario(), 60))
+    yield studio
+    studio.stop()

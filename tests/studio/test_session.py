@@ -38,7 +38,13 @@ def test_a_tab_is_shown_the_design_and_its_body(studio):
             document = await page.until("document")
             body = await page.until("body")
             topology = await page.until("topology")
-            frame = await page.until("frame")
+            _, frame = await page.shown(lambda s: s.state == "paused")
+            smooth = page.smooth or await page.until("smooth")
+        points, triangles = smooth.n, smooth.seq
+        assert len(smooth.bytes) == 64 + 12 * points + 12 * triangles
+        assert np.ptp(np.frombuffer(smooth.bytes, "<f4", 3 * points, 64)[2::3]) == pytest.approx(
+            0.035, abs=1e-5
+        )
         assert hello.design_schema["$id"] == "voxsoft/1"
         assert len(hello.fields) == 9
         assert document.valid
@@ -261,7 +267,8 @@ def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
 def test_a_hidden_tab_gets_no_frames(studio):
     async def scenario():
         async with studio.page() as page:
-            await page.until("frame")
+            await page.shown(lambda s: s.state == "paused")
+            await page.quiet()
             await page.send("view", field=0, visible=False)
             before = len(page.frames)
             await page.send("play")

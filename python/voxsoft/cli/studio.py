@@ -16,9 +16,9 @@ def studio(
         Path | None,
         typer.Argument(help="A design file, or a run folder.", exists=True, readable=True),
     ] = None,
-    browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Open the page by itself.")
-    ] = True,
+    no_browser: Annotated[
+        bool, typer.Option("--no-browser", help="Only print the address.")
+    ] = False,
     port: Annotated[
         int, typer.Option("--port", min=0, max=65535, help="Where to listen; 0: any free port.")
     ] = 0,
@@ -35,7 +35,7 @@ def studio(
 
     def ready(address: str) -> None:
         say(f"studio at {plain(address)} (Ctrl-C ends it)")
-        if browser:
+        if not no_browser:
             import webbrowser
 
             webbrowser.open(address)

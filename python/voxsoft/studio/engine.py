@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 from functools import singledispatchmethod
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.exports import Shown
 from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED, pack_points, value_at
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.outlet import Outlet
@@ -60,6 +61,7 @@ class Engine(threading.Thread):
         self._inbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
         self._body: StudioBody | None = None
         self._report: CheckReport | None = None
+        self._smooth: bytes | None = None
         self._mover: Mover | None = None
         self._past = Past()
         self._shown: StoredFrame | None = None
@@ -102,9 +104,9 @@ class Engine(threading.Thread):
         """Take another body, at rest and at time zero."""
         self._inbox.put(lambda: self._show(body))
 
-    def tell_report(self, body: StudioBody, report: CheckReport) -> None:
+    def tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         """Pass on what the doctor says of a body, if it is still the one that is shown."""
-        self._inbox.put(lambda: self._tell_report(body, report))
+        self._inbox.put(lambda: self._tell_report(body, report, smooth))
 
     def forget(self) -> None:
         """Stop time, as another document is opened."""
@@ -132,48 +134,30 @@ class Engine(threading.Thread):
 
         self._inbox.put(task)
 
-    def ask(self, question: Callable[[Engine], Any], seconds: float = 30.0) -> Any:  # noqa: ANN401
-        """Let a function look at the engine on its own thread, and return what it found.
+    def shown(self, name: str, text: str, seconds: float = 30.0) -> Shown:
+        """What is shown now, for an export; it is taken between two frames.
 
         Raises
         ------
         SimulationError
-            The engine is too busy to answer.
+            There is no body, or the engine is too busy to answer.
         """
-        answers: queue.SimpleQueue[tuple[Any, BaseException | None]] = queue.SimpleQueue()
+        answers: queue.SimpleQueue[Shown | VoxSoftError] = queue.SimpleQueue()
 
         def task() -> None:
             try:
-                answers.put((question(self), None))
-            except Exception as error:
-                answers.put((None, error))
+                answers.put(self._shown_now(name, text))
+            except VoxSoftError as error:
+                answers.put(error)
 
         self._inbox.put(task)
         try:
-            answer, error = answers.get(timeout=seconds)
+            answer = answers.get(timeout=seconds)
         except queue.Empty:
             raise SimulationError("studio", "is too busy to answer", "try again") from None
-        if error is not None:
-            raise error
+        if isinstance(answer, VoxSoftError):
+            raise answer
         return answer
-
-    @property
-    def body(self) -> StudioBody | None:
-        """The body that is shown."""
-        return self._body
-
-    @property
-    def result(self) -> Result | None:
-        """The last state at rest that a solver found, if the body still is in it."""
-        return self._result
-
-    def positions(self) -> NDArray[np.float64] | None:
-        """Where the vertices are that are shown [m]."""
-        if self._body is None:
-            return None
-        if self._shown is not None:
-            return self._shown.positions.astype(np.float64)
-        return self._body.mesh.vertices if self._mover is None else self._mover.positions()
 
     # On its own thread
 
@@ -197,7 +181,7 @@ class Engine(threading.Thread):
     def _show(self, body: StudioBody) -> None:
         before = self._body
         self._search += 1
-        self._body, self._report, self._result = body, None, None
+        self._body, self._report, self._result, self._smooth = body, None, None, None
         self._mover, self._tets = None, None
         self._displays.clear()
         self._shown = None
@@ -218,10 +202,19 @@ class Engine(threading.Thread):
         self._paint_all()
         self._stat()
 
-    def _tell_report(self, body: StudioBody, report: CheckReport) -> None:
-        if body is self._body:
-            self._report = report
-            self._outlet.tell(body.event(report))
+    def _tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
+        if body is not self._body:
+            return
+        self._report, self._smooth = report, smooth
+        self._outlet.tell(self._body_event(body))
+        if smooth is not None:
+            for tab in self._outlet.tabs():
+                self._outlet.smooth_for(tab, smooth)
+
+    def _body_event(self, body: StudioBody) -> events.Body:
+        event = body.event(self._report)
+        event.smooth = self._smooth is not None
+        return event
 
     def _forget(self) -> None:
         self._wants_play = False
@@ -231,8 +224,11 @@ class Engine(threading.Thread):
     def _welcome(self, tab: Tab) -> None:
         body = self._body
         if body is not None:
-            self._outlet.tell_one(tab, body.event(self._report))
-            self._outlet.topology_for(tab, body.packed())
+            self._outlet.tell_one(tab, self._body_event(body))
+            packed = self._packed_tets() if tab.view.mode == "tets" else body.packed()
+            self._outlet.topology_for(tab, packed)
+            if self._smooth is not None:
+                self._outlet.smooth_for(tab, self._smooth)
             self._outlet.tell_one(tab, self._plot(self._rows, clear=True))
             tab.painted = None
             self._paint(tab)
@@ -360,6 +356,29 @@ class Engine(threading.Thread):
         self._rows = [[*row, *[None] * (width - len(row))] for row in self._rows]
         self._fresh = []
         self._tell_plot(clear=True)
+
+    def _shown_now(self, name: str, text: str) -> Shown:
+        body = self._require_body()
+        plot = self._plot(self._rows, clear=False)
+        return Shown(
+            name=name,
+            text=text,
+            body=body,
+            positions=self._positions(body),
+            result=self._result if self._shown is None else None,
+            columns=plot.names,
+            units=plot.units,
+            rows=plot.rows,
+            factors=[1.0] * len(body.setup.design.loads)
+            if self._mover is None
+            else self._mover.factors,
+        )
+
+    def _positions(self, body: StudioBody) -> NDArray[np.float64]:
+        """Where the vertices are that are shown [m]."""
+        if self._shown is not None:
+            return self._shown.positions.astype(np.float64)
+        return body.mesh.vertices if self._mover is None else self._mover.positions()
 
     # Time
 
@@ -532,8 +551,7 @@ class Engine(threading.Thread):
         display = self._display_of(body, tets=tets)
         if shown is None and mover is not None:
             return mover.packed(number, field, seq, flags, display if tets else None)
-        positions = self.positions()
-        assert positions is not None  # there is a body
+        positions = self._positions(body)
         return display.pack_frame(
             positions,
             topology=body.topology,
@@ -675,8 +693,7 @@ class Engine(threading.Thread):
         if shown >= len(body.surface.vertices):
             raise SimulationError("pick", f"vertex {shown} is not on the surface")
         vertex = int(body.surface.vertices[shown])
-        positions = self.positions()
-        assert positions is not None  # there is a body
+        positions = self._positions(body)
         rest, now = body.mesh.vertices[vertex], positions[vertex]
         values = []
         for field in FIELDS:

@@ -10,6 +10,7 @@ from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.smooth import pack_smooth
 
 #: A wish waits this long for a newer one, as a slider that is dragged sends many [s].
 PATIENCE: Final = 0.01
@@ -28,7 +29,8 @@ class Mesher(threading.Thread):
     done
         Called with each body.
     examined
-        Called with a body and what the doctor says of it, if no newer wish came meanwhile.
+        Called with a body, what the doctor says of it, and its smooth surface if it has one, unless
+        a newer wish came meanwhile.
     failed
         Called with the revision of a design that could not be meshed, and the reason.
     """
@@ -36,7 +38,7 @@ class Mesher(threading.Thread):
     def __init__(
         self,
         done: Callable[[StudioBody], None],
-        examined: Callable[[StudioBody, CheckReport], None],
+        examined: Callable[[StudioBody, CheckReport, bytes | None], None],
         failed: Callable[[int, VoxSoftError], None],
     ) -> None:
         super().__init__(name="studio-mesher", daemon=True)
@@ -78,7 +80,7 @@ class Mesher(threading.Thread):
             with self._changed:
                 newer = self._wish is not None or self._ended
             if not newer:
-                self._examined(body, body.report())
+                self._examined(body, body.report(), pack_smooth(wish.design, body.topology))
 
     def _next(self) -> _Wish | None:
         with self._changed:

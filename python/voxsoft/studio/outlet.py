@@ -29,6 +29,10 @@ class Outlet(Protocol):
         """Send a topology to one tab."""
         ...
 
+    def smooth_for(self, tab: Tab, packed: bytes) -> None:
+        """Send a smooth surface to one tab."""
+        ...
+
     def tabs(self) -> list[Tab]:
         """All tabs that are open."""
         ...
@@ -76,6 +80,10 @@ class Tabs:
     def topology_for(self, tab: Tab, packed: bytes) -> None:
         """Send a topology to one tab."""
         self._soon(tab.put_topology, packed)
+
+    def smooth_for(self, tab: Tab, packed: bytes) -> None:
+        """Send a smooth surface to one tab."""
+        self._soon(tab.put_smooth, packed)
 
     def frame(self, tab: Tab, packed: bytes) -> None:
         """Offer a frame to a tab."""

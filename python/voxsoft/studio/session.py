@@ -24,6 +24,7 @@ from voxsoft.studio.compared import compared
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.edits import with_value
 from voxsoft.studio.engine import Engine
+from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.outlet import Tabs
@@ -386,8 +387,8 @@ class Session:
     def _meshed(self, body: StudioBody) -> None:
         self.engine.show(body)
 
-    def _examined(self, body: StudioBody, report: CheckReport) -> None:
-        self.engine.tell_report(body, report)
+    def _examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
+        self.engine.tell_report(body, report, smooth)
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
         with self._lock:
@@ -421,8 +422,26 @@ class Session:
         return events.Exported(format=format, url=f"/download/{key}", name=file.name)
 
     def export(self, format: str, options: dict[str, Any]) -> events.Exported:
-        """Write what is shown in a format, ready to be fetched."""
-        raise FileError("export", f"{format!r} is no format that is known")
+        """Write what is shown, or a run of `options`, in a format, ready to be fetched.
+
+        Raises
+        ------
+        VoxSoftError
+            It cannot be written in that format.
+        """
+        folder = make_folder(self.own / "exports" / uuid.uuid4().hex[:12])
+        run = options.get("run")
+        if isinstance(run, str):
+            written = export_run(self.list.folder_of(run), format, options, folder)
+        else:
+            written = export_shown(self._shown(), format, options, folder)
+        return self.offer(written, format)
+
+    def _shown(self) -> Shown:
+        """What is on the screen now."""
+        with self._lock:
+            name, text = Path(self.document.name).stem, self.document.text
+        return self.engine.shown(name, text)
 
     def thumbnail(self, run: str) -> Path | None:
         """The picture of a run, if there is one."""

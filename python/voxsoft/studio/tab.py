@@ -100,6 +100,11 @@ class Tab:
         self._queue.append(packed)
         self._wake.set()
 
+    def put_smooth(self, packed: bytes) -> None:
+        """Queue a smooth surface, which goes beside the frames."""
+        self._queue.append(packed)
+        self._wake.set()
+
     def put_frame(self, packed: bytes) -> None:
         """Offer a frame; it takes the place of one that waits."""
         self._frame = packed

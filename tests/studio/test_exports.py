@@ -1,0 +1,92 @@
+"""Files of what is shown, read back by the programs they are for."""
+
+import asyncio
+import io
+import tomllib
+import zipfile
+
+import httpx
+import meshio
+import numpy as np
+import pytest
+
+from voxsoft.files import read_mesh
+
+
+def run(scenario):
+    return asyncio.run(asyncio.wait_for(scenario, 60))
+
+
+def export(studio, format, **options):
+    headers = {"origin": studio.origin}
+    key = {"token": studio.token}
+    answer = httpx.post(
+        f"{studio.origin}/export",
+        params=key,
+        json={"format": format, "options": options},
+        headers=headers,
+        timeout=60,
+    )
+    if answer.status_code != 200:
+        return answer
+    return httpx.get(f"{studio.origin}{answer.json()['url']}", params=key, timeout=60)
+
+
+@pytest.mark.parametrize(("unit", "meter"), [("mm", 1e-3), ("m", 1.0)])
+def test_a_surface_has_the_size_and_unit_asked_for(at_rest, tmp_path, unit, meter):
+    for format in ("stl", "obj"):
+        file = tmp_path / f"body.{format}"
+        file.write_bytes(export(at_rest, format, unit=unit).content)
+        found = meshio.read(file)
+        assert np.ptp(found.points, axis=0) * meter == pytest.approx([0.05, 0.05, 0.035], rel=1e-5)
+        assert len(found.cells_dict["triangle"]) == 1408
+    file.write_bytes(export(at_rest, "obj", unit=unit, deformed=True).content)
+    assert np.ptp(meshio.read(file).points[:, 2]) * meter > 0.04  # it rose by some 13 mm
+
+
+@pytest.mark.parametrize("format", ["vtu", "msh", "inp"])
+def test_a_mesh_is_read_back(at_rest, tmp_path, format):
+    file = tmp_path / f"body.{format}"
+    file.write_bytes(export(at_rest, format).content)
+    mesh = read_mesh(file)
+    assert (len(mesh.vertices), len(mesh.tets)) == (660, 1500)
+    if format == "vtu":
+        moved = meshio.read(file).point_data["displacement"]
+        assert moved[:, 2].max() == pytest.approx(0.013, abs=1e-3)
+
+
+def test_text_tables_voxels_pictures_and_folders(at_rest):
+    text = export(at_rest, "toml").text
+    assert "= radius - wall" in text
+    assert "=" not in tomllib.loads(export(at_rest, "toml", resolved=True).text)["shapes"]["cavity"]
+    head, *rows = export(at_rest, "csv").text.splitlines()
+    assert head == "time_s,residual,elastic_energy_J,kinetic_energy_J,top_m"
+    assert len(rows) >= 2
+    assert np.load(io.BytesIO(export(at_rest, "npy").content)).sum() == 300
+    picture = export(at_rest, "png").content
+    assert picture.startswith(b"\x89PNG")
+    assert len(picture) > 10_000
+    names = zipfile.ZipFile(io.BytesIO(export(at_rest, "zip").content)).namelist()
+    assert {"cylinder/design.toml", "cylinder/summary.json", "cylinder/result.vtu"} <= set(names)
+
+
+@pytest.mark.parametrize(
+    ("format", "options", "words"),
+    [
+        ("exe", {}, "is not known"),
+        ("stl", {"unit": "kg"}, "unit"),
+        ("png", {"scale": 1000}, "is no scale"),
+        ("stl", {"run": "../x"}, "no name for a folder"),
+        ("stl", {"run": "never"}, "not in the list"),
+    ],
+)
+def test_what_cannot_be_exported_is_said(at_rest, format, options, words):
+    answer = export(at_rest, format, **options)
+    assert answer.status_code == 422
+    assert words in f"{answer.json()['where']} {answer.json()['what']}"
+
+
+def test_a_download_that_is_not_there_is_said(at_rest):
+    answer = httpx.get(f"{at_rest.origin}/download/nothing", params={"token": at_rest.token})
+    assert answer.status_code == 404
+    assert "export it again" in answer.json()["hint"]
