@@ -158,3 +158,73 @@ fn run_groups(task: &Task<'_>, groups: usize, queue: &AtomicUsize) -> Vec<(usize
     }
     Group::new(task).run(queue)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh};
+    use voxsoft_voxel::{Grid, tet_mesh};
+
+    fn beam() -> Problem {
+        let mut grid = Grid::empty([8, 2, 1], [0.0; 3], 5e-3, u64::MAX).unwrap();
+        grid.fill_box([0.0; 3], [0.04, 0.01, 0.005], 1);
+        let tets = tet_mesh(&grid, u64::MAX).unwrap();
+        let mesh = Mesh {
+            tet_part: vec![0; tets.tets.len()],
+            tet_block: (0..tets.tets.len() as u32).map(|t| t / 5).collect(),
+            tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+            vertices: tets.vertices,
+            ..Mesh::default()
+        };
+        let material = LatticeMaterial::from_moduli(5e3, 2e4, 1070.0).unwrap();
+        let body = Body::new(&mesh, &[material]).unwrap();
+        let wall = (0..mesh.vertices.len() as u32).filter(|&v| mesh.vertices[v as usize][0] < 1e-9);
+        let clamp = Clamp::fixed(wall.collect());
+        let weight = Load::gravity([0.0, 0.0, -9.81]);
+        Problem::new(body, vec![clamp], vec![weight], None).unwrap()
+    }
+
+    fn settled_on(arch: pulp::Arch, variants: &[Variant]) -> Vec<Settled> {
+        let mut ensemble = Ensemble::of(&beam()).unwrap();
+        ensemble.arch = arch;
+        ensemble.settle(variants, 1e-9, &|| false)
+    }
+
+    fn variants() -> Vec<Variant> {
+        let each = |n: i32| Variant {
+            edge: 1.6f64.powi(n - 4),
+            bulk: 1.0,
+            weight: 1.0,
+            forces: 1.0,
+        };
+        (0..11).map(each).collect()
+    }
+
+    #[test]
+    fn one_lane_finds_what_many_do() {
+        let one = settled_on(pulp::Arch::Scalar, &variants());
+        let many = settled_on(pulp::Arch::new(), &variants());
+        for (one, many) in one.iter().zip(&many) {
+            assert_eq!((one.status, many.status), (Status::AtRest, Status::AtRest));
+            let numbers = one.positions.iter().flatten();
+            for (a, b) in numbers.zip(many.positions.iter().flatten()) {
+                // Without fused operations sums round otherwise; both leave 1e-9 of the load.
+                assert!((a - b).abs() < 1e-9, "{a} {b}");
+            }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn four_lanes_give_the_bits_of_eight() {
+        let (Some(four), Some(eight)) = (pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) else {
+            return;
+        };
+        let (four, eight) = (pulp::Arch::V3(four), pulp::Arch::V4(eight));
+        assert_eq!((group::count(four), group::count(eight)), (4, 8));
+        assert_eq!(
+            settled_on(four, &variants()),
+            settled_on(eight, &variants())
+        );
+    }
+}
