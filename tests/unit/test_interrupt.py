@@ -15,6 +15,7 @@ from pydantic import BaseModel, model_serializer
 import voxsoft as vs
 from voxsoft import _core
 from voxsoft._interrupt import Interrupts
+from voxsoft.design import families
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
 
@@ -113,7 +114,14 @@ def factorized_tangent():
     return lambda: _core.adjoint(setup.problem, rest, np.ones((1, *rest.shape)))
 
 
-@pytest.mark.parametrize("prepare", [checked_mesh, factorized_tangent])
+def many_candidates():
+    """Some thousand Newton iterations of candidates in lanes."""
+    ensemble = _core.Ensemble.of(Setup.of(families.beam()).problem)
+    factors = np.ones((2_000, 4))
+    return lambda: ensemble.settle(factors, 1e-6)
+
+
+@pytest.mark.parametrize("prepare", [checked_mesh, factorized_tangent, many_candidates])
 def test_long_work_that_cannot_be_stopped_is_left_behind(prepare):
     task = prepare()
 

@@ -59,6 +59,17 @@ def test_what_lanes_do_not_know_is_solved_alone(changes):
     assert np.array_equal(found[1].positions, expected.positions)
 
 
+def test_loads_are_scaled_for_those_solved_alone_too():
+    """Relaxation to 1e-5 of the load, beside lanes: some 1e-4 of the sag of a slender beam."""
+    relaxed = short_beam(solver=families.beam().solver.model_copy(update={"method": "xpbd"}))
+    alone = simulate_many(relaxed, [SOFT, STIFF], load_factors=[0.5, 2.0])
+    lanes = simulate_many(short_beam(), [SOFT, STIFF], load_factors=[0.5, 2.0])
+    for one, other in zip(alone, lanes, strict=True):
+        tip = other.probes["station-9"]
+        assert (one.way, other.way) == ("alone", "lanes")
+        assert one.probes["station-9"] == pytest.approx(tip, abs=1e-3 * np.linalg.norm(tip))
+
+
 def test_other_models_are_solved_alone_beside_lanes():
     rubber = NeoHookean(young="60 kPa", poisson=0.49)
     found = simulate_many(short_beam(), [SOFT, rubber, STIFF])

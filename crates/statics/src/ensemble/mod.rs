@@ -10,11 +10,11 @@
 //!
 //! # Why Newton's method and not relaxation
 //!
-//! Of a beam of 20 × 2 × 2 voxels a step of relaxation takes some 27,000 instructions and a Newton step some
-//! 700,000, two thirds of them products of the factorization. Relaxation needs 900 to 7,500 steps to
-//! 10⁻⁶ of the load, Newton's method 3 to 10 for what bends moderately and some 40 for what hangs like
-//! a rope. Both fill the lanes alike; the second takes a tenth of the instructions. The products grow
-//! with the square of the body's cross section, so that squat bodies are better relaxed
+//! For a beam of 20 × 2 × 2 voxels a step of relaxation is some 30,000 operations, and a Newton step some
+//! 400,000, of which 230,000 are products of the factorization. To 10⁻⁶ of the load relaxation takes 900
+//! to 7,500 steps, Newton's method 3 to 10 for what bends moderately and up to 50 for what hangs like
+//! a rope. Both fill the lanes alike; the second takes a tenth of the operations or less. The products
+//! grow with the square of the body's cross section, so that squat bodies are better relaxed
 //! ([`Ensemble::products`]).
 
 mod factor;
