@@ -29,7 +29,8 @@ def new_token() -> str:
 
 def content_policy(port: int) -> str:
     """Write what the page may load: its own files, and nothing from elsewhere."""
-    sockets = " ".join(f"ws://{host}:{port}" for host in LOOPBACK)
+    # A policy cannot name an IPv6 address, and reports one as an error.
+    sockets = " ".join(f"ws://{host}:{port}" for host in LOOPBACK if not host.startswith("["))
     rules = (
         "default-src 'none'",
         "script-src 'self' 'wasm-unsafe-eval'",

@@ -1,0 +1,183 @@
+"""The view and the run pane, driven as a user drives them."""
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+
+def picture(tab):
+    box = tab.page.locator(".viewport canvas").bounding_box()
+    png = tab.page.screenshot(clip=box)
+    return np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+
+
+def colors(tab):
+    return len(np.unique(picture(tab).reshape(-1, 3), axis=0))
+
+
+def changed(before, after):
+    """How many pixels differ visibly."""
+    return int((np.abs(before - after).max(axis=2) > 12).sum())
+
+
+def farthest_vertex(tab):
+    """A vertex of the free end: the one that lies farthest along x."""
+    return tab.page.evaluate(
+        """() => {
+          let [best, far] = [0, -Infinity];
+          for (let i = 0; ; i++) {
+            const at = voxsoft.vertexPosition(i);
+            if (!at) return best;
+            if (at[0] > far) [best, far] = [i, at[0]];
+          }
+        }"""
+    )
+
+
+def test_time_runs_and_the_body_sags(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.02")
+    vertex = farthest_vertex(tab)
+    assert tab.page.evaluate(f"voxsoft.vertexPosition({vertex})[2]") < 0.01
+    assert colors(tab) > 200
+    assert tab.errors == []
+
+
+def test_a_pull_moves_the_vertex_under_the_mouse(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.01")
+    vertex = farthest_vertex(tab)
+    x, y = tab.page.evaluate(f"voxsoft.screenOf({vertex})")
+    # The corner itself may lie on the silhouette: press a little inside of it.
+    cx, cy = tab.middle()
+    px, py = x + 0.08 * (cx - x), y + 0.08 * (cy - y)
+    tab.page.mouse.move(px, py)
+    tab.page.mouse.down()
+    tab.page.mouse.move(px, py - 120, steps=6)
+    tab.find("grab").wait_for()
+    tab.until("document.querySelector('.view-label.force') !== null")
+    before = tab.page.evaluate(f"voxsoft.vertexPosition({vertex})[2]")
+    tab.until(f"voxsoft.vertexPosition({vertex})[2] > {before} + 0.001")
+    assert "N" in tab.page.locator(".view-label.force").inner_text()
+    tab.shot("studio-pull")
+    tab.page.mouse.up()
+    tab.until("document.querySelector('[data-testid=grab]') === null")
+    assert tab.errors == []
+
+
+def test_shift_leaves_a_spring_pinned_and_its_word_takes_it_away(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.01")
+    x, y = tab.middle()
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x, y - 60, steps=4)
+    tab.find("grab").wait_for()
+    tab.page.keyboard.down("Shift")
+    tab.page.mouse.up()
+    tab.page.keyboard.up("Shift")
+    label = tab.page.locator("button.view-label.force")
+    label.wait_for()
+    assert tab.find("grab").count() == 1
+    label.click()
+    tab.until("document.querySelector('[data-testid=grab]') === null")
+
+
+def test_a_load_follows_its_slider_by_keyboard(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.01")
+    slider = tab.find("pane-run").locator("input[type=range]").first
+    before = float(slider.input_value())
+    seq = tab.page.evaluate("voxsoft.seq")
+    slider.focus()
+    for _ in range(5):
+        tab.page.keyboard.press("ArrowRight")
+    tab.until(f"voxsoft.seq > {seq}")
+    tab.until(
+        "Number(document.querySelector('[data-testid=pane-run] input[type=range]').value)"
+        f" > {before}"
+    )
+    assert tab.errors == []
+
+
+def test_a_stored_frame_is_held_and_live_goes_back(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.05")
+    scrubber = tab.find("scrubber")
+    scrubber.focus()
+    tab.page.keyboard.press("Home")
+    tab.until("voxsoft.state === 'past'")
+    tab.until("voxsoft.time < 0.03")
+    held = tab.page.evaluate("voxsoft.time")
+    assert tab.find("live").get_attribute("aria-pressed") == "false"
+    tab.find("live").click()
+    tab.until(f"voxsoft.time > {held} + 0.02")
+    assert tab.find("live").get_attribute("aria-pressed") == "true"
+
+
+def test_reset_goes_back_to_the_unloaded_shape(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.02")
+    tab.find("reset").click()
+    tab.until("voxsoft.time === 0")
+    vertex = farthest_vertex(tab)
+    # Positions travel with 16 bits over the size of the body: a micrometer here.
+    x = tab.page.evaluate(f"voxsoft.vertexPosition({vertex})[0]")
+    assert x == pytest.approx(0.04, abs=2e-6)
+
+
+def test_each_way_to_show_the_body_draws_another_picture(tab):
+    show = tab.page.get_by_label("Show as")
+    plain = picture(tab)
+    show.select_option("wireframe")
+    tab.until("voxsoft.triangles === 0")
+    assert changed(plain, picture(tab)) > 500
+    show.select_option("tets")
+    # Four faces for each of the five tetrahedra of 8 x 2 x 2 voxels.
+    tab.until("voxsoft.triangles === 640")
+    show.select_option("voxels")
+    surface = tab.until("voxsoft.triangles !== 640 && voxsoft.triangles")
+    assert surface == 2 * 2 * (2 * 2 + 2 * 8 + 2 * 8)
+    tab.find("section").click()
+    tab.find("section-tools").wait_for()
+    tab.until("document.querySelector('.view-tools') !== null")
+    assert changed(plain, picture(tab)) > 500
+    assert tab.errors == []
+
+
+def test_keys_turn_the_camera_and_a_new_mesh_leaves_it(tab):
+    before = tab.page.evaluate("voxsoft.screenOf(0)")
+    tab.page.locator(".viewport canvas").focus()
+    tab.page.keyboard.press("1")
+    tab.until(
+        f"Math.hypot(voxsoft.screenOf(0)[0] - {before[0]}, voxsoft.screenOf(0)[1] - {before[1]}) > 5"
+    )
+    corner = tab.page.evaluate("voxsoft.vertexPosition(0)")
+    place = tab.page.evaluate("voxsoft.screenOf(0)")
+    topology = tab.page.evaluate("voxsoft.topology")
+    tab.page.locator(".dv-default-tab", has_text="Design").click()
+    field = tab.find("pane-design").get_by_label("length", exact=True)
+    field.fill("5.5 cm")
+    field.press("Enter")
+    tab.until(f"voxsoft.topology !== {topology} && voxsoft.triangles > 0")
+    tab.until("voxsoft.vertexPosition(0) !== null")
+    assert tab.page.evaluate("voxsoft.vertexPosition(0)") == pytest.approx(corner, abs=1e-5)
+    # The first vertex is the corner at the clamp, which no length moves: it stays on its pixel.
+    assert tab.page.evaluate("voxsoft.screenOf(0)") == pytest.approx(place, abs=0.1)
+    tab.page.keyboard.press("Escape")
+    tab.page.locator(".viewport canvas").focus()
+    tab.page.keyboard.press("Control+z")
+    tab.until("Math.abs(voxsoft.vertexPosition(0)[0]) < 1e-5")
+
+
+def test_a_click_tells_all_values_and_adds_a_plot(tab):
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.02")
+    tab.page.mouse.click(*tab.middle())
+    picked = tab.find("picked")
+    picked.wait_for()
+    assert "mm" in picked.inner_text()
+    tab.find("plot-picked").click()
+    tab.until("document.querySelectorAll('[data-testid=plot-probes] .plot-key span').length === 2")
