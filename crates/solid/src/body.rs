@@ -1,5 +1,7 @@
 //! The body: masses and constraints of a tetrahedral mesh with materials.
 //!
+//! Long because a mesh is turned into all kinds of constraints in one pass over its tetrahedra.
+//!
 //! # The share of an edge
 //!
 //! An edge inside the body is worth a full spring, one on its surface less, or a thin wall would be
