@@ -66,7 +66,7 @@ def test_text_tables_voxels_pictures_and_folders(at_rest):
     picture = export(at_rest, "png").content
     assert picture.startswith(b"\x89PNG")
     assert len(picture) > 10_000
-    names = zipfile.ZipFile(io.BytesIO(export(at_rest, "zip").content)).namelist()
+    names = zipfile.ZipFile(io.BytesIO(export(at_rest, "run").content)).namelist()
     assert {"cylinder/design.toml", "cylinder/summary.json", "cylinder/result.vtu"} <= set(names)
 
 

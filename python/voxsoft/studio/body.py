@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -100,7 +101,7 @@ class StudioBody:
         """The tetrahedra."""
         return self.setup.mesh
 
-    @property
+    @cached_property
     def load_values(self) -> list[float]:
         """Size of each load in the end, SI."""
         return [_load(self.setup, index).value for index in range(len(self.setup.design.loads))]

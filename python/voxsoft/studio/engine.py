@@ -1,4 +1,7 @@
-"""The thread that moves the body in real time and packs what the tabs see."""
+"""The thread that moves the body in real time and packs what the tabs see.
+
+Long because every command about time and pictures is obeyed here, on one thread.
+"""
 
 from __future__ import annotations
 
@@ -10,22 +13,21 @@ from functools import singledispatchmethod
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
-from voxsoft import _core
 from voxsoft.errors import SimulationError, VoxSoftError
-from voxsoft.simulation import Result, simulate
+from voxsoft.simulation import Result
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.canvas import Canvas, Moment
 from voxsoft.studio.exports import Shown
-from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED, pack_points, value_at
+from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.outlet import Outlet
 from voxsoft.studio.past import Past, StoredFrame
+from voxsoft.studio.plots import Plots
+from voxsoft.studio.rest import RestSearch
 from voxsoft.studio.sentences import at_rest, diverged
-from voxsoft.studio.surface import ShrunkTets, pack_tets
 from voxsoft.studio.tab import Tab
 
 #: Time between two frames [s].
@@ -35,15 +37,7 @@ SHARE_OF_FRAME: Final = 0.8
 #: Time between two statistics, and between two batches of rows for the plots [s].
 STAT_TIME: Final = 0.1
 PLOT_TIME: Final = 1.0 / 15.0
-#: Rows of the plots that are kept for a tab that comes later.
-MOST_ROWS: Final = 5_000
-
-
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
-
-
-class _StoppedError(Exception):
-    """The search for rest was given up because something else was asked."""
 
 
 class Engine(threading.Thread):
@@ -71,12 +65,9 @@ class Engine(threading.Thread):
         self._steps_left: int | None = None
         self._method: str = "auto"
         self._frame = 0
-        self._probes: list[tuple[str, NDArray[np.uint32], NDArray[np.float64]]] = []
-        self._rows: list[list[float | None]] = []
-        self._fresh: list[list[float | None]] = []
-        self._tets: ShrunkTets | None = None
-        self._displays: dict[bool, _core.Display] = {}
-        self._search = 0
+        self._plots = Plots()
+        self._canvas: Canvas | None = None
+        self._search: RestSearch | None = None
         self._progress: float | None = None
         self._result: Result | None = None
         self._last_stat = self._last_plot = 0.0
@@ -179,24 +170,20 @@ class Engine(threading.Thread):
         self._stat()
 
     def _show(self, body: StudioBody) -> None:
-        before = self._body
-        self._search += 1
-        self._body, self._report, self._result, self._smooth = body, None, None, None
-        self._mover, self._tets = None, None
-        self._displays.clear()
+        self._stop_search()
+        self._body, self._canvas = body, Canvas(body)
+        self._plots.begin(body)
+        self._report = self._result = self._smooth = None
+        self._mover = None
         self._shown = None
         self._past, self._frame = Past(), 0
-        self._rows, self._fresh = [], []
-        self._probes = self._named_probes(body) + (
-            [] if before is None else self._kept_probes(body, before)
-        )
         self._state = "paused"
         self._sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
         self._outlet.tell(body.event())
-        self._outlet.topology(body.packed(), "surface")
-        self._tell_tets()
+        for mode in {tab.view.mode for tab in self._outlet.tabs()}:
+            self._outlet.topology(self._canvas.topology(mode), mode)
         self._forget_pictures()
-        self._tell_plot(clear=True)
+        self._outlet.tell(self._plots.whole())
         if self._wants_play:
             self._play()
         self._paint_all()
@@ -222,14 +209,12 @@ class Engine(threading.Thread):
             self._state = "paused"
 
     def _welcome(self, tab: Tab) -> None:
-        body = self._body
-        if body is not None:
-            self._outlet.tell_one(tab, self._body_event(body))
-            packed = self._packed_tets() if tab.view.mode == "tets" else body.packed()
-            self._outlet.topology_for(tab, packed)
+        if self._body is not None and self._canvas is not None:
+            self._outlet.tell_one(tab, self._body_event(self._body))
+            self._outlet.topology_for(tab, self._canvas.topology(tab.view.mode))
             if self._smooth is not None:
                 self._outlet.smooth_for(tab, self._smooth)
-            self._outlet.tell_one(tab, self._plot(self._rows, clear=True))
+            self._outlet.tell_one(tab, self._plots.whole())
             tab.painted = None
             self._paint(tab)
         self._outlet.tell_one(tab, self._stat_event())
@@ -242,9 +227,8 @@ class Engine(threading.Thread):
     def _(self, command: commands.View, tab: Tab) -> None:
         changed = command.mode != tab.view.mode
         tab.view = command
-        if changed and self._body is not None:
-            packed = self._body.packed() if command.mode == "surface" else self._packed_tets()
-            self._outlet.topology_for(tab, packed)
+        if changed and self._canvas is not None:
+            self._outlet.topology_for(tab, self._canvas.topology(command.mode))
         tab.painted = None
         self._paint(tab)
 
@@ -257,7 +241,7 @@ class Engine(threading.Thread):
 
     @_obey.register
     def _(self, command: commands.Pause, tab: Tab) -> None:
-        self._search += 1
+        self._stop_search()
         self._wants_play = False
         if self._state in ("playing", "solving"):
             self._state, self._sentence, self._progress = "paused", "", None
@@ -275,16 +259,16 @@ class Engine(threading.Thread):
 
     @_obey.register
     def _(self, command: commands.Reset, tab: Tab) -> None:
-        self._search += 1
+        self._stop_search()
         self._wants_play = False
         self._shown, self._result = None, None
         self._past, self._frame = Past(), 0
-        self._rows, self._fresh = [], []
+        self._plots.clear()
         if self._mover is not None:
             self._mover.reset()
         self._state = "paused" if self._body is not None else "empty"
         self._sentence, self._progress = "", None
-        self._tell_plot(clear=True)
+        self._outlet.tell(self._plots.whole())
         self._paint_all()
         self._stat()
 
@@ -308,8 +292,7 @@ class Engine(threading.Thread):
     def _(self, command: commands.Grab, tab: Tab) -> None:
         self._to_present()
         mover, body = self._require_mover(), self._require_body()
-        if command.vertex >= len(body.surface.vertices):
-            raise SimulationError("grab", f"vertex {command.vertex} is not on the surface")
+        self._require_canvas(command.vertex)
         vertex = int(body.surface.vertices[command.vertex])
         mover.grab(command.id, vertex, command.target, command.stiffness, shown=command.vertex)
         self._stirred()
@@ -325,7 +308,7 @@ class Engine(threading.Thread):
         stored = self._past.at(command.frame)
         if stored is None:
             raise SimulationError("seek", "no frame is stored yet", "press play first")
-        self._search += 1
+        self._stop_search()
         self._wants_play = False
         self._shown, self._state, self._progress = stored, "past", None
         self._sentence = f"Frame {stored.number} of {self._past.last}"
@@ -340,51 +323,35 @@ class Engine(threading.Thread):
 
     @_obey.register
     def _(self, command: commands.Pick, tab: Tab) -> None:
-        self._outlet.tell_one(tab, self._picked(command.vertex))
+        canvas = self._require_canvas(command.vertex)
+        self._outlet.tell_one(tab, canvas.picked(self._moment, command.vertex))
 
     @_obey.register
     def _(self, command: commands.Probe, tab: Tab) -> None:
-        body = self._require_body()
-        if command.vertex >= len(body.surface.vertices):
-            raise SimulationError("probe", f"vertex {command.vertex} is not on the surface")
-        vertex = body.surface.vertices[command.vertex : command.vertex + 1]
-        name = f"vertex {command.vertex}"
-        self._probes = [each for each in self._probes if each[0] != name]
-        self._probes.append((name, vertex, np.ones(1)))
-        width = 4 + len(self._probes)
-        # A curve that begins later has no values before.
-        self._rows = [[*row, *[None] * (width - len(row))] for row in self._rows]
-        self._fresh = []
-        self._tell_plot(clear=True)
+        self._require_canvas(command.vertex)
+        self._plots.add_probe(command.vertex)
+        self._outlet.tell(self._plots.whole())
 
     def _shown_now(self, name: str, text: str) -> Shown:
         body = self._require_body()
-        plot = self._plot(self._rows, clear=False)
+        plot = self._plots.whole()
         return Shown(
             name=name,
             text=text,
             body=body,
-            positions=self._positions(body),
+            positions=self._require_canvas().positions(self._moment),
             result=self._result if self._shown is None else None,
             columns=plot.names,
             units=plot.units,
             rows=plot.rows,
-            factors=[1.0] * len(body.setup.design.loads)
-            if self._mover is None
-            else self._mover.factors,
+            factors=self._factors(body),
         )
-
-    def _positions(self, body: StudioBody) -> NDArray[np.float64]:
-        """Where the vertices are that are shown [m]."""
-        if self._shown is not None:
-            return self._shown.positions.astype(np.float64)
-        return body.mesh.vertices if self._mover is None else self._mover.positions()
 
     # Time
 
     def _play(self) -> None:
         self._require_mover()
-        self._search += 1
+        self._stop_search()
         self._result = None
         self._state, self._sentence, self._progress = "playing", "", None
         self._steps_left = None
@@ -394,7 +361,7 @@ class Engine(threading.Thread):
         self._result = None
         self._forget_pictures()
         if self._state in ("at-rest", "solving"):
-            self._search += 1
+            self._stop_search()
             self._state = "paused"
         if self._wants_play and self._state == "paused":
             self._play()
@@ -429,8 +396,9 @@ class Engine(threading.Thread):
             self._step_ms = 1e3 * took / steps
         self._speed += 0.2 * ((mover.time - before) / max(took, FRAME_TIME) - self._speed)
         self._frame += 1
-        self._past.keep(self._frame, mover.time, mover.positions())
-        self._record(mover)
+        positions = mover.positions()
+        self._past.keep(self._frame, mover.time, positions)
+        self._plots.record(mover, positions)
         if mover.state == "at-rest":
             self._state, self._sentence = "at-rest", at_rest(mover.time, mover.tolerance)
         elif mover.state == "diverged":
@@ -446,45 +414,38 @@ class Engine(threading.Thread):
         body = self._require_body()
         if body.refusal is not None:
             raise body.refusal
-        self._search += 1
-        search, method, outlet = self._search, self._method, self
-        factors = [1.0] * len(body.setup.design.loads)
-        if self._mover is not None:
-            factors = self._mover.factors
-        self._state, self._sentence, self._progress = "solving", "Looking for rest", None
-
-        def tell(steps: int, _: float, residual: float) -> None:
-            if outlet._search != search:
-                raise _StoppedError
-            outlet._inbox.put(lambda: outlet._searching(search, steps, residual))
-
-        def look() -> None:
-            try:
-                setup = body.under(factors)
-                found = simulate(setup, progress=tell, method=method, end_time=None)
-                outlet._inbox.put(lambda: outlet._found(search, found))
-            except _StoppedError:
-                return
-            except VoxSoftError as error:
-                sentence = str(error)
-                outlet._inbox.put(lambda: outlet._not_found(search, sentence))
-            except Exception as error:
-                sentence = f"{type(error).__name__}: {error}"
-                outlet._inbox.put(lambda: outlet._not_found(search, sentence))
-
-        threading.Thread(target=look, name="studio-rest", daemon=True).start()
+        self._stop_search()
+        self._state, self._sentence, self._progress = "solving", "Looking for rest", 0.0
+        self._search = RestSearch(body, self._factors(body), self._method, self)
+        self._search.start()
         self._stat()
 
-    def _searching(self, search: int, steps: int, residual: float) -> None:
-        if search == self._search and self._state == "solving":
-            self._sentence = (
-                f"Looking for rest: step {steps:,}, residual {residual:.1e} of the load"
-            )
+    def _stop_search(self) -> None:
+        if self._search is not None:
+            self._search.stop()
+            self._search = None
+
+    def searching(self, search: RestSearch, sentence: str, progress: float) -> None:
+        """Hear how far a search is."""
+        self._inbox.put(lambda: self._searching(search, sentence, progress))
+
+    def found(self, search: RestSearch, result: Result) -> None:
+        """Hear what a search found."""
+        self._inbox.put(lambda: self._found(search, result))
+
+    def not_found(self, search: RestSearch, sentence: str) -> None:
+        """Hear why a search found nothing."""
+        self._inbox.put(lambda: self._not_found(search, sentence))
+
+    def _searching(self, search: RestSearch, sentence: str, progress: float) -> None:
+        if search is self._search:
+            self._sentence, self._progress = sentence, progress
             self._stat()
 
-    def _found(self, search: int, result: Result) -> None:
-        if search != self._search:
+    def _found(self, search: RestSearch, result: Result) -> None:
+        if search is not self._search:
             return
+        self._search = None
         self._result, self._progress = result, None
         self._state = _STATES.get(result.status, "paused")
         self._sentence = (
@@ -501,9 +462,9 @@ class Engine(threading.Thread):
         self._paint_all()
         self._stat()
 
-    def _not_found(self, search: int, sentence: str) -> None:
-        if search == self._search:
-            self._progress = None
+    def _not_found(self, search: RestSearch, sentence: str) -> None:
+        if search is self._search:
+            self._search, self._progress = None, None
             self._halt("paused", sentence)
 
     # Pictures
@@ -519,81 +480,27 @@ class Engine(threading.Thread):
 
     def _paint(self, tab: Tab) -> None:
         """Pack what a tab shows, if it can take it and has not got it."""
-        body = self._body
-        if body is None or not tab.hungry:
+        body, canvas, view = self._body, self._canvas, tab.view
+        if body is None or canvas is None or not tab.hungry:
             return
         number = self._frame if self._shown is None else -self._shown.number
-        key = (body.topology, number, tab.view.field, tab.view.mode, self._state)
-        if tab.painted == key:
-            return
-        tab.painted = key
-        tets = tab.view.mode == "tets"
-        self._outlet.frame(tab, self._packed(body, tab.view.field, tets=tets, seq=tab.seq))
+        key = (body.topology, number, view.field, view.mode, self._state)
+        if tab.painted != key:
+            tab.painted = key
+            self._outlet.frame(tab, canvas.frame(self._moment, view.field, view.mode, tab.seq))
 
-    def _packed(self, body: StudioBody, field: int, *, tets: bool, seq: int = 0) -> bytes:
-        shown, mover = self._shown, self._mover
+    @property
+    def _moment(self) -> Moment:
+        shown = self._shown
+        positions = None if shown is None else shown.positions.astype(np.float64)
         number = self._frame if shown is None else shown.number
-        flags, seq = self._flags(), seq & 0xFFFF_FFFF
-        if body.refusal is not None:
-            # Nothing moves what cannot be solved, and the core holds no such problem.
-            rest = body.mesh.vertices
-            points = self._shrunk(body).points(rest) if tets else rest[body.surface.vertices]
-            return pack_points(
-                points,
-                np.zeros(len(points)),
-                topology=body.topology,
-                frame=number,
-                time=0.0,
-                seq=seq,
-                field=field,
-                flags=flags,
-            )
-        display = self._display_of(body, tets=tets)
-        if shown is None and mover is not None:
-            return mover.packed(number, field, seq, flags, display if tets else None)
-        positions = self._positions(body)
-        return display.pack_frame(
-            positions,
-            topology=body.topology,
-            frame=number,
-            field=field,
-            seq=seq,
-            flags=flags,
-            time=self._time,
-        )
-
-    def _display_of(self, body: StudioBody, *, tets: bool) -> _core.Display:
-        """What the core packs frames of, made once for each body."""
-        if tets not in self._displays:
-            size, problem = body.mesh.voxel_size or 0.0, body.setup.problem
-            if tets:
-                corners, tags = self._shrunk(body).corners, self._shrunk(body).tags
-                self._displays[tets] = _core.Display.tets(problem, corners, tags[::4].copy(), size)
-            else:
-                triangles = body.mesh.triangles.astype(np.uint32)
-                self._displays[tets] = _core.Display.surface(
-                    problem, triangles, body.surface.tags, size
-                )
-        return self._displays[tets]
+        return Moment(number, self._flags(), self._time, self._mover, positions)
 
     def _flags(self) -> int:
         flags = 0 if self._moving else PAUSED
         if self._state == "diverged":
             flags |= DIVERGED
         return flags | AT_REST if self._state == "at-rest" else flags
-
-    def _shrunk(self, body: StudioBody) -> ShrunkTets:
-        if self._tets is None:
-            self._tets = ShrunkTets.of(body.mesh, body.surface)
-        return self._tets
-
-    def _packed_tets(self) -> bytes:
-        body = self._require_body()
-        return pack_tets(self._shrunk(body), body.mesh, body.topology)
-
-    def _tell_tets(self) -> None:
-        if any(tab.view.mode == "tets" for tab in self._outlet.tabs()):
-            self._outlet.topology(self._packed_tets(), "tets")
 
     # Numbers
 
@@ -603,62 +510,10 @@ class Engine(threading.Thread):
             return self._shown.time
         return 0.0 if self._mover is None else self._mover.time
 
-    def _named_probes(
-        self, body: StudioBody
-    ) -> list[tuple[str, NDArray[np.uint32], NDArray[np.float64]]]:
-        try:
-            places = body.setup.places
-        except VoxSoftError:
-            return []
-        return [(name, place.vertices, place.weights) for name, place in places.items()]
-
-    def _kept_probes(
-        self, body: StudioBody, before: StudioBody
-    ) -> list[tuple[str, NDArray[np.uint32], NDArray[np.float64]]]:
-        """Probes that were set by hand, where the new body has a vertex at the same place."""
-        kept = []
-        for name, vertices, weights in self._probes:
-            if not name.startswith("vertex "):
-                continue
-            point = before.mesh.vertices[vertices[0]]
-            drawn = body.mesh.vertices[body.surface.vertices]
-            nearest = int(np.linalg.norm(drawn - point, axis=1).argmin())
-            kept.append(
-                (f"vertex {nearest}", body.surface.vertices[nearest : nearest + 1], weights)
-            )
-        return kept
-
-    def _record(self, mover: Mover) -> None:
-        body = self._require_body()
-        positions, rest = mover.positions(), body.mesh.vertices
-        moved = [
-            float(np.linalg.norm(weights @ (positions[vertices] - rest[vertices])))
-            for _, vertices, weights in self._probes
-        ]
-        row: list[float | None] = [mover.time, mover.residual, mover.elastic, mover.kinetic, *moved]
-        self._rows.append(row)
-        self._fresh.append(row)
-        if len(self._rows) > MOST_ROWS:
-            self._rows = self._rows[::2]
-
     def _flush_plot(self) -> None:
-        if self._fresh:
-            self._outlet.tell(self._plot(self._fresh, clear=False))
-            self._fresh = []
+        if (news := self._plots.news()) is not None:
+            self._outlet.tell(news)
         self._last_plot = time.perf_counter()
-
-    def _tell_plot(self, *, clear: bool) -> None:
-        self._outlet.tell(self._plot(self._rows, clear=clear))
-
-    def _plot(self, rows: list[list[float | None]], *, clear: bool) -> events.Plot:
-        names = ["time", "residual", "elastic energy", "kinetic energy"]
-        return events.Plot(
-            topology=0 if self._body is None else self._body.topology,
-            names=[*names, *(name for name, _, _ in self._probes)],
-            units=["s", "", "J", "J", *["m"] * len(self._probes)],
-            rows=list(rows),
-            clear=clear,
-        )
 
     def _stat(self) -> None:
         self._last_stat = time.perf_counter()
@@ -688,29 +543,19 @@ class Engine(threading.Thread):
             grabs=[] if mover is None else mover.grabs(),
         )
 
-    def _picked(self, shown: int) -> events.Picked:
-        body = self._require_body()
-        if shown >= len(body.surface.vertices):
-            raise SimulationError("pick", f"vertex {shown} is not on the surface")
-        vertex = int(body.surface.vertices[shown])
-        positions = self._positions(body)
-        rest, now = body.mesh.vertices[vertex], positions[vertex]
-        values = []
-        for field in FIELDS:
-            value = None if body.refusal is not None else self._value(body, field.id, shown)
-            values.append(
-                events.Value(field=field.id, name=field.name, value=value, unit=field.unit)
-            )
-        return events.Picked(
-            vertex=shown,
-            rest=(float(rest[0]), float(rest[1]), float(rest[2])),
-            position=(float(now[0]), float(now[1]), float(now[2])),
-            values=values,
-        )
+    def _factors(self, body: StudioBody) -> list[float]:
+        """How many times as large as in the design each load is."""
+        if self._mover is None:
+            return [1.0] * len(body.setup.design.loads)
+        return self._mover.factors
 
-    def _value(self, body: StudioBody, field: int, shown: int) -> float:
-        """A field at a vertex of the surface, to the 16 bits of a frame."""
-        return value_at(self._packed(body, field, tets=False), shown)
+    def _require_canvas(self, vertex: int = 0) -> Canvas:
+        """What draws the body, which must have a vertex on its surface."""
+        body = self._require_body()
+        if vertex >= len(body.surface.vertices):
+            raise SimulationError("vertex", f"{vertex} is not on the surface")
+        assert self._canvas is not None  # it comes with the body
+        return self._canvas
 
     def _require_body(self) -> StudioBody:
         if self._body is None:

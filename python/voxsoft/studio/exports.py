@@ -21,7 +21,7 @@ from voxsoft.studio.body import StudioBody
 from voxsoft.units import parse
 
 #: What can be written of the body that is shown.
-FORMATS: Final = ("toml", "stl", "obj", "vtu", "msh", "inp", "npy", "csv", "zip", "png")
+FORMATS: Final = ("toml", "stl", "obj", "vtu", "msh", "inp", "npy", "csv", "run", "png")
 _SURFACES: Final = ("stl", "obj")
 _MESHES: Final = ("vtu", "msh", "inp")
 #: Dots per inch of a picture of normal size.
@@ -106,7 +106,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         write_whole(target, array.getvalue())
     elif format == "csv":
         write_whole(target, _table(shown))
-    elif format == "zip":
+    elif format == "run":
+        target = target.with_suffix(".zip")
         _write_run(shown, target)
     elif format == "png":
         _draw(shown, target, options.get("scale", 1))
@@ -124,8 +125,8 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
         As for :func:`voxsoft.files.export`.
     """
     target = folder / f"{source.name}.{format}"
-    if format == "zip":
-        return _archive(source, target)
+    if format == "run":
+        return _archive(source, target.with_suffix(".zip"))
     unit = str(options.get("unit", "mm")) if format in _SURFACES else "m"
     files.export(source, target, deformed=bool(options.get("deformed", False)), unit=unit)
     return target
@@ -157,7 +158,7 @@ def _table(shown: Shown) -> str:
 
 def _write_run(shown: Shown, target: Path) -> None:
     if shown.result is None:
-        raise FileError("zip", "there is no state at rest yet", "look for rest, then export again")
+        raise FileError("run", "there is no state at rest yet", "look for rest, then export again")
     folder = target.with_suffix("")
     files.write_run(shown.result, folder)
     _archive(folder, target)

@@ -72,7 +72,7 @@ class Mover:
             retardation=solver.retardation or 0.0,
             tolerance=self.tolerance,
         )
-        self.loads = body.load_values
+        self.loads = list(body.load_values)
         self._final = list(self.loads)
 
     @staticmethod

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 from voxsoft import files
 from voxsoft.simulation import Result, simulate
 from voxsoft.studio.commands import RunSpec
+from voxsoft.studio.rest import digits_lost
 from voxsoft.studio.task import Task
 
 if TYPE_CHECKING:
@@ -35,8 +36,9 @@ def run_once(task: Task, progress: Progress) -> str:
             return
         last = now
         largest = max(largest, residual if math.isfinite(residual) else 0.0)
-        percent = _percent(design.solver.end_time, when, residual, largest)
-        progress.at(percent, 100, stage=f"residual {residual:.1e} of the load")
+        end = design.solver.end_time
+        share = when / end if end else digits_lost(residual, largest)
+        progress.at(min(99, int(100 * share)), 100, stage=f"residual {residual:.1e} of the load")
 
     result = simulate(design, progress=tell, **task.spec.solver)
     files.write_run(result, progress.folder)
@@ -51,15 +53,3 @@ def draw(result: Result, folder: Path) -> None:
     from voxsoft.plot import plot_body
 
     save_figure(plot_body(result), folder / THUMBNAIL)
-
-
-def _percent(end: float | None, when: float, residual: float, largest: float) -> int:
-    """How far a run is: of its end time, or of the digits its residual must still lose."""
-    from voxsoft.simulation.rest import DEFAULT_TOLERANCE
-
-    if end:
-        return min(99, round(100 * when / end))
-    if not largest > residual > 0:
-        return 0
-    lost = math.log(largest / residual) / math.log(largest / DEFAULT_TOLERANCE)
-    return min(99, max(0, round(100 * lost)))

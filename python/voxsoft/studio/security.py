@@ -13,7 +13,7 @@ from urllib.parse import parse_qs
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 #: Names by which a browser on this machine reaches it.
-LOOPBACK: Final = ("127.0.0.1", "localhost", "[::1]")
+LOOPBACK: Final = ("127.0.0.1", "localhost")
 
 _REFUSAL: Final = {
     "token": "this studio opens only by the address that `voxsoft studio` printed",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 import threading
 import uuid
@@ -22,6 +21,7 @@ from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
 from voxsoft.studio.compared import compared
 from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.edits import with_value
 from voxsoft.studio.engine import Engine
 from voxsoft.studio.exports import Shown, export_run, export_shown
@@ -39,10 +39,6 @@ from voxsoft.units import format_quantity
 
 #: Folder of the studio's own files below the runs.
 OWN_FOLDER: Final = ".studio"
-#: The text that was being edited, kept for the next start.
-DRAFT: Final = "draft.json"
-#: Seconds after a change in which the draft is written.
-DRAFT_WITHIN: Final = 1.0
 
 _KIND_NAMES: Final[dict[type, str]] = {
     commands.RunSpec: "run",
@@ -80,7 +76,7 @@ class Session:
         self._lock = threading.RLock()
         self._author: Tab | None = None
         self._downloads: dict[str, Path] = {}
-        self._draft_timer: threading.Timer | None = None
+        self._drafts = Drafts(self.own)
         self._notes: list[str] = []
         self.document = self._first_document(source)
 
@@ -92,7 +88,7 @@ class Session:
 
     def end(self) -> None:
         """Stop the threads and the jobs; the draft is written."""
-        self._write_draft()
+        self._keep_draft(now=True)
         self.jobs.end()
         self._mesher.end()
         self.engine.end()
@@ -177,7 +173,7 @@ class Session:
     def _(self, command: commands.Save, tab: Tab) -> None:
         path = None if command.path is None else Path(command.path)
         written = self.document.save(path)
-        self._write_draft()
+        self._keep_draft(now=True)
         self.tabs.tell(self.document.event())
         self.tabs.tell(events.Saved(what="document", path=str(written)))
 
@@ -376,7 +372,18 @@ class Session:
         """Tell everyone of the document as it is now, and mesh it if it is good."""
         self.tabs.tell(self.document.event())
         self._mesh()
-        self._write_draft_soon()
+        self._keep_draft()
+
+    def _keep_draft(self, *, now: bool = False) -> None:
+        """Keep what is not saved, within a second; what was kept before goes once it is saved."""
+        document = self.document
+        draft = None
+        if document.dirty:
+            draft = Draft(document.text, document.name, str(document.path or ""))
+        try:
+            self._drafts.keep(draft, now=now)
+        except VoxSoftError as error:
+            self.tabs.tell(events.Log(level="warning", text=f"the draft is not kept: {error}"))
 
     def _mesh(self) -> None:
         if self.document.valid and self.document.design is not None:
@@ -447,26 +454,19 @@ class Session:
         """The picture of a run, if there is one."""
         return self.list.picture(run)
 
-    # The draft
-
     def _first_document(self, source: Path | None) -> DesignDocument:
-        draft = self._read_draft()
-        if source is not None:
-            document = self._document_of(source)
-            same = draft is not None and draft["path"] == str(document.path)
-        elif draft is not None:
-            known = draft["path"] and Path(draft["path"]).is_file()
-            document = (
-                self._document_of(Path(draft["path"]))
-                if known
-                else DesignDocument(draft["text"], draft["name"], folder=self.runs.parent)
-            )
-            same = bool(known)
-        else:
+        """What to begin with: the source, with what was not saved of it; the draft; a template."""
+        draft = self._drafts.read()
+        if source is None and draft is None:
             text = families.family_text("cylinder")
             return DesignDocument(text, "cylinder.toml", folder=self.runs.parent, saved=text)
-        if same and draft is not None and draft["text"] != document.text:
-            document.replace(draft["text"])
+        known = draft.file if draft is not None else None
+        if source is None and known is None:
+            assert draft is not None
+            return DesignDocument(draft.text, draft.name, folder=self.runs.parent)
+        document = self._document_of(source or known or Path())
+        same = known is not None and known == document.path
+        if draft is not None and same and document.replace(draft.text):
             self._notes.append("Changes that were not saved are back; undo goes to the file.")
         return document
 
@@ -485,37 +485,3 @@ class Session:
         opened = DesignDocument.of_file(file)
         opened.path, opened.saved, opened.name = None, None, name
         return opened
-
-    def _read_draft(self) -> dict[str, Any] | None:
-        with suppress(OSError, ValueError):
-            draft = json.loads((self.own / DRAFT).read_text(encoding="utf-8"))
-            if isinstance(draft, dict) and all(
-                isinstance(draft.get(key), str) for key in ("text", "name", "path")
-            ):
-                return draft
-        return None
-
-    def _write_draft_soon(self) -> None:
-        if self._draft_timer is not None:
-            self._draft_timer.cancel()
-        self._draft_timer = threading.Timer(DRAFT_WITHIN, self._write_draft)
-        self._draft_timer.daemon = True
-        self._draft_timer.start()
-
-    def _write_draft(self) -> None:
-        with self._lock:
-            if self._draft_timer is not None:
-                self._draft_timer.cancel()
-                self._draft_timer = None
-            document = self.document
-            draft = self.own / DRAFT
-            try:
-                if document.dirty:
-                    make_folder(self.own)
-                    path = "" if document.path is None else str(document.path)
-                    content = {"text": document.text, "name": document.name, "path": path}
-                    write_whole(draft, json.dumps(content, ensure_ascii=False))
-                elif draft.exists():
-                    draft.unlink()
-            except (OSError, VoxSoftError) as error:
-                self.tabs.tell(events.Log(level="warning", text=f"the draft is not kept: {error}"))

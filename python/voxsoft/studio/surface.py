@@ -61,7 +61,7 @@ class Surface:
         Examples
         --------
         >>> from voxsoft.voxels import Voxels
-        >>> surface = Surface.of(Voxels.from_array(np.ones((2, 1, 1)), voxel_size=0.01).mesh())
+        >>> surface = Surface.of(Voxels.from_array([[[1]], [[1]]], voxel_size=0.01).mesh())
         >>> len(surface.vertices), len(surface.triangles), len(surface.edges)
         (12, 20, 20)
         """
