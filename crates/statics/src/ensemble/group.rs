@@ -56,8 +56,8 @@ pub(super) struct Group<'a> {
 
 impl<'a> Group<'a> {
     pub fn new(task: &'a Task<'a>) -> Self {
-        let layout = &task.ensemble.layout;
-        let width = task.ensemble.lanes();
+        let layout = task.layout;
+        let width = count(task.arch);
         let lists = |count: usize| vec![0.0; count * width];
         let vertices = layout.rest.len();
         let mut group = Self {
@@ -288,7 +288,7 @@ impl<'a> Group<'a> {
     }
 
     fn forces(&mut self) {
-        self.task.ensemble.arch.dispatch(Forces {
+        self.task.arch.dispatch(Forces {
             layout: self.layout,
             positions: &self.positions,
             edge: &self.edge,
@@ -302,7 +302,7 @@ impl<'a> Group<'a> {
     }
 
     fn tangents(&mut self) {
-        self.task.ensemble.arch.dispatch(Tangent {
+        self.task.arch.dispatch(Tangent {
             layout: self.layout,
             positions: &self.positions,
             edge: &self.edge,
@@ -312,7 +312,7 @@ impl<'a> Group<'a> {
             swellings: &self.swellings,
             blocks: &mut self.blocks,
         });
-        self.task.ensemble.arch.dispatch(Factor {
+        self.task.arch.dispatch(Factor {
             layout: self.layout,
             blocks: &mut self.blocks,
             negative: &mut self.negative,
@@ -320,12 +320,12 @@ impl<'a> Group<'a> {
     }
 
     fn advance(&mut self) {
-        self.task.ensemble.arch.dispatch(Solve {
+        self.task.arch.dispatch(Solve {
             layout: self.layout,
             blocks: &self.blocks,
             sides: &mut self.sides,
         });
-        self.task.ensemble.arch.dispatch(Advance {
+        self.task.arch.dispatch(Advance {
             layout: self.layout,
             positions: &mut self.positions,
             sides: &self.sides,
