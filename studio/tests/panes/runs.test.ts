@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import { FORMATS, obstacle, request } from "../../src/panes/export/formats";
-import { comparedRows } from "../../src/panes/runs/compared";
+import { comparedRows, unitIn } from "../../src/panes/runs/compared";
 import { ago, inTrash, matchesSearch } from "../../src/panes/runs/rows";
 import type { RunRow } from "../../src/protocol";
 
@@ -47,6 +47,15 @@ it("sets two designs side by side, with units and changes", () => {
     { name: "n", a: "2", b: "2", change: "", differs: false },
     { name: "more", a: "–", b: "x", change: "", differs: true },
   ]);
+});
+
+it("shows parameters in the unit in which their design writes them", () => {
+  const text = '[parameters]\nwall = { value = "5 mm", min = "2 mm" }\nn = 3\nw2 = "= 2*wall"';
+  expect(unitIn(text, "wall")).toBe("mm");
+  expect(unitIn(text, "n")).toBeNull();
+  expect(unitIn(text, "w2")).toBeNull();
+  const rows = comparedRows({ wall: 0.01 }, { wall: 0.005 }, () => "number", { a: text, b: text });
+  expect(rows[0]).toMatchObject({ a: "10 mm", b: "5 mm", change: "−50 %" });
 });
 
 describe("export", () => {

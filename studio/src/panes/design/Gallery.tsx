@@ -1,9 +1,9 @@
 import { useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import type { Template } from "../../protocol";
-import { openDocument } from "../../shell/actions";
 import { upload } from "../../shell/DropZone";
 import { useStudio } from "../../store/studio";
+import { openHere } from "./edits";
 
 // A sign for each shipped family: what it does under load, from the side.
 const SKETCHES: Readonly<Record<string, string>> = {
@@ -80,7 +80,7 @@ function Card(props: { template: Template; onOpened(): void }) {
       className="template"
       data-testid={`template-${template.name}`}
       onClick={() => {
-        openDocument({ t: "open", what: "template", name: template.name });
+        openHere("template", template.name);
         props.onOpened();
       }}
     >

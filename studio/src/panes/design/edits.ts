@@ -1,5 +1,5 @@
 // Changes of the document, from the form and from other panes; all end in the one text.
-import type { Diagnostic } from "../../protocol";
+import type { Diagnostic, OpenCommand } from "../../protocol";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 
@@ -30,6 +30,12 @@ export function replaceText(text: string): void {
   flushText();
   const rev = useStudio.getState().document?.rev ?? 0;
   send({ t: "text", rev, text });
+}
+
+/** Open another document; undo brings the one before back, so nothing is asked. */
+export function openHere(what: OpenCommand["what"], name: string): void {
+  flushText();
+  send({ t: "open", what, name });
 }
 
 interface Sliding {

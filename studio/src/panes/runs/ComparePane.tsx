@@ -2,8 +2,8 @@ import { useMemo } from "react";
 import { Button, Empty } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import type { Side } from "../../protocol";
-import { openDocument } from "../../shell/actions";
 import { useStudio } from "../../store/studio";
+import { openHere } from "../design/edits";
 import { type ComparedRow, comparedRows, otherDifferences } from "./compared";
 import "./runs.css";
 
@@ -35,7 +35,10 @@ export default function ComparePane() {
     );
   }
   const { a, b } = compared;
-  const parameters = comparedRows(a.parameters, b.parameters, kindOf);
+  const parameters = comparedRows(a.parameters, b.parameters, kindOf, {
+    a: a.text,
+    b: b.text,
+  });
   const metrics = comparedRows(a.metrics, b.metrics, kindOf);
   const others = otherDifferences(compared);
   return (
@@ -91,9 +94,7 @@ function Head(props: { side: Side }) {
           <Button
             kind="quiet"
             label={`Show ${side.name} in the view`}
-            onClick={() =>
-              openDocument({ t: "open", what: trial ? "trial" : "run", name: side.id })
-            }
+            onClick={() => openHere(trial ? "trial" : "run", side.id)}
           >
             Show
           </Button>

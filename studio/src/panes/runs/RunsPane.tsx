@@ -1,13 +1,15 @@
 // Every run, study and calibration on disk: search, open, rename, compare, delete and take back.
+
 import { useDeferredValue, useEffect, useMemo, useState } from "react";
 import { Button, Empty } from "../../controls/Choice";
 import { type Column, Table } from "../../controls/Table";
 import { formatSpan } from "../../controls/units";
 import type { RunRow } from "../../protocol";
-import { openDocument, showPane } from "../../shell/actions";
+import { showPane } from "../../shell/actions";
 import { type Mode, setMode, usePage } from "../../store/page";
 import { onReady, send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
+import { openHere } from "../design/edits";
 import { Glyph } from "../design/Glyph";
 import { ago, inTrash, matchesSearch } from "./rows";
 import "./runs.css";
@@ -37,7 +39,7 @@ const TONES: Readonly<Record<string, string>> = {
 
 /** Show what a folder holds: its design in the view, its trials in the plots of a study. */
 function open(row: RunRow, go: boolean): void {
-  openDocument({ t: "open", what: "run", name: row.id });
+  openHere("run", row.id);
   if (row.kind === "study" || row.kind === "calibrate") usePage.setState({ job: row.id });
   if (go) setMode(MODES[row.kind]);
 }
@@ -123,7 +125,19 @@ export default function RunsPane() {
           ),
         sort: (row) => row.name.toLowerCase(),
       },
-      { key: "kind", title: "Kind", cell: (row) => KINDS[row.kind], sort: (row) => row.kind },
+      {
+        key: "kind",
+        title: "Kind",
+        cell: (row) => (
+          <>
+            {KINDS[row.kind]}
+            {row.kind === "study" && row.trials !== null && (
+              <span className="muted">, {row.trials} designs</span>
+            )}
+          </>
+        ),
+        sort: (row) => row.kind,
+      },
       {
         key: "status",
         title: "Status",
@@ -141,28 +155,19 @@ export default function RunsPane() {
         sort: (row) => row.best || null,
       },
       {
-        key: "trials",
-        title: "Designs",
-        right: true,
-        cell: (row) => row.trials ?? <span className="muted">–</span>,
-        sort: (row) => row.trials,
-      },
-      {
         key: "when",
         title: "When",
         cell: (row) => (
-          <time dateTime={row.when} title={new Date(row.when).toLocaleString()}>
+          <time
+            dateTime={row.when}
+            title={`${new Date(row.when).toLocaleString()}${
+              row.seconds === null ? "" : `, took ${formatSpan(row.seconds)}`
+            }`}
+          >
             {ago(row.when, Date.now())}
           </time>
         ),
         sort: (row) => row.when,
-      },
-      {
-        key: "took",
-        title: "Took",
-        right: true,
-        cell: (row) => (row.seconds === null ? "–" : formatSpan(row.seconds)),
-        sort: (row) => row.seconds,
       },
       {
         key: "actions",

@@ -1,6 +1,6 @@
 // What two designs side by side come to, as rows of a table.
 import { describeValue, formatKind } from "../../controls/kinds";
-import { formatNumber } from "../../controls/units";
+import { factorOf, formatNumber, unitText } from "../../controls/units";
 import type { ComparedEvent } from "../../protocol";
 
 export interface ComparedRow {
@@ -12,21 +12,37 @@ export interface ComparedRow {
   readonly differs: boolean;
 }
 
+/** The unit in which the text of a design writes a parameter; null where it has none. */
+export function unitIn(text: string, parameter: string): string | null {
+  const name = parameter.replace(/[.*+?^${}()|[\]\\]/g, "\\$&");
+  const line = new RegExp(`^\\s*"?${name}"?\\s*=\\s*(.*)$`, "m").exec(text)?.[1] ?? "";
+  return /"\s*[+-]?[\d.]+(?:e[+-]?\d+)?\s*([^"\d][^"]*)"/i.exec(line)?.[1]?.trim() ?? null;
+}
+
+/** An SI value in the unit in which a design writes that parameter. */
+export function inUnitOf(text: string, parameter: string, value: unknown): string | null {
+  const unit = unitIn(text, parameter);
+  if (unit === null || typeof value !== "number") return null;
+  return `${formatNumber(value / factorOf(unit), 5)} ${unitText(unit)}`;
+}
+
 /** Rows for all names of two tables, in their order; `kindOf` tells the units. */
 export function comparedRows(
   a: Readonly<Record<string, unknown>>,
   b: Readonly<Record<string, unknown>>,
   kindOf: (name: string) => string,
+  texts: { readonly a: string; readonly b: string } = { a: "", b: "" },
 ): ComparedRow[] {
   const names = [...new Set([...Object.keys(a), ...Object.keys(b)])];
   return names.map((name) => {
     const [left, right] = [a[name], b[name]];
-    const text = (value: unknown) =>
-      typeof value === "number" ? formatKind(value, kindOf(name)) : describeValue(value);
+    const text = (value: unknown, design: string) =>
+      inUnitOf(design, name, value) ??
+      (typeof value === "number" ? formatKind(value, kindOf(name)) : describeValue(value));
     return {
       name,
-      a: text(left),
-      b: text(right),
+      a: text(left, texts.a),
+      b: text(right, texts.b),
       change: changeOf(left, right, kindOf(name)),
       differs: JSON.stringify(left) !== JSON.stringify(right),
     };

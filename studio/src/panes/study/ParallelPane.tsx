@@ -94,7 +94,11 @@ function Parallel(props: { current: CurrentStudy }) {
             {lines
               .filter((line) => marked.has(line.index))
               .map((line) => (
-                <path key={line.index} className="parallel-mark" d={line.path} />
+                <path
+                  key={line.index}
+                  className={`parallel-mark${pinned.includes(line.index) ? " pinned" : ""}`}
+                  d={line.path}
+                />
               ))}
             {scales.map((scale) => (
               <AxisBar

@@ -13,7 +13,7 @@ import { Goals } from "../design/Goals";
 import { TextField } from "../design/TextField";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
-import { jobsOf, useJob } from "./current";
+import { jobsOf, useJob, useStudy } from "./current";
 import { changeRange, toggleSweep, useStudyDraft } from "./draft";
 import { type Choice, choices, countOf, gridSize, obstacle, studySpec } from "./setup";
 import "../design/design.css";
@@ -63,6 +63,7 @@ export default function StudyPane() {
   const form = useFormOfDocument();
   const job = useJob("study");
   const expect = useNewJob("study");
+  const past = useStudy()?.id ?? null;
   if (!document || !form) {
     return (
       <Empty title="No design to vary">
@@ -84,7 +85,8 @@ export default function StudyPane() {
   };
   return (
     <div className="pane study" data-testid="study-form">
-      {job && <JobCard job={job} unit="designs" />}
+      {job && (past === null || past === job.id) && <JobCard job={job} unit="designs" />}
+      {past !== null && past !== job?.id && <Past id={past} />}
       <JobChooser kind="study" label="Study" />
       <Section title="Vary">
         {all.length === 0 && (
@@ -165,6 +167,27 @@ export default function StudyPane() {
         <Button kind="primary" testId="study-start" disabled={trouble !== null} onClick={start}>
           {designs ? `Try ${designs.toLocaleString("en")} designs` : "Start"}
         </Button>
+      </div>
+    </div>
+  );
+}
+
+/** A study of the list of runs, which the plots show: it can go on. */
+function Past(props: { id: string }) {
+  const count = useStudio((state) => state.trials[props.id]?.trials.length ?? 0);
+  return (
+    <div className="job" data-testid="past-study">
+      <div className="job-head">
+        <strong>{props.id}</strong>
+        <span className="badge">{count} designs</span>
+        <span className="job-buttons">
+          <Button
+            label={`Go on with ${props.id}`}
+            onClick={() => send({ t: "job_resume", id: props.id })}
+          >
+            Go on
+          </Button>
+        </span>
       </div>
     </div>
   );

@@ -1,7 +1,9 @@
 // What is pointed at, marked and brushed; all plots of a study show the same.
+
 import { create } from "zustand";
-import { openDocument, showPane } from "../../shell/actions";
+import { showPane } from "../../shell/actions";
 import { send } from "../../store/session";
+import { openHere } from "../design/edits";
 import type { Brushes } from "./trials";
 
 export interface Selection {
@@ -54,7 +56,7 @@ export function choose(job: string, trial: number, mark: boolean): void {
     return;
   }
   useSelection.setState({ opened: trial });
-  openDocument({ t: "open", what: "trial", name: `${job}/${trial}` });
+  openHere("trial", `${job}/${trial}`);
 }
 
 export function comparePinned(job: string): void {

@@ -1,0 +1,194 @@
+// Fit the material of the design to measured points: data, constants, method, result.
+
+import { useEffect } from "react";
+import { Button, Empty, Section, Select, Toggle } from "../../controls/Choice";
+import { formatKind } from "../../controls/kinds";
+import { NumberField } from "../../controls/NumberField";
+import { parseQuantity } from "../../controls/units";
+import { onReady, send } from "../../store/session";
+import { useStudio } from "../../store/studio";
+import { openHere } from "../design/edits";
+import { TextField } from "../design/TextField";
+import { useFormOfDocument } from "../design/useForm";
+import { JobCard } from "../jobs/JobCard";
+import { JobChooser, useNewJob } from "../study/StudyPane";
+import { useCalibration } from "./current";
+import { askAgain, type Bound, useCalibrateDraft } from "./draft";
+import { Result } from "./Result";
+import { boundsOf, type Constant, calibrateSpec, constantsOf, modelOf, obstacle } from "./setup";
+import { Tables } from "./Tables";
+import "../design/design.css";
+import "../study/study.css";
+import "./calibrate.css";
+
+export default function CalibratePane() {
+  const document = useStudio((state) => state.document);
+  const hello = useStudio((state) => state.hello);
+  const measured = useStudio((state) => state.measured);
+  const draft = useCalibrateDraft();
+  const form = useFormOfDocument();
+  const current = useCalibration();
+  const expect = useNewJob("calibrate");
+
+  useEffect(() => onReady(askAgain), []);
+
+  if (!hello || !document || !form) {
+    return (
+      <Empty title="No design to fit">
+        <p>
+          A calibration simulates the specimen that was measured. Start from the cantilever beam, or
+          open a design of your own specimen.
+        </p>
+        <Button kind="primary" onClick={() => openHere("template", "beam")}>
+          Open the beam
+        </Button>
+      </Empty>
+    );
+  }
+  const material = modelOf(form.source, hello.materials);
+  const constants = constantsOf(material?.model ?? "");
+  const probes = Object.keys((form.source.probes as object | undefined) ?? {}).length;
+  const trouble = !document.valid
+    ? "Mend the errors of the design first."
+    : obstacle(draft, measured, constants);
+  const start = () => {
+    expect();
+    send({ t: "job_start", spec: calibrateSpec(draft, constants) });
+  };
+  return (
+    <div className="pane calibrate" data-testid="calibrate-form">
+      {current?.job && <JobCard job={current.job} unit="generations" />}
+      <JobChooser kind="calibrate" label="Calibration" />
+      {current?.result && <Result result={current.result} root={form.root} />}
+      <Section
+        title="Specimen"
+        action={
+          <Button
+            kind="quiet"
+            label="Open the cantilever beam as the specimen"
+            onClick={() => openHere("template", "beam")}
+          >
+            Use the beam
+          </Button>
+        }
+      >
+        <p>
+          <strong>{document.name}</strong>{" "}
+          <span className="muted">
+            of {material?.name ?? "an unknown material"} ({material?.model ?? "?"})
+          </span>
+        </p>
+        {probes === 0 && (
+          <p className="muted">
+            It has no probes: measured rows name a probe or a distance along a beam.
+          </p>
+        )}
+      </Section>
+      <Tables />
+      <Section title="Fit">
+        {constants.map((constant) => (
+          <Fit key={constant.name} constant={constant} />
+        ))}
+        <Toggle
+          label="free the scale of the shape"
+          title="For photographs whose scale is doubtful: one factor for each table."
+          checked={draft.freeScale}
+          onChange={(freeScale) => useCalibrateDraft.setState({ freeScale })}
+        />
+      </Section>
+      <Section title="Search">
+        <Select
+          label="Method"
+          value={draft.method}
+          options={hello.calibration_methods}
+          onChange={(method) => useCalibrateDraft.setState({ method })}
+        />
+        <NumberField
+          label="Generations"
+          value={draft.generations}
+          min={1}
+          max={10_000}
+          step={1}
+          onChange={(value) => useCalibrateDraft.setState({ generations: Math.round(value) })}
+        />
+        <NumberField
+          label="Population"
+          title="Candidates in each generation."
+          value={draft.population}
+          min={2}
+          max={10_000}
+          step={1}
+          onChange={(value) => useCalibrateDraft.setState({ population: Math.round(value) })}
+        />
+        <NumberField
+          label="Seed"
+          title="The same seed gives the same answer."
+          value={draft.seed}
+          min={0}
+          step={1}
+          onChange={(value) => useCalibrateDraft.setState({ seed: Math.round(value) })}
+        />
+        <div className="toggles">
+          <Toggle
+            label="refine"
+            title="Walk to the bottom of the valley that the search found."
+            checked={draft.refine}
+            onChange={(refine) => useCalibrateDraft.setState({ refine })}
+          />
+          <Toggle
+            label="ask what the data determine"
+            title="Profiles of the error along each constant."
+            checked={draft.identify}
+            onChange={(identify) => useCalibrateDraft.setState({ identify })}
+          />
+        </div>
+      </Section>
+      <div className="start">
+        {trouble && <p className="muted">{trouble}</p>}
+        <Button kind="primary" testId="calibrate-start" disabled={trouble !== null} onClick={start}>
+          Fit the material
+        </Button>
+      </div>
+    </div>
+  );
+}
+
+function Fit(props: { constant: Constant }) {
+  const { name, kind, usual } = props.constant;
+  const draft = useCalibrateDraft();
+  const bound: Bound = draft.bounds[name] ?? { on: true, low: null, high: null };
+  const { low, high } = boundsOf(draft, name, usual);
+  const change = (next: Partial<Bound>) =>
+    useCalibrateDraft.setState({ bounds: { ...draft.bounds, [name]: { ...bound, ...next } } });
+  const set = (key: "low" | "high") => (text: string) => {
+    const read = parseQuantity(text, "kPa");
+    if ("problem" in read) return read.problem;
+    change({ [key]: read.value });
+    return null;
+  };
+  return (
+    <div className="vary is-on">
+      <Toggle label={name} checked={bound.on} onChange={(on) => change({ on })} />
+      {!bound.on && <span className="vary-count muted">as the design has it</span>}
+      {bound.on && (
+        <div className="vary-range">
+          <TextField
+            bare
+            right
+            label={`${name} from`}
+            value={formatKind(low, kind, 8)}
+            onCommit={set("low")}
+          />
+          <span className="muted">to</span>
+          <TextField
+            bare
+            right
+            label={`${name} to`}
+            value={formatKind(high, kind, 8)}
+            onCommit={set("high")}
+          />
+        </div>
+      )}
+    </div>
+  );
+}

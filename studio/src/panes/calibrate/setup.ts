@@ -1,0 +1,134 @@
+// From what was chosen in the pane to the calibration that is asked of VoxSoft.
+import { siUnit } from "../../controls/kinds";
+import type { CalibrateSpec, MaterialCard, MeasuredEvent } from "../../protocol";
+import { controlOf, resolve, type Schema } from "../design/schema";
+import type { CalibrateDraft } from "./draft";
+
+/** A constant of a material that can be fitted, with the range that VoxSoft takes by itself. */
+export interface Constant {
+  readonly name: string;
+  readonly kind: string;
+  /** SI; null where it is fitted only when asked for. */
+  readonly usual: readonly [number, number] | null;
+}
+
+// As voxsoft.calibration.DEFAULT_BOUNDS and HYPERELASTIC_BOUNDS have them.
+const LATTICE: readonly Constant[] = [
+  { name: "edge", kind: "modulus", usual: [1e3, 1e6] },
+  { name: "bulk", kind: "modulus", usual: [2e3, 1e6] },
+];
+const RUBBER: readonly Constant[] = [{ name: "young", kind: "modulus", usual: [5e3, 2e6] }];
+
+/** The model of the material that the first part is made of. */
+export function modelOf(
+  source: Readonly<Record<string, unknown>>,
+  cards: readonly MaterialCard[],
+): { model: string; name: string } | null {
+  const parts = source.parts as { material?: unknown }[] | undefined;
+  const material = parts?.[0]?.material;
+  if (typeof material === "object" && material !== null) {
+    return { model: String((material as { model?: unknown }).model ?? ""), name: "its own" };
+  }
+  if (typeof material !== "string") return null;
+  const own = (source.materials as Record<string, { model?: unknown }> | undefined)?.[material];
+  if (own) return { model: String(own.model ?? ""), name: material };
+  const card = cards.find((one) => one.name === material);
+  return card ? { model: card.model, name: card.name } : null;
+}
+
+export function constantsOf(model: string): readonly Constant[] {
+  return model.startsWith("lattice") ? LATTICE : RUBBER;
+}
+
+/** Why a calibration cannot start, in words with a remedy; null where it can. */
+export function obstacle(
+  draft: CalibrateDraft,
+  measured: Readonly<Record<string, MeasuredEvent>>,
+  constants: readonly Constant[],
+): string | null {
+  if (draft.files.length === 0) return "Drop a table of measured points first.";
+  for (const file of draft.files) {
+    const event = measured[file.name];
+    if (!event) return `${file.name} is being read.`;
+    const problem = event.problems[0];
+    if (problem) return `${file.name}: ${problem.what}.`;
+  }
+  const fitted = constants.filter((one) => draft.bounds[one.name]?.on ?? true);
+  if (fitted.length === 0) return "Choose at least one constant to fit.";
+  for (const { name, usual } of fitted) {
+    const { low, high } = boundsOf(draft, name, usual);
+    if (!(low > 0 && low < high)) return `${name}: the range must be positive and not empty.`;
+  }
+  return null;
+}
+
+export function boundsOf(
+  draft: CalibrateDraft,
+  name: string,
+  usual: Constant["usual"],
+): { low: number; high: number } {
+  const bound = draft.bounds[name];
+  return { low: bound?.low ?? usual?.[0] ?? 0, high: bound?.high ?? usual?.[1] ?? 0 };
+}
+
+/** The calibration to ask for. */
+export function calibrateSpec(
+  draft: CalibrateDraft,
+  constants: readonly Constant[],
+): CalibrateSpec {
+  const changed = constants.some(({ name }) => draft.bounds[name] !== undefined);
+  const bounds: Record<string, [number, number]> = {};
+  for (const { name, usual } of constants) {
+    if (!(draft.bounds[name]?.on ?? true)) continue;
+    const { low, high } = boundsOf(draft, name, usual);
+    bounds[name] = [low, high];
+  }
+  return {
+    kind: "calibrate",
+    data: draft.files.map((file) => ({
+      name: file.name,
+      columns: file.columns === null ? null : [...file.columns],
+      select: file.select,
+    })),
+    method: draft.method,
+    generations: Math.round(draft.generations),
+    population: Math.round(draft.population),
+    seed: Math.round(draft.seed),
+    free_scale: draft.freeScale,
+    refine: draft.refine,
+    identify: draft.identify,
+    // Without bounds VoxSoft takes its own.
+    ...(changed ? { bounds } : {}),
+    ...(draft.name.trim() ? { name: draft.name.trim() } : {}),
+  };
+}
+
+/** A material in SI numbers, as a design file writes it: each number with its unit. */
+export function withUnits(
+  root: Schema,
+  material: Readonly<Record<string, unknown>>,
+): Record<string, unknown> {
+  const map = resolve(root, root.properties?.materials ?? {}).additionalProperties;
+  const control = typeof map === "object" ? controlOf(root, map) : null;
+  if (control?.is !== "variant") return { ...material };
+  const variant = control.variants[String(material[control.tag])];
+  const write = (value: unknown, schema: Schema | undefined): unknown => {
+    if (!schema || value === null) return value;
+    const inner = resolve(root, schema);
+    const found = controlOf(root, inner);
+    if (typeof value === "number" && found.is === "quantity") {
+      const unit = siUnit(found.kind);
+      const number = Number(value.toPrecision(6));
+      return unit === "1" || number === 0 ? number : `${number} ${unit}`;
+    }
+    if (Array.isArray(value) && found.is === "list") {
+      return value.map((one) => write(one, found.item));
+    }
+    return value;
+  };
+  return Object.fromEntries(
+    Object.entries(material)
+      .filter(([, value]) => value !== null && !(Array.isArray(value) && value.length === 0))
+      .map(([key, value]) => [key, write(value, variant?.properties?.[key])]),
+  );
+}

@@ -1,0 +1,123 @@
+import { describe, expect, it } from "vitest";
+import type { CalibrateDraft } from "../../src/panes/calibrate/draft";
+import { bestPlane, fitPlane } from "../../src/panes/calibrate/plane";
+import {
+  calibrateSpec,
+  constantsOf,
+  modelOf,
+  obstacle,
+  withUnits,
+} from "../../src/panes/calibrate/setup";
+import type { MeasuredEvent } from "../../src/protocol";
+
+const DRAFT: CalibrateDraft = {
+  files: [{ name: "beam.csv", text: "", columns: null, select: null }],
+  name: "",
+  method: "genetic",
+  generations: 5,
+  population: 4,
+  seed: 0,
+  freeScale: true,
+  refine: true,
+  identify: false,
+  bounds: {},
+};
+const read = (problems: MeasuredEvent["problems"]): MeasuredEvent => ({
+  t: "measured",
+  name: "beam.csv",
+  columns: [],
+  quantities: [],
+  stations: 9,
+  materials: [],
+  arcs: [],
+  points: [],
+  problems,
+});
+
+it("finds the model of the first part, whether card, own material or inline", () => {
+  const cards = [{ name: "soft", title: "", source: "", model: "lattice", young: null }];
+  const parts = (material: unknown) => ({ parts: [{ shape: "body", material }] });
+  expect(modelOf(parts("soft"), cards)).toEqual({ model: "lattice", name: "soft" });
+  expect(modelOf(parts({ model: "yeoh" }), cards)?.model).toBe("yeoh");
+  const own = { ...parts("mine"), materials: { mine: { model: "gent" } } };
+  expect(modelOf(own, cards)?.model).toBe("gent");
+  expect(modelOf({}, cards)).toBeNull();
+});
+
+describe("a calibration", () => {
+  const lattice = constantsOf("lattice");
+  it("leaves the usual ranges to VoxSoft until one is changed", () => {
+    expect(calibrateSpec(DRAFT, lattice)).not.toHaveProperty("bounds");
+    const draft = {
+      ...DRAFT,
+      bounds: {
+        edge: { on: true, low: 2e4, high: null },
+        bulk: { on: false, low: null, high: null },
+      },
+    };
+    expect(calibrateSpec(draft, lattice).bounds).toEqual({ edge: [2e4, 1e6] });
+  });
+  it("says what is missing", () => {
+    expect(obstacle({ ...DRAFT, files: [] }, {}, lattice)).toMatch(/Drop a table/);
+    expect(obstacle(DRAFT, {}, lattice)).toMatch(/being read/);
+    const bad = [{ severity: "error", where: "column s", what: "needs a unit", hint: "" }] as const;
+    expect(obstacle(DRAFT, { "beam.csv": read([...bad]) }, lattice)).toMatch(/needs a unit/);
+    expect(obstacle(DRAFT, { "beam.csv": read([]) }, lattice)).toBeNull();
+    const off = { on: false, low: null, high: null };
+    const none = { ...DRAFT, bounds: { edge: off, bulk: off } };
+    expect(obstacle(none, { "beam.csv": read([]) }, lattice)).toMatch(/at least one constant/);
+  });
+});
+
+it("writes a fitted material with the units that a design file needs", () => {
+  const root = {
+    properties: {
+      materials: {
+        type: "object",
+        additionalProperties: {
+          discriminator: { propertyName: "model", mapping: { ogden: "#/$defs/Ogden" } },
+          oneOf: [{ $ref: "#/$defs/Ogden" }],
+        },
+      },
+    },
+    $defs: {
+      Ogden: {
+        type: "object",
+        properties: {
+          model: { const: "ogden" },
+          poisson: { "x-kind": "number" },
+          mu: { type: "array", items: { "x-kind": "modulus" } },
+          prony: { type: "array", items: {} },
+        },
+      },
+    },
+  };
+  const material = { model: "ogden", poisson: 0.499, mu: [24400.0000001, 0], prony: [] };
+  expect(withUnits(root, material)).toEqual({
+    model: "ogden",
+    poisson: 0.499,
+    mu: ["24400 Pa", 0],
+  });
+});
+
+it("looks at a shape from where it is widest, at one scale for both axes", () => {
+  expect(
+    bestPlane([
+      [0, 0, 0],
+      [0.1, 0.001, -0.05],
+    ]),
+  ).toEqual([0, 2]);
+  const margin = { left: 0, right: 0, top: 0, bottom: 0 };
+  const fitted = fitPlane(
+    [
+      [0, 0],
+      [2, 1],
+    ],
+    100,
+    100,
+    margin,
+  );
+  expect(fitted.scale).toBe(50);
+  expect([fitted.toX(0), fitted.toX(2)]).toEqual([0, 100]);
+  expect(fitted.toY(1)).toBeLessThan(fitted.toY(0));
+});
