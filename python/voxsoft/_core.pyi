@@ -255,6 +255,7 @@ class Problem:
         *,
         tolerance: float,
         max_steps: int,
+        trial: tuple[int, float] | None = None,
         start: NDArray[np.float64] | None = None,
         progress: Callable[[int, float, float], None] | None = None,
     ) -> dict[str, Any]: ...

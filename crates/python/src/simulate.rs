@@ -11,7 +11,7 @@ use voxsoft_solid::{
     Body, Clamp, Filling, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial,
     Mesh, Motion, Problem, ProblemError, State, elastic,
 };
-use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, relax, simulate};
+use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
 
 use crate::gate;
 use crate::materials::{MaterialArgument, material};
@@ -322,18 +322,21 @@ impl PyProblem {
         Ok(from_rows(py, &forces))
     }
 
-    #[pyo3(signature = (*, tolerance, max_steps, start=None, progress=None))]
+    /// A trial is a number of steps and the residual above which the run then ends.
+    #[pyo3(signature = (*, tolerance, max_steps, trial=None, start=None, progress=None))]
     fn relax<'py>(
         &self,
         py: Python<'py>,
         tolerance: f64,
         max_steps: u64,
+        trial: Option<(u64, f64)>,
         start: Option<PyReadonlyArray2<'_, f64>>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let settings = Relaxation {
             tolerance,
             max_steps,
+            trial: trial.map(|(steps, residual)| Trial { steps, residual }),
         };
         let mut state = State::at_rest(self.problem.body());
         if let Some(start) = start {
@@ -440,6 +443,7 @@ impl PyProblem {
         let status = match answer.status {
             Status::AtRest => "at-rest",
             Status::EndTime => "end-time",
+            Status::Slow => "slow",
             Status::NotAtRest => "not-at-rest",
             Status::Diverged => "diverged",
             Status::Cancelled => "cancelled",

@@ -31,6 +31,10 @@ pub(crate) const TET_EDGES: [([usize; 2], [usize; 2]); 6] = [
     ([2, 3], [0, 1]),
 ];
 
+/// How far an edge may be from that of a cube, relative to it, so that angles need no arc tangent: positions
+/// are products of integers and the voxel size, exact to rounding.
+const CUBE_SLACK: f64 = 1e-9;
+
 /// The plain arrays that a body is built from.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
@@ -136,6 +140,7 @@ impl Body {
                 let side = libm::cbrt(block.iter().map(|&t| volumes[t]).sum());
                 let fraction = fraction_of(mesh, block);
                 let mut constraints = Vec::with_capacity(block.len());
+                let cube = cube::corners(mesh, block);
                 for &t in block {
                     let Material::Lattice(material) = materials[usize::from(mesh.tet_part[t])]
                     else {
@@ -155,14 +160,15 @@ impl Body {
                         if index == found.len() {
                             found.push(unstressed_edge(&mesh.vertices, key));
                         }
-                        let share = dihedral(&mesh.vertices, key, apexes) / TAU;
                         let edge = &mut found[index];
+                        let share = cube
+                            .and_then(|(_, side)| share_in_cube(edge.length, volumes[t], side))
+                            .unwrap_or_else(|| dihedral(&mesh.vertices, key, apexes) / TAU);
                         edge.stiffness += fraction
                             * edge_stiffness(material, edge.length, share, side)
                                 .ok_or(ProblemError::NotVoxels { tet: t })?;
                     }
                 }
-                let cube = cube::corners(mesh, block);
                 voxels.extend(cube.map(|(corners, _)| corners));
                 if let Material::Hyperelastic(material) =
                     &materials[usize::from(mesh.tet_part[block[0]])]
@@ -502,10 +508,54 @@ fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64)
     }
 }
 
+/// The dihedral angle at an edge of the given length (m) over a full turn, for one of the five tetrahedra that
+/// fill a cube: one of a third of its volume in the middle, regular, and four at its corners, with three right
+/// angles each. `None` for a length that no edge of such a cube has.
+fn share_in_cube(length: f64, volume: f64, side: f64) -> Option<f64> {
+    let is_length = |multiple: f64| (length / (side * multiple) - 1.0).abs() < CUBE_SLACK;
+    if is_length(1.0) {
+        Some(0.25)
+    } else if !is_length(std::f64::consts::SQRT_2) {
+        None
+    } else if volume > 0.25 * side.powi(3) {
+        Some(f64::acos(1.0 / 3.0) / TAU)
+    } else {
+        Some(f64::atan(std::f64::consts::SQRT_2) / TAU)
+    }
+}
+
 /// The angle in rad between the two faces of a tetrahedron that meet at the edge `ends`.
 pub(crate) fn dihedral(vertices: &[Vec3], ends: [u32; 2], apexes: [u32; 2]) -> f64 {
     let [a, b] = ends.map(|v| vertices[v as usize]);
     let along = sub(b, a);
     let [n, m] = apexes.map(|v| cross(along, sub(vertices[v as usize], a)));
     libm::atan2(norm(cross(n, m)), dot(n, m))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_in_a_cube_are_its_dihedral_angles() {
+        let side = 0.3;
+        let corner = |c: u32| [c >> 2 & 1, c >> 1 & 1, c & 1].map(|bit| side * f64::from(bit));
+        let vertices: Vec<Vec3> = (0..8).map(corner).collect();
+        let middle = [0, 3, 5, 6];
+        let mut tets = vec![middle];
+        // Each of the other corners, with its three neighbours, which are corners of the middle one.
+        tets.extend([1, 2, 4, 7].map(|apex: u32| [apex, apex ^ 1, apex ^ 2, apex ^ 4]));
+        for tet in tets {
+            for (pair, opposite) in TET_EDGES {
+                let ends = pair.map(|corner| tet[corner]);
+                let length = unstressed_edge(&vertices, ends).length;
+                let apexes = opposite.map(|corner| tet[corner]);
+                let angle = dihedral(&vertices, ends, apexes);
+                let share = share_in_cube(length, volume(&vertices, tet).abs(), side).unwrap();
+                // A few roundings of a number below one.
+                assert!((share * TAU - angle).abs() < 1e-15, "{tet:?} {pair:?}");
+            }
+        }
+        assert_eq!(share_in_cube(1.1 * side, side.powi(3) / 6.0, side), None);
+    }
 }

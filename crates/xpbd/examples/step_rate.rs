@@ -161,6 +161,7 @@ fn relaxation(problem: &Problem, steps: u64) -> f64 {
         let settings = Relaxation {
             tolerance: 0.0,
             max_steps,
+            ..Relaxation::default()
         };
         let clock = Instant::now();
         relax(

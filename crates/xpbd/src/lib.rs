@@ -32,4 +32,4 @@ mod viscosity;
 
 pub use dynamics::{Damping, Dynamics, Grab, Live, LiveStatus, Look, simulate};
 pub use outcome::{Answer, Breakdown, Progress, Status};
-pub use relaxation::{Relaxation, relax};
+pub use relaxation::{Relaxation, Trial, relax};

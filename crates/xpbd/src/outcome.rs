@@ -10,6 +10,8 @@ pub enum Status {
     AtRest,
     /// The end time was reached, as asked.
     EndTime,
+    /// A trial showed that the body comes to rest slowly, see [`crate::relaxation::Trial`].
+    Slow,
     /// Steps or time ran out before the body came to rest.
     NotAtRest,
     /// The step was backed off as far as allowed and the body still flew apart.

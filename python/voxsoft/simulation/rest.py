@@ -62,17 +62,21 @@ def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
     if any(clamp.motion is not None for clamp in setup.design.clamps):
         return relax_fully(setup, solver, progress)
     tolerance = solver.tolerance or DEFAULT_TOLERANCE
-    trial = setup.problem.relax(tolerance=tolerance, max_steps=TRIAL_STEPS, progress=progress)
-    if trial["status"] != "not-at-rest":
+    trial = setup.problem.relax(
+        tolerance=tolerance,
+        max_steps=DEFAULT_MAX_STEPS,
+        trial=(TRIAL_STEPS, SLOW_RESIDUAL),
+        progress=progress,
+    )
+    if trial["status"] != "slow":
         used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
         return {**used, "max_steps": DEFAULT_MAX_STEPS}, trial
-    if trial["residual"] > SLOW_RESIDUAL:
-        try:
-            used, report = find_equilibrium(setup, solver, _counted_from(TRIAL_STEPS, progress))
-        except SimulationError:  # its tangent does not fit in memory
-            return relax_fully(setup, solver, progress, trial)
-        if report["status"] == "at-rest" and report["stable"]:
-            return {**used, "trial_steps": TRIAL_STEPS}, report
+    try:
+        used, report = find_equilibrium(setup, solver, _counted_from(trial["steps"], progress))
+    except SimulationError:  # its tangent does not fit in memory
+        return relax_fully(setup, solver, progress, trial)
+    if report["status"] == "at-rest" and report["stable"]:
+        return {**used, "trial_steps": trial["steps"]}, report
     return relax_fully(setup, solver, progress, trial)
 
 

@@ -9,12 +9,12 @@ use crate::vector::{Vec3, sub};
 /// How far a vertex may be from its node and a rest value from its cube's, relative to the cube:
 /// positions are products of integers and the voxel size, exact to rounding.
 const SLACK: f64 = 1e-9;
-/// The largest gap that costs less than a strip of its own.
-const MAX_GAP: u32 = 3;
 /// Constraints of a strip, so that all that share vertices find them in the nearest cache.
 const MAX_COUNT: u32 = 64;
 /// Constraints that make a slab worth a thread's time.
 const SLAB_CONSTRAINTS: usize = 20_000;
+/// Slots for each node that a small body may take to have its nodes in a box.
+const BOX_SLOTS: usize = 2;
 /// The lattice may have this many nodes along an axis, because keys keep 20 bits for each.
 const MAX_NODES: f64 = (1 << 20) as f64;
 
@@ -40,14 +40,16 @@ impl Strips {
         }
         found.sort_unstable();
         let mut rows = lattice.rows(&found);
-        rows.sort_by_cached_key(|row| {
-            let (key, index) = found[row.members.start];
-            (
-                lattice.layer(index as usize),
-                lattice.pair(index as usize),
-                key,
-            )
-        });
+        if !lattice.boxed {
+            rows.sort_by_cached_key(|row| {
+                let (key, index) = found[row.members.start];
+                (
+                    lattice.layer(index as usize),
+                    lattice.pair(index as usize),
+                    key,
+                )
+            });
+        }
 
         let places = rows.iter().map(|row| padded(row.count)).sum();
         let mut strips = Vec::with_capacity(rows.len());
@@ -125,9 +127,11 @@ struct Lattice<'a> {
     side: f64,
     slot_of: Vec<u32>,
     slots: usize,
+    /// Whether the slots are those of a box, so that rows of several layers line up.
+    boxed: bool,
 }
 
-/// Constraints of a kind, each next to the one before or behind a small gap.
+/// Constraints of a kind, each next to the one before or behind a gap.
 struct Row {
     members: Range<usize>,
     count: u32,
@@ -158,14 +162,23 @@ impl<'a> Lattice<'a> {
         };
         let nodes: Option<Vec<[i32; 3]>> = body.rest().iter().map(node).collect();
         let nodes = nodes?;
-        let (slot_of, slots) = number(&nodes);
+        let counts = [i, j, k].map(|axis| (extent[axis] / side).round() as usize + 1);
+        let [part, _] = box_sizes(counts);
+        let boxed = body.edges().len() + body.tets().len() <= SLAB_CONSTRAINTS
+            && 8 * part <= BOX_SLOTS * nodes.len();
+        let (slot_of, slots) = if boxed {
+            number_in_box(&nodes, counts)
+        } else {
+            number(&nodes)
+        };
         Some(Self {
             body,
             nodes,
-            layers: (extent[i] / side).round() as usize,
+            layers: counts[0] - 1,
             side,
             slot_of,
             slots,
+            boxed,
         })
     }
 
@@ -219,8 +232,8 @@ impl<'a> Lattice<'a> {
             ),
         };
         let unstressed = (value / rest - 1.0).abs() < SLACK;
-        let parity = ((start[1] & 1) << 1 | start[2] & 1) as u32;
-        (within && unstressed).then_some(kind << 2 | parity)
+        let parity = ((start[0] & 1) << 2 | (start[1] & 1) << 1 | start[2] & 1) as u32;
+        (within && unstressed).then_some(kind << 3 | parity)
     }
 
     /// The length of an edge in m or the volume of a tetrahedron in m³, from its nodes.
@@ -262,11 +275,11 @@ impl<'a> Lattice<'a> {
             let corners = self.corners(index as usize);
             if let Some(row) = rows.last_mut() {
                 let offset = corners[0].wrapping_sub(start[0]);
-                let gap = offset.wrapping_sub(row.count);
                 let aligned = (0..4).all(|c| corners[c] == start[c].wrapping_add(offset));
-                // A row that fills its lanes gains nothing from a neighbour behind a gap.
+                // What fits in the lanes that are open anyway costs nothing; behind a gap that reaches past
+                // them a strip of its own wastes none.
                 let worth =
-                    gap == 0 || gap <= MAX_GAP && !row.count.is_multiple_of(MAX_LANES as u32);
+                    offset == row.count || offset < row.count.next_multiple_of(MAX_LANES as u32);
                 if key >> 32 == kind && aligned && worth && offset < MAX_COUNT {
                     row.members.end = at + 1;
                     row.count = offset + 1;
@@ -281,6 +294,29 @@ impl<'a> Lattice<'a> {
         }
         rows
     }
+}
+
+/// The places of nodes that are even along all axes in a box of so many nodes, and the slots of the box.
+fn box_sizes(counts: [usize; 3]) -> [usize; 2] {
+    let part = counts.map(|n| n.div_ceil(2)).iter().product::<usize>();
+    [part, 8 * (part + MAX_LANES - 1)]
+}
+
+/// The slot of each node of a small body, and the number of slots.
+///
+/// Nodes of one parity along each axis make a part, where each has the place of its cell of two nodes along
+/// each axis. Constraints of a kind then line up all over the body, and fill lanes also where the body is
+/// round or hollow.
+fn number_in_box(nodes: &[[i32; 3]], counts: [usize; 3]) -> (Vec<u32>, usize) {
+    let [part, slots] = box_sizes(counts);
+    let [_, columns, places] = counts.map(|n| n.div_ceil(2));
+    let slot = |&[i, j, k]: &[i32; 3]| {
+        let parity = ((i & 1) << 2 | (j & 1) << 1 | k & 1) as usize;
+        let [i, j, k] = [i, j, k].map(|n| (n >> 1) as usize);
+        (parity * (part + MAX_LANES - 1) + (i * columns + j) * places + k) as u32
+    };
+    let slot_of = nodes.iter().map(slot).collect();
+    (slot_of, slots.next_multiple_of(MAX_LANES))
 }
 
 /// The slot of each node, and the number of slots.

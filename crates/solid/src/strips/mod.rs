@@ -14,8 +14,11 @@
 //! no vertex: corners of a constraint differ in `(i, j mod 2, k mod 2)`, or two constraints would hold
 //! the same slot.
 //!
-//! Where a strip has a gap of up to three constraints (the end of a row, a missing voxel), or does not fill the
-//! last lanes, its place holds a constraint without stiffness, which moves nothing.
+//! A small body has all nodes of one parity along each axis in a box instead, as many as it would have
+//! if it filled its bounds, so that strips run on over rows and layers of any length.
+//!
+//! Where a strip has a gap within its lanes (the end of a row, a missing voxel), or does not fill the last,
+//! its place holds a constraint without stiffness, which moves nothing.
 //!
 //! # Slabs
 //!

@@ -23,6 +23,18 @@ pub struct Relaxation {
     pub tolerance: f64,
     /// Steps after which a run counts as not at rest.
     pub max_steps: u64,
+    /// When to leave a body that comes to rest slowly to another solver.
+    pub trial: Option<Trial>,
+}
+
+/// A stretch of a run that shows whether it is worth going on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial {
+    /// Steps of the stretch; the first look after them decides.
+    pub steps: u64,
+    /// A run whose relative residual is above this then ends with [`Status::Slow`]. Any other goes on as if
+    /// nothing had been asked.
+    pub residual: f64,
 }
 
 impl Default for Relaxation {
@@ -30,6 +42,7 @@ impl Default for Relaxation {
         Self {
             tolerance: 1e-4,
             max_steps: 400_000,
+            trial: None,
         }
     }
 }
@@ -106,6 +119,7 @@ fn run(
     state.velocities.fill([0.0; 3]);
     let mut checkpoint = state.clone();
     arrays.load(&state);
+    let mut trial = settings.trial;
     let (mut step, mut taken, mut checkpoint_step, mut back_offs) = (0u64, 0u64, 0u64, 0);
     let finish = |state: State, status, residual, steps, back_offs, breakdown| Answer {
         state: State { time: 0.0, ..state },
@@ -155,6 +169,11 @@ fn run(
                 if ramp == 1.0 && residual <= settings.tolerance && settled() {
                     return finish(state, Status::AtRest, residual, taken, back_offs, None);
                 }
+                if let Some(due) = trial.take_if(|due| taken >= due.steps)
+                    && residual > due.residual
+                {
+                    return finish(state, Status::Slow, residual, taken, back_offs, None);
+                }
                 if taken >= settings.max_steps {
                     return finish(state, Status::NotAtRest, residual, taken, back_offs, None);
                 }
@@ -199,10 +218,40 @@ mod tests {
     use voxsoft_solid::vector::{norm, sub};
 
     #[test]
+    fn a_trial_ends_slow_runs_and_leaves_others_alone() {
+        for problem in &problems() {
+            let run = |trial| {
+                let settings = Relaxation {
+                    trial,
+                    ..Relaxation::default()
+                };
+                relax(
+                    problem,
+                    State::at_rest(problem.body()),
+                    &settings,
+                    &mut |_| ControlFlow::Continue(()),
+                )
+            };
+            let whole = run(None);
+            let trial = |residual| {
+                Some(Trial {
+                    steps: 2 * LOOK,
+                    residual,
+                })
+            };
+            assert!(whole.steps > 2 * LOOK);
+            assert_eq!(run(trial(f64::INFINITY)), whole);
+            let slow = run(trial(0.0));
+            assert_eq!((slow.status, slow.steps), (Status::Slow, 2 * LOOK));
+        }
+    }
+
+    #[test]
     fn strips_and_vertices_come_to_the_same_rest() {
         let settings = Relaxation {
             tolerance: 1e-8,
             max_steps: 20_000,
+            trial: None,
         };
         for (case, problem) in problems().iter().enumerate() {
             let start = State::at_rest(problem.body());
