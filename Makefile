@@ -14,7 +14,7 @@ BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
-.PHONY: help install demo test test-rust test-python test-all lint format bench docs studio clean
+.PHONY: help install demo test test-rust test-python test-all lint format bench docs studio wasm clean
 
 help:
 	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
@@ -24,6 +24,7 @@ help:
 	@echo "make bench     benchmarks"
 	@echo "make docs      the documentation as web pages in target/docs"
 	@echo "make studio    check, test and build the studio's page (needs Node 20.19 or newer; its built form is in the repository)"
+	@echo "make wasm      build the core for the browser (needs rustup target add wasm32-unknown-unknown; its built form is in the repository)"
 	@echo "make install   only the environment: .venv/bin/voxsoft"
 
 install: $(STAMP)
@@ -80,6 +81,13 @@ docs: install
 studio:
 	@command -v npm >/dev/null || { echo "Building the studio's page needs Node 20.19 or newer. Users do not: the built page is part of the package." >&2; exit 1; }
 	cd studio && npm ci && npm run check && npm test && npm run build
+
+# The page takes it up with the next `make studio`.
+wasm:
+	cargo build --quiet --profile wasm --target wasm32-unknown-unknown -p voxsoft-wasm
+	cp target/wasm32-unknown-unknown/wasm/voxsoft_wasm.wasm studio/public/voxsoft.wasm
+	@chmod 644 studio/public/voxsoft.wasm
+	@echo "studio/public/voxsoft.wasm: $$(wc -c < studio/public/voxsoft.wasm) bytes, $$(gzip -9c studio/public/voxsoft.wasm | wc -c) compressed"
 
 clean:
 	rm -rf $(VENV) target runs dist

@@ -354,3 +354,19 @@ class Live:
         flags: int = 0,
         display: Display | None = None,
     ) -> bytes: ...
+
+def pack_scene(
+    problem: Problem,
+    triangles: NDArray[np.uint32],
+    tags: NDArray[np.uint8],
+    voxel_size: float,
+    *,
+    time_step: float = 0.01,
+    substeps: int | None = None,
+    iterations: int = 1,
+    damping: float | None = None,
+    retardation: float = 0.0,
+    tolerance: float = 1e-4,
+    notes: str = "",
+) -> bytes:
+    """The scene that the WebAssembly core opens; notes are for the page."""

@@ -22,6 +22,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<ensemble::PyEnsemble>()?;
     module.add_class::<live::PyDisplay>()?;
     module.add_class::<live::PyLive>()?;
+    module.add_function(wrap_pyfunction!(live::pack_scene, module)?)?;
     module.add_function(wrap_pyfunction!(materials::lattice_constants, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;

@@ -9,6 +9,7 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use voxsoft_frames::{Display, Field, FrameHead};
+use voxsoft_scene::Scene;
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Problem, State};
 use voxsoft_xpbd::{Damping, Dynamics, Live, LiveStatus, Look};
@@ -374,4 +375,49 @@ impl PyLive {
         let bytes = py.detach(|| shown.display.frame(body, &state, field, head));
         Ok(PyBytes::new(py, &bytes))
     }
+}
+
+/// A problem with how it runs and what is shown, as the bytes that a page without a server opens.
+#[pyfunction]
+#[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
+    damping=None, retardation=0.0, tolerance=1e-4, notes=""))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keyword arguments of one Python call"
+)]
+pub fn pack_scene<'py>(
+    py: Python<'py>,
+    problem: PyRef<'_, PyProblem>,
+    triangles: PyReadonlyArray2<'_, u32>,
+    tags: PyReadonlyArray1<'_, u8>,
+    voxel_size: f64,
+    time_step: f64,
+    substeps: Option<u32>,
+    iterations: u32,
+    damping: Option<f64>,
+    retardation: f64,
+    tolerance: f64,
+    notes: &str,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let scene = Scene {
+        notes: notes.to_owned(),
+        settings: Dynamics {
+            time_step,
+            substeps,
+            iterations,
+            damping: damping.map_or(Damping::Critical, Damping::Rate),
+            retardation,
+            tolerance,
+            ..Dynamics::default()
+        },
+        mesh: problem.mesh.clone(),
+        materials: problem.materials.clone(),
+        clamps: problem.problem.clamps().to_vec(),
+        loads: problem.problem.loads().to_vec(),
+        floor: problem.problem.floor(),
+        voxel_size,
+        triangles: rows("triangles", &triangles)?,
+        tags: tags.as_array().to_vec(),
+    };
+    Ok(PyBytes::new(py, &py.detach(|| scene.write())))
 }

@@ -48,7 +48,8 @@ fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
 /// One mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
-    mesh: Mesh,
+    pub(crate) mesh: Mesh,
+    pub(crate) materials: Vec<Material>,
     pub(crate) problem: Arc<Problem>,
 }
 
@@ -411,7 +412,11 @@ impl PyProblem {
         gate::run_owned(py, move |_| {
             let body = Body::new(&mesh, &materials)?;
             let problem = Arc::new(Problem::new(body, clamps, loads, floor)?);
-            Ok(Self { mesh, problem })
+            Ok(Self {
+                mesh,
+                materials,
+                problem,
+            })
         })?
         .map_err(to_python)
     }

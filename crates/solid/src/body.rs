@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 
 use crate::color::{color_order, interleave};
-use crate::lattice::Stiffness;
+use crate::lattice::LatticeConstants;
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{
     Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube,
@@ -458,9 +458,9 @@ fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
 }
 
 fn volume_constraint(vertices: [u32; 4], volume: f64, material: LatticeMaterial) -> Tet {
-    let stiffness = match material.stiffness() {
-        Stiffness::Moduli { bulk, .. } => bulk / volume,
-        Stiffness::Compliances { volume, .. } => 1.0 / volume,
+    let stiffness = match material.constants() {
+        LatticeConstants::Moduli { bulk, .. } => bulk / volume,
+        LatticeConstants::Compliances { volume, .. } => 1.0 / volume,
     };
     Tet {
         vertices,
@@ -491,9 +491,9 @@ fn unstressed_edge(vertices: &[Vec3], [a, b]: [u32; 2]) -> Edge {
 /// The stiffness that one tetrahedron adds to one of its edges, or `None` for a raw compliance away
 /// from a voxel of the given side.
 fn edge_stiffness(material: LatticeMaterial, length: f64, share: f64, side: f64) -> Option<f64> {
-    match material.stiffness() {
-        Stiffness::Moduli { edge, .. } => Some(edge * length * share),
-        Stiffness::Compliances { edge, .. } => {
+    match material.constants() {
+        LatticeConstants::Moduli { edge, .. } => Some(edge * length * share),
+        LatticeConstants::Compliances { edge, .. } => {
             // A full turn holds four voxels around a cube edge and two around a face diagonal; each
             // voxel brings one edge of the raw compliance.
             let is_length = |multiple: f64| (length / (side * multiple) - 1.0).abs() < 1e-6;

@@ -38,6 +38,16 @@ impl History {
         Ok(Self { times, factors })
     }
 
+    /// The times in s.
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// The factors at these times.
+    pub fn factors(&self) -> &[f64] {
+        &self.factors
+    }
+
     /// Whether the factor is the same at all times.
     pub fn is_constant(&self) -> bool {
         self.factors.iter().all(|factor| *factor == self.factors[0])

@@ -19,14 +19,27 @@ use crate::ProblemError;
 /// `C₁₁ = 6/(α_e h)`, `C₁₂ = C₄₄ = 1/(α_e h)` plus `K`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LatticeMaterial {
-    stiffness: Stiffness,
+    constants: LatticeConstants,
     density: f64,
 }
 
+/// The two constants of a lattice.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Stiffness {
-    Moduli { edge: f64, bulk: f64 },
-    Compliances { edge: f64, volume: f64 },
+pub enum LatticeConstants {
+    /// Moduli in Pa.
+    Moduli {
+        /// Of edges.
+        edge: f64,
+        /// Of volumes.
+        bulk: f64,
+    },
+    /// Raw compliances.
+    Compliances {
+        /// Of edges in m/N.
+        edge: f64,
+        /// Of tetrahedra in m³/Pa.
+        volume: f64,
+    },
 }
 
 impl LatticeMaterial {
@@ -35,8 +48,8 @@ impl LatticeMaterial {
         positive("edge modulus (Pa)", edge)?;
         positive("bulk modulus (Pa)", bulk)?;
         positive("density (kg/m³)", density)?;
-        let stiffness = Stiffness::Moduli { edge, bulk };
-        Ok(Self { stiffness, density })
+        let constants = LatticeConstants::Moduli { edge, bulk };
+        Ok(Self { constants, density })
     }
 
     /// From raw compliances: of each voxel's own edges (m/N) and of tetrahedra (m³/Pa, because the
@@ -45,8 +58,8 @@ impl LatticeMaterial {
         positive("edge compliance (m/N)", edge)?;
         positive("volume compliance (m³/Pa)", volume)?;
         positive("density (kg/m³)", density)?;
-        let stiffness = Stiffness::Compliances { edge, volume };
-        Ok(Self { stiffness, density })
+        let constants = LatticeConstants::Compliances { edge, volume };
+        Ok(Self { constants, density })
     }
 
     /// The density in kg/m³.
@@ -54,20 +67,21 @@ impl LatticeMaterial {
         self.density
     }
 
-    pub(crate) fn stiffness(&self) -> Stiffness {
-        self.stiffness
+    /// The two constants.
+    pub fn constants(&self) -> LatticeConstants {
+        self.constants
     }
 
     /// The stiffnesses `(C₁₁, C₁₂)` in Pa of a large block of voxels of the size `voxel_size` (m).
     ///
     /// A voxel's volume compliance acts on five tetrahedra of volumes `h³/3` (one) and `h³/6` (four).
     fn c11_c12(&self, voxel_size: f64) -> (f64, f64) {
-        match self.stiffness {
-            Stiffness::Moduli { edge, bulk } => (
+        match self.constants {
+            LatticeConstants::Moduli { edge, bulk } => (
                 edge * (1.0 + f64::sqrt(2.0)) + bulk,
                 edge / f64::sqrt(2.0) + bulk,
             ),
-            Stiffness::Compliances { edge, volume } => {
+            LatticeConstants::Compliances { edge, volume } => {
                 // Σ V₀²/α_v per h³: the pressure work of a unit volume strain.
                 let bulk = voxel_size.powi(3) * (1.0 / 9.0 + 4.0 / 36.0) / volume;
                 let unit = 1.0 / (edge * voxel_size);

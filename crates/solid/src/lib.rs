@@ -65,7 +65,7 @@ pub use clamp::{Clamp, Motion};
 pub use error::ProblemError;
 pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model};
-pub use lattice::LatticeMaterial;
+pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use load::{Load, LoadKind};
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};

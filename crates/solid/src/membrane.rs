@@ -93,6 +93,11 @@ impl Membrane {
         self.vertices
     }
 
+    /// What it is made of.
+    pub fn material(&self) -> &MembraneMaterial {
+        &self.material
+    }
+
     pub(crate) fn add_mass(&self, masses: &mut [f64]) {
         for vertex in self.vertices {
             let mass = self.material.density * self.material.thickness * self.area;

@@ -138,6 +138,11 @@ impl HyperelasticMaterial {
         Ok(Self { prony, ..self })
     }
 
+    /// The branches that relax as they were given: share of the instantaneous modulus and time in s.
+    pub fn prony(&self) -> &[(f64, f64)] {
+        &self.prony
+    }
+
     /// The branches that relax: stiffness over that at rest, `g/(1 − Σ g)`, and time in s.
     pub fn branches(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let left = 1.0 - self.prony.iter().map(|(share, _)| share).sum::<f64>();

@@ -48,7 +48,7 @@ pub fn shrink(volume: f64) -> Jet {
     if volume < LEAST_VOLUME {
         return power(volume, -1.0 / 3.0, LEAST_VOLUME);
     }
-    let value = 1.0 / volume.cbrt();
+    let value = 1.0 / libm::cbrt(volume);
     let first = -value / (3.0 * volume);
     [value, first, -4.0 * first / (3.0 * volume)]
 }

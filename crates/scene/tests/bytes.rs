@@ -1,0 +1,138 @@
+//! What is written is read again, and no bytes make the reader fall over.
+
+use proptest::prelude::*;
+use voxsoft_frames::Display;
+use voxsoft_scene::{Scene, SceneError};
+use voxsoft_solid::{
+    Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind,
+    Material, Membrane, MembraneMaterial, Mesh, Model, Motion,
+};
+use voxsoft_voxel::{Grid, tet_mesh};
+use voxsoft_xpbd::{Damping, Dynamics};
+
+const SIDE: f64 = 5e-3;
+
+/// Two voxels of two materials with one of everything.
+fn full() -> Scene {
+    let mut grid = Grid::empty([2, 1, 1], [0.0; 3], SIDE, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [2.0 * SIDE, SIDE, SIDE], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let fabric = MembraneMaterial {
+        young: 1e6,
+        poisson: 0.3,
+        thickness: 1e-4,
+        density: 900.0,
+    };
+    let triangles: Vec<[u32; 3]> = tets.triangles.iter().map(|t| t.map(|v| v as u32)).collect();
+    let corners = triangles[0].map(|v| tets.vertices[v as usize]);
+    let mesh = Mesh {
+        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+        tet_part: (0..10).map(|t| u8::from(t >= 5)).collect(),
+        tet_block: (0..10).map(|t| t / 5).collect(),
+        vertices: tets.vertices,
+        block_fraction: vec![1.0, 0.7],
+        block_filling: vec![Filling::FULL, Filling { shift: [0.1, 0.0, 0.0], spread: [0.9; 3] }],
+        membranes: vec![Membrane::new(triangles[0], corners, fabric).unwrap()],
+    };
+    let fiber = Fiber { direction: [0.0, 0.6, 0.8], modulus: 3e4, compression: true };
+    let ogden = Model::Ogden { terms: [(2e4, 1.3), (1e3, 5.0), (0.0, 0.0)] };
+    let rubber = HyperelasticMaterial::new(ogden, 4e5, 1000.0).unwrap();
+    let rubber = rubber.with_fibers(vec![fiber]).unwrap().with_prony(vec![(0.2, 0.5)]).unwrap();
+    let lattice = LatticeMaterial::from_moduli(2e4, 9e4, 1000.0).unwrap();
+    let ramp = History::new(vec![0.0, 1.0], vec![0.0, 2.0]).unwrap();
+    let motion = Motion {
+        displacement: [1e-3, 0.0, 0.0],
+        axis: [0.0, 0.0, 1.0],
+        angle: 0.1,
+        center: [0.0; 3],
+        history: ramp.clone(),
+    };
+    let pressure = LoadKind::Pressure {
+        triangles: triangles.clone(),
+        voids: vec![([0, 1, 2, 3], 0.5)],
+        pressure: 300.0,
+    };
+    let pull = LoadKind::Forces { vertices: vec![3], forces: vec![[0.0, 1e-3, 0.0]] };
+    Scene {
+        notes: "{\"name\": \"Würfel\"}".into(),
+        settings: Dynamics { damping: Damping::Rate(3.0), substeps: Some(40), ..Dynamics::default() },
+        materials: vec![lattice.into(), rubber.into()],
+        clamps: vec![
+            Clamp::fixed(vec![0, 1]),
+            Clamp { vertices: vec![5], axes: [true, false, true], motion: Some(motion) },
+        ],
+        loads: vec![
+            Load::gravity([0.0, 0.0, -9.81]),
+            Load { kind: pressure, history: ramp },
+            Load::constant(pull),
+        ],
+        floor: Some(Floor { z: -0.01 }),
+        voxel_size: SIDE,
+        tags: vec![0; triangles.len()],
+        triangles,
+        mesh,
+    }
+}
+
+/// Reads, builds and shows; only errors may come.
+fn open(bytes: &[u8]) -> Result<(), SceneError> {
+    let scene = Scene::read(bytes)?;
+    let problem = scene.problem()?;
+    Display::surface(problem.body(), &scene.triangles, &scene.tags, scene.voxel_size)?;
+    Ok(())
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let models = [
+        Model::NeoHookean { c10: 1e4 },
+        Model::MooneyRivlin { c10: 1e4, c01: 2e3 },
+        Model::Yeoh { c: [1e4, -50.0, 3.0] },
+        Model::Gent { shear: 2e4, limit: 30.0 },
+    ];
+    let raw = LatticeMaterial::from_compliances(1e-3, 1e-9, 1000.0).unwrap();
+    let mut materials: Vec<Material> = vec![raw.into()];
+    materials.extend(models.map(|m| HyperelasticMaterial::new(m, 4e5, 1000.0).unwrap().into()));
+    let plain = Scene { materials, floor: None, settings: Dynamics::default(), ..full() };
+    for scene in [full(), plain] {
+        assert_eq!(Scene::read(&scene.write()), Ok(scene));
+    }
+    assert_eq!(open(&full().write()), Ok(()));
+}
+
+#[test]
+fn what_is_cut_off_or_too_long_is_told() {
+    let bytes = full().write();
+    for length in 0..bytes.len() {
+        assert!(Scene::read(&bytes[..length]).is_err(), "{length} bytes");
+    }
+    let longer = [&bytes[..], &[0, 0]].concat();
+    assert_eq!(Scene::read(&longer), Err(SceneError::TooLong(2)));
+    let mut newer = bytes.clone();
+    newer[4] = 7;
+    assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
+    assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let _ = open(&bytes);
+        // The same behind a good head, so that lengths and kinds are reached.
+        let _ = open(&[b"VXSC\x01\0\0\0", &bytes[..]].concat());
+    }
+
+    #[test]
+    fn damaged_scenes_never_panic(
+        damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+    ) {
+        let mut bytes = full().write();
+        for (at, value) in damage {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        let _ = open(&bytes);
+    }
+}
