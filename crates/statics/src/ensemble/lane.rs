@@ -1,4 +1,5 @@
-//! How far one candidate has come on its load path: the same way that [`crate::solve`] takes.
+//! How far one candidate has come on its load path: the way that [`crate::solve`] takes, but that the whole
+//! load is always tried first.
 
 use voxsoft_solid::vector::Vec3;
 
