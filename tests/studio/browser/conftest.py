@@ -33,7 +33,8 @@ import sys
 from pathlib import Path
 from voxsoft.studio.server import StudioServer
 source, runs, port, token = sys.argv[1:]
-server = StudioServer(Path(source) if source else None, runs=Path(runs), port=int(port), token=token)
+source = Path(source) if source else None
+server = StudioServer(source, runs=Path(runs), port=int(port), token=token)
 server.run(lambda address: print(address, flush=True))
 """
 
