@@ -14,7 +14,9 @@ const FILES = [
   "package-lock.json",
   "package.json",
   "tsconfig.json",
+  "viewer.html",
   "vite.config.ts",
+  "vite.viewer.config.ts",
 ];
 
 function* walk(folder: string, prefix: string): Generator<string> {

@@ -14,6 +14,8 @@ export default defineConfig({
     emptyOutDir: true,
     target: "es2022",
     modulePreload: { polyfill: false },
+    // public/ holds the WebAssembly core, which only the single-file page takes in.
+    copyPublicDir: false,
     // three.js alone is half a megabyte before compression; the test on the total size decides.
     chunkSizeWarningLimit: 900,
     rolldownOptions: {

@@ -19,7 +19,9 @@ FILES = [
     "package-lock.json",
     "package.json",
     "tsconfig.json",
+    "viewer.html",
     "vite.config.ts",
+    "vite.viewer.config.ts",
 ]
 
 

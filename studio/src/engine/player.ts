@@ -2,40 +2,25 @@
 // Nothing here knows whether it runs in a worker; time is handed in.
 import type { AnyEvent, BodyEvent, Field, GrabState, StatEvent } from "../protocol";
 import { PROTOCOL } from "../protocol";
+import type { CoreLook, CoreRun } from "./core";
 import type { Draft } from "./engine";
 
-/** What of the core a player needs; `engine/core.ts` gives it. */
-export interface Run {
-  readonly notes: string;
-  /** Vertex of the body for each vertex that is shown. */
-  readonly shown: Uint32Array;
-  advance(substeps: number): Look;
-  setLoad(load: number, factor: number): void;
-  grab(
-    number: number,
-    vertex: number,
-    target: readonly [number, number, number],
-    stiffness: number,
-  ): void;
-  release(number: number): void;
-  pull(number: number): { force: [number, number, number]; stretch: number } | null;
-  reset(): void;
-  seek(positions: Float64Array, time: number): void;
-  positions(): Float64Array;
-  topology(number: number): ArrayBuffer;
-  frame(topology: number, frame: number, field: number, seq: number, flags: number): ArrayBuffer;
-}
-
-export interface Look {
-  readonly status: "moving" | "at-rest" | "diverged";
-  readonly time: number;
-  /** Length of a substep, s. */
-  readonly substep: number;
-  readonly substeps: number;
-  readonly residual: number;
-  readonly elastic: number;
-  readonly kinetic: number;
-}
+/** What of the core a player needs. */
+export type Run = Pick<
+  CoreRun,
+  | "notes"
+  | "shown"
+  | "advance"
+  | "setLoad"
+  | "grab"
+  | "release"
+  | "pull"
+  | "reset"
+  | "seek"
+  | "positions"
+  | "topology"
+  | "frame"
+>;
 
 /** What the writer of a scene says about it. */
 export interface Notes {
@@ -52,6 +37,7 @@ export interface Audience {
   binary(message: ArrayBuffer): void;
 }
 
+// Flags of a frame.
 const PAUSED = 1;
 const DIVERGED = 2;
 const AT_REST = 4;
@@ -65,7 +51,7 @@ export class Player {
   readonly notes: Notes;
   private playing = false;
   private past: number | null = null;
-  private look: Look;
+  private look: CoreLook;
   private frame = 0;
   private stored: {
     frame: number;
@@ -138,6 +124,7 @@ export class Player {
     });
     this.audience.event({ ...notes.body, smooth: false });
     this.audience.binary(this.run.topology(notes.body.topology));
+    this.audience.event({ t: "log", level: "info", text: notes.sentence });
     this.tell();
   }
 
@@ -267,17 +254,14 @@ export class Player {
     return Math.hypot(...sum) / Math.max(1, vertices.length);
   }
 
-  private flags(): number {
+  private pack(field = this.field): ArrayBuffer {
+    const { topology } = this.notes.body;
     const { status } = this.look;
-    return (
+    const flags =
       (this.playing ? 0 : PAUSED) |
       (status === "diverged" ? DIVERGED : 0) |
-      (status === "at-rest" ? AT_REST : 0)
-    );
-  }
-
-  private pack(): ArrayBuffer {
-    return this.run.frame(this.notes.body.topology, this.frame, this.field, this.seq, this.flags());
+      (status === "at-rest" ? AT_REST : 0);
+    return this.run.frame(topology, this.frame, field, this.seq, flags);
   }
 
   private store(): void {
@@ -369,18 +353,11 @@ export class Player {
       from[3 * vertex + 2]!,
     ];
     const values = this.notes.fields.map((field) => {
-      const packed = this.run.frame(this.notes.body.topology, 0, field.id, 0, 0);
-      if (packed.byteLength === 0)
-        return { field: field.id, name: field.name, value: null, unit: field.unit };
-      const view = new DataView(packed);
+      const view = new DataView(this.pack(field.id));
       const [low, high] = [view.getFloat32(56, true), view.getFloat32(60, true)];
-      const q = view.getUint16(64 + 8 * shown + 6, true);
-      return {
-        field: field.id,
-        name: field.name,
-        value: low + ((high - low) * q) / 65535,
-        unit: field.unit,
-      };
+      const share = view.getUint16(64 + 8 * shown + 6, true) / 65535;
+      const { id, name, unit } = field;
+      return { field: id, name, value: finite(low + (high - low) * share), unit };
     });
     this.audience.event({
       t: "picked",
@@ -427,7 +404,12 @@ export class Player {
               : "paused";
     const grabs: GrabState[] = [...this.grabs].map(([id, grab]) => {
       const pull = this.run.pull(id);
-      return { id, ...grab, force: pull?.force ?? [0, 0, 0], stretch: pull?.stretch ?? 0 };
+      return {
+        id,
+        ...grab,
+        force: pull ? [...pull.force] : [0, 0, 0],
+        stretch: pull?.stretch ?? 0,
+      };
     });
     return {
       t: "stat",
@@ -458,7 +440,9 @@ export class Player {
     if (state === "at-rest") return `At rest after ${time}.`;
     if (state === "diverged") return `Diverged at ${time}: reset, and load it less.`;
     if (state === "past") return "A stored frame; LIVE goes back to the present.";
-    return state === "playing" ? "Time runs in this page." : this.notes.sentence;
+    return state === "playing"
+      ? "Time runs. Drag the body to pull on it."
+      : "Press Space, or drag the body.";
   }
 }
 

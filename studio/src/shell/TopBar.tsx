@@ -1,4 +1,5 @@
 import { Button } from "../controls/Choice";
+import icon from "../icon.svg";
 import { MODE_TITLES, MODES, openSheet, setMode, themeInForce, usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -13,7 +14,7 @@ export function TopBar() {
   return (
     <header className="top-bar" data-testid="top-bar">
       <span className="brand">
-        <img src="icon.svg" alt="" width="18" height="18" />
+        <img src={icon} alt="" width="18" height="18" />
         VoxSoft
       </span>
       <nav className="modes" aria-label="Modes">

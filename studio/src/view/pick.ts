@@ -2,6 +2,9 @@
 // are drawn: a few milliseconds for bodies of some 30,000 triangles, once for each press.
 import { type Ray, Vector3 } from "three";
 
+// Shares of a triangle by which a ray may pass beside it: none slips through between two.
+const SLACK = 1e-9;
+
 export interface Hit {
   readonly vertex: number;
   readonly triangle: readonly [number, number, number];
@@ -50,12 +53,12 @@ export function pick(
     const sy = oy - ay;
     const sz = oz - az;
     const u = (sx * px + sy * py + sz * pz) * inverse;
-    if (u < 0 || u > 1) continue;
+    if (u < -SLACK || u > 1 + SLACK) continue;
     const qx = sy * e1z - sz * e1y;
     const qy = sz * e1x - sx * e1z;
     const qz = sx * e1y - sy * e1x;
     const v = (dx * qx + dy * qy + dz * qz) * inverse;
-    if (v < 0 || u + v > 1) continue;
+    if (v < -SLACK || u + v > 1 + SLACK) continue;
     const distance = (e2x * qx + e2y * qy + e2z * qz) * inverse;
     if (distance <= 0 || distance >= best) continue;
     if (!keep(ray.at(distance, point))) continue;

@@ -19,7 +19,7 @@ export function download(blob: Blob, name: string): void {
 }
 
 function nameFor(extension: string): string {
-  const name = useStudio.getState().document?.name || "voxsoft";
+  const name = useStudio.getState().document?.name.replace(/\.toml$/, "") || "voxsoft";
   const time = useShown.getState().time;
   return `${name}-${time.toFixed(3)}s.${extension}`;
 }

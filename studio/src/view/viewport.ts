@@ -259,6 +259,8 @@ export class Viewport {
     const labels = this.words(view, mesh);
     this.ground.face(this.rig.toEye.z);
     this.renderer.render(this.scene, this.rig.camera);
+    // Words must not catch clicks that are meant for the body.
+    this.labels.element.classList.toggle("passive", view.tape || this.grabs.holding);
     this.labels.set(labels);
     this.labels.place(this.rig.camera, this.element.clientWidth, this.element.clientHeight);
     this.hover(now, view);

@@ -179,3 +179,56 @@ def test_a_click_tells_all_values_and_adds_a_plot(tab):
     assert "mm" in picked.inner_text()
     tab.find("plot-picked").click()
     tab.until("document.querySelectorAll('[data-testid=plot-probes] .plot-key span').length === 2")
+
+
+def test_a_picture_is_saved_at_twice_the_size(tab):
+    tab.find("view-film").click()
+    with tab.page.expect_download() as waiting:
+        tab.find("picture-2").click()
+    picture = Image.open(waiting.value.path())
+    box = tab.page.locator(".viewport canvas").bounding_box()
+    assert picture.size == (2 * round(box["width"]), 2 * round(box["height"]))
+    assert len(np.unique(np.asarray(picture).reshape(-1, 4), axis=0)) > 200
+    assert waiting.value.suggested_filename.startswith("finger-")
+
+
+def test_an_animation_has_a_frame_for_each_moment(tab):
+    tab.find("view-film").click()
+    tab.find("record-gif").click()
+    tab.find("stop-recording").wait_for()
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.3 || voxsoft.state === 'at-rest'")
+    with tab.page.expect_download() as waiting:
+        tab.find("stop-recording").click()
+    film = Image.open(waiting.value.path())
+    assert film.format == "GIF"
+    assert film.n_frames > 1
+
+
+def test_the_tape_measures_between_two_points(tab):
+    corner = tab.page.evaluate("voxsoft.screenOf(0)")
+    tab.page.locator(".viewport canvas").focus()
+    tab.page.keyboard.press("1")
+    tab.until(f"Math.abs(voxsoft.screenOf(0)[0] - {corner[0]}) > 5")
+    vertices = tab.page.evaluate(
+        """() => {
+          const all = [];
+          for (let i = 0; voxsoft.vertexPosition(i); i++) {
+            all.push([...voxsoft.vertexPosition(i).map((a) => 1000 * a), ...voxsoft.screenOf(i)]);
+          }
+          return all;
+        }"""
+    )
+    # On the side toward the eye, half way up: 5 mm and 35 mm along a finger of 40 mm.
+    vertices = np.array(vertices)
+    front = vertices[np.isclose(vertices[:, 1], vertices[:, 1].min(), atol=0.1)]
+    middle = front[np.isclose(front[:, 2], np.median(front[:, 2]), atol=0.1)]
+    tab.find("tape").click()
+    tab.until("document.querySelector('.view-labels.passive') !== null")
+    for x in (5, 35):
+        end = middle[np.abs(middle[:, 0] - middle[:, 0].min() - x).argmin()]
+        tab.page.mouse.click(*end[3:])
+    label = tab.find("label-tape")
+    label.wait_for()
+    # A pixel of the page is about 0.06 mm of the body here.
+    assert float(label.inner_text().removesuffix(" mm")) == pytest.approx(30, abs=0.3)

@@ -1,0 +1,18 @@
+// One file that is alive without any server: the view and the run pane over the core in a worker.
+import core from "virtual:voxsoft-core";
+import { createRoot } from "react-dom/client";
+import { WasmEngine } from "../engine/wasm";
+import CoreWorker from "../engine/wasm.worker?worker&inline";
+import { usePage, watchTheme } from "../store/page";
+import { connect } from "../store/session";
+import { bytesOf } from "./base64";
+import { Viewer } from "./Viewer";
+import "../theme.css";
+import "../controls/controls.css";
+
+watchTheme();
+usePage.setState({ mode: "simulate" });
+const root = createRoot(document.getElementById("root") as HTMLElement);
+const packed = document.getElementById("voxsoft-scene")?.textContent?.trim() ?? "";
+if (packed) connect(new WasmEngine(new CoreWorker(), bytesOf(core), bytesOf(packed)));
+root.render(<Viewer empty={!packed} />);
