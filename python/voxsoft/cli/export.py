@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from voxsoft.cli.exits import errors_in_words
+from voxsoft.cli.exits import USAGE, errors_in_words
 from voxsoft.cli.options import Sets
 from voxsoft.cli.output import plain, say
 
@@ -17,8 +17,9 @@ def export(
         Path, typer.Argument(help="A design file or a run folder.", exists=True, readable=True)
     ],
     target: Annotated[
-        Path, typer.Argument(help="File to write: .vtu .msh .inp .stl .obj .npy .toml .csv")
-    ],
+        Path | None,
+        typer.Argument(help="File to write: .vtu .msh .inp .stl .obj .npy .toml .csv"),
+    ] = None,
     sets: Sets = None,
     deformed: Annotated[
         bool, typer.Option("--deformed", help="The shape under load (run folders only).")
@@ -26,10 +27,23 @@ def export(
     unit: Annotated[
         str, typer.Option("--unit", help="Unit of the numbers in .stl and .obj files.")
     ] = "m",
+    html: Annotated[
+        Path | None,
+        typer.Option("--html", help="Page to write, alive in any browser without VoxSoft."),
+    ] = None,
 ) -> None:
-    """Write a design or a result as a mesh, surface, voxel array, resolved design or table."""
+    """Write a design or a result as a mesh, surface, voxel array, design, table or page."""
     from voxsoft import files
 
+    if target is None and html is None:
+        say("name the file to write, or --html FILE")
+        raise typer.Exit(USAGE)
     with errors_in_words():
-        files.export(source, target, sets or [], deformed=deformed, unit=unit)
-    say(f"wrote {plain(str(target))}")
+        if target is not None:
+            files.export(source, target, sets or [], deformed=deformed, unit=unit)
+            say(f"wrote {plain(str(target))}")
+        if html is not None:
+            from voxsoft.studio.html import export_page
+
+            export_page(source, html, sets or [])
+            say(f"wrote {plain(str(html))}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from typing import Any, Final, Literal, Self
+from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
 from pydantic import (
     Field,
@@ -37,6 +37,9 @@ from voxsoft.materials import AnyMaterial, Material, load_card
 from voxsoft.records import Record, plain_error
 from voxsoft.shapes import AnyShape
 from voxsoft.units import FILE_CONTEXT, PositiveLength
+
+if TYPE_CHECKING:
+    from voxsoft.studio.html import LivePage
 
 SCHEMA: Final = "voxsoft/1"
 
@@ -313,6 +316,26 @@ class Design(Record):
         from voxsoft.files.designs import save
 
         save(self, path)
+
+    def show(self) -> LivePage:
+        """Show the design as a page that is alive: in a notebook, or as a file with ``save``.
+
+        The body moves in the browser, under hands and loads, with no server behind it.
+
+        Raises
+        ------
+        VoxSoftError
+            The design cannot be meshed or solved, or has layers, which do not move over time.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> "voxsoft-scene" in families.beam().show().text
+        True
+        """
+        from voxsoft.studio.html import page_of
+
+        return page_of(self)
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:

@@ -8,7 +8,7 @@ Examples
 --------
 >>> import voxsoft as vs
 >>> from voxsoft.design import families
->>> from voxsoft.plot import plot_body
+>>> from voxsoft.plot import body_image, plot_body
 >>> figure = plot_body(vs.simulate(families.beam()))
 >>> [axes.get_label() for axes in figure.axes]
 ['body', 'colorbar']
@@ -27,6 +27,7 @@ from voxsoft.plot.coupon import plot_coupons
 from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
+    "body_image",
     "plot_agreement",
     "plot_body",
     "plot_convergence",

@@ -105,6 +105,42 @@ def plot_body(
     return _figure(picture, camera, colors, name if title is None else title)
 
 
+def body_image(
+    body: Result | Mesh, *, pixels: int = 320, view: tuple[float, float] = (-60.0, 25.0)
+) -> NDArray[np.uint8]:
+    """Draw a body small and without words, as for a list.
+
+    Parameters
+    ----------
+    body
+        A result, which is drawn deformed and colored by its displacement, or a mesh.
+    pixels
+        Size of the longer side.
+    view
+        Azimuth and elevation of the eye in degrees.
+
+    Returns
+    -------
+    ndarray of uint8, shape (h, w, 3)
+        Red, green, blue.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> max(body_image(vs.mesh_of(families.sphere()), pixels=64).shape) <= 80
+    True
+    """
+    mesh = body.mesh if isinstance(body, Result) else body
+    positions = body.positions if isinstance(body, Result) else mesh.vertices
+    camera = Camera.around(positions, view, pixels * _FINER)
+    surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
+    colors = _colors(body, mesh, surface, None, "")
+    seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
+    picture = _paint(seen, positions, surface, colors, camera, None)
+    return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
+
+
 @dataclass(frozen=True)
 class _Colors:
     """The color of each corner of each triangle as a number, or of each triangle as it is."""
@@ -223,10 +259,17 @@ def _with_ghost(
     return np.where(seen.covered[..., None], picture, pale[..., None])
 
 
-def _figure(picture: Floats, camera: Camera, colors: _Colors, title: str) -> Figure:
+def _averaged(picture: Floats) -> Floats:
+    """Average the finer pixels that were drawn."""
     height, width = picture.shape[0] // _FINER, picture.shape[1] // _FINER
     cropped = picture[: height * _FINER, : width * _FINER]
-    averaged = cropped.reshape(height, _FINER, width, _FINER, 3).mean(axis=(1, 3))
+    averaged: Floats = cropped.reshape(height, _FINER, width, _FINER, 3).mean(axis=(1, 3))
+    return averaged
+
+
+def _figure(picture: Floats, camera: Camera, colors: _Colors, title: str) -> Figure:
+    averaged = _averaged(picture)
+    height, width = averaged.shape[:2]
     bar = 1.1 if colors.norm is not None else 0.0
     figure = empty_figure(max(width / 150, 3.0) + bar, max(height / 150, 1.6) + 0.9)
     axes = figure.add_subplot(label="body")

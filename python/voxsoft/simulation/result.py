@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.records import closest
 from voxsoft.simulation.places import Place
+
+if TYPE_CHECKING:
+    from voxsoft.studio.html import LivePage
 
 #: How a trial can end; ``ok`` is the only one whose numbers may be compared.
 Status = Literal["ok", "no-cavity", "disconnected", "diverged", "not-at-rest", "failed"]
@@ -216,6 +219,21 @@ class Result:
         }
         free = set(metrics.METRICS) - metrics.PROBE_METRICS
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
+
+    def show(self) -> LivePage:
+        """Show the design as a page that is alive: in a notebook, or as a file with ``save``.
+
+        The page begins at the unloaded shape and comes to this result when time runs.
+
+        Raises
+        ------
+        VoxSoftError
+            The design has layers, which do not move over time.
+        """
+        # `studio` lies above `simulation` in the layers; this convenience reaches up when called.
+        from voxsoft.studio.html import page_of
+
+        return page_of(self)
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""

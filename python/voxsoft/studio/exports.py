@@ -18,10 +18,11 @@ from voxsoft.errors import FileError
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.html import export_page, page_of_body
 from voxsoft.units import parse
 
 #: What can be written of the body that is shown.
-FORMATS: Final = ("toml", "stl", "obj", "vtu", "msh", "inp", "npy", "csv", "run", "png")
+FORMATS: Final = ("toml", "stl", "obj", "vtu", "msh", "inp", "npy", "csv", "run", "png", "html")
 _SURFACES: Final = ("stl", "obj")
 _MESHES: Final = ("vtu", "msh", "inp")
 #: Dots per inch of a picture of normal size.
@@ -111,6 +112,8 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         _write_run(shown, target)
     elif format == "png":
         _draw(shown, target, options.get("scale", 1))
+    elif format == "html":
+        page_of_body(shown.body, factors=shown.factors, text=shown.text).save(target)
     else:
         raise FileError("format", f'"{format}" is not known', f"use {', '.join(FORMATS)}")
     return target
@@ -127,6 +130,9 @@ def export_run(source: Path, format: str, options: dict[str, Any], folder: Path)
     target = folder / f"{source.name}.{format}"
     if format == "run":
         return _archive(source, target.with_suffix(".zip"))
+    if format == "html":
+        export_page(source, target)
+        return target
     unit = str(options.get("unit", "mm")) if format in _SURFACES else "m"
     files.export(source, target, deformed=bool(options.get("deformed", False)), unit=unit)
     return target

@@ -113,7 +113,7 @@ class Mover:
                     "load", "is zero in the design, which leaves its direction open", "set it there"
                 )
             factor = value / final if final else 0.0
-        for inner in self._inner_loads(index):
+        for inner in inner_loads(self.body, index):
             self._live.set_load(inner, factor)
         self.loads[index] = factor * final
         self.state = "moving"
@@ -165,7 +165,7 @@ class Mover:
         for number in list(self._held):
             self.release(number)
         for index in range(len(self._final)):
-            for inner in self._inner_loads(index):
+            for inner in inner_loads(self.body, index):
                 self._live.set_load(inner, None)
         self.loads = list(self._final)
         self.time, self.steps, self.state = 0.0, 0, "moving"
@@ -202,15 +202,16 @@ class Mover:
         found = report["breakdown"]
         self.breakdown = None if found is None else _triple(found[1])
 
-    def _inner_loads(self, index: int) -> range:
-        """The core's loads that one load of the design became: one for each cavity."""
-        design, cavities = self.body.setup.design, len(self.body.mesh.cavities)
-        counts = [
-            cavities if isinstance(load, Pressure) and load.cavity == "all" else 1
-            for load in design.loads
-        ]
-        first = sum(counts[:index])
-        return range(first, first + counts[index])
+
+def inner_loads(body: StudioBody, index: int) -> range:
+    """The core's loads that one load of the design became: one for each cavity."""
+    cavities = len(body.mesh.cavities)
+    counts = [
+        cavities if isinstance(load, Pressure) and load.cavity == "all" else 1
+        for load in body.setup.design.loads
+    ]
+    first = sum(counts[:index])
+    return range(first, first + counts[index])
 
 
 def _finite(value: float) -> float | None:

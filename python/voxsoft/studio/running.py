@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import io
 import math
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from voxsoft import files
+from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, simulate
 from voxsoft.studio.commands import RunSpec
 from voxsoft.studio.rest import digits_lost
@@ -49,7 +51,10 @@ def run_once(task: Task, progress: Progress) -> str:
 
 def draw(result: Result, folder: Path) -> None:
     """Draw the picture of a result for the list of runs."""
-    from voxsoft.files.figures import save_figure  # matplotlib is slow to load
-    from voxsoft.plot import plot_body
+    from matplotlib.image import imsave  # slow to load
 
-    save_figure(plot_body(result), folder / THUMBNAIL)
+    from voxsoft.plot.body import body_image
+
+    drawn = io.BytesIO()
+    imsave(drawn, body_image(result), format="png")
+    write_whole(folder / THUMBNAIL, drawn.getvalue())

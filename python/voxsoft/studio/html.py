@@ -1,0 +1,183 @@
+"""One self-contained page of a body: the viewer, the core as WebAssembly, and the scene."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final
+
+import msgspec
+import numpy as np
+
+from voxsoft import _core
+from voxsoft.design import Design
+from voxsoft.errors import FileError, SimulationError
+from voxsoft.files.designs import FilePath, load
+from voxsoft.files.whole import write_whole
+from voxsoft.simulation import Result
+from voxsoft.studio import events
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.mover import TOLERANCE, Mover, inner_loads
+
+#: The page without a scene, built with the studio's page.
+TEMPLATE: Final = Path(__file__).with_name("static") / "viewer.html"
+
+_PLACE: Final = '<script id="voxsoft-scene" type="application/octet-stream;base64">'
+_TITLE: Final = "<title>VoxSoft</title>"
+
+
+class Notes(msgspec.Struct):
+    """What a scene says of itself to the page."""
+
+    version: str
+    name: str
+    text: str
+    sentence: str
+    fields: list[events.Field]
+    body: events.Body
+
+
+@dataclass(frozen=True)
+class LivePage:
+    """A page that is alive in any browser, also in the cell of a notebook.
+
+    Attributes
+    ----------
+    text
+        The page, with nothing left outside it.
+    height
+        Height in a notebook, in pixels.
+    """
+
+    text: str = field(repr=False)
+    height: int = 560
+
+    def _repr_html_(self) -> str:
+        """Show the page in a notebook, kept apart from it."""
+        return (
+            f'<iframe srcdoc="{html.escape(self.text)}" sandbox="allow-scripts" '
+            f'style="width: 100%; height: {self.height}px; border: 0"></iframe>'
+        )
+
+    def save(self, path: FilePath) -> None:
+        """Write the page to a file.
+
+        Raises
+        ------
+        FileError
+            It cannot be written.
+        """
+        write_whole(path, self.text)
+
+
+def page_of_body(
+    body: StudioBody, *, factors: Sequence[float] = (), text: str = "", sentence: str = ""
+) -> LivePage:
+    """Make the page of a body.
+
+    Parameters
+    ----------
+    body
+        The body; it must be one that can be solved and has no layers.
+    factors
+        How many times as large as in the design each load is; default: as in the design.
+    text
+        The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
+    sentence
+        What the page says first.
+
+    Raises
+    ------
+    FileError
+        The viewer was not built.
+    VoxSoftError
+        The body cannot be solved, or has layers, which do not move over time.
+    """
+    if body.refusal is not None:
+        raise body.refusal
+    if not Mover.can_move(body):
+        raise SimulationError("layers", "do not move over time yet, so no page can show them live")
+    setup = body.under(factors) if factors else body.setup
+    design = setup.design
+    solver = design.solver
+    notes = Notes(
+        version=_core.__version__,
+        name=design.name,
+        text=text or design.to_toml(),
+        sentence=sentence or "Press play, pull on the body, change the loads.",
+        fields=list(FIELDS),
+        body=_event(replace(body, setup=setup)),
+    )
+    scene = _core.pack_scene(
+        setup.problem,
+        body.mesh.triangles.astype(np.uint32),
+        body.surface.tags,
+        body.mesh.voxel_size or 0.0,
+        substeps=solver.substeps,
+        damping=solver.damping if isinstance(solver.damping, float) else None,
+        retardation=solver.retardation or 0.0,
+        tolerance=TOLERANCE,
+        notes=msgspec.json.encode(notes).decode(),
+    )
+    return LivePage(_filled(scene, design.name))
+
+
+def _event(body: StudioBody) -> events.Body:
+    """What the page is told of a body; a load of several cavities counts once for each."""
+    event = body.event()
+    event.loads = [
+        msgspec.structs.replace(told, index=inner)
+        for told in event.loads
+        for inner in inner_loads(body, told.index)
+    ]
+    return event
+
+
+def page_of(shown: Design | Result) -> LivePage:
+    """Make the page of a design, or of what came of it.
+
+    Raises
+    ------
+    VoxSoftError
+        The design cannot be meshed or solved, or has layers.
+    """
+    design = shown.design if isinstance(shown, Result) else shown
+    body = StudioBody.of(design, rev=1, topology=1)
+    sentence = ""
+    if isinstance(shown, Result):
+        sentence = f"{shown.message[:1].upper()}{shown.message[1:]}."
+    return page_of_body(body, sentence=sentence)
+
+
+def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] = ()) -> None:
+    """Write the page of a design file or a run folder.
+
+    Raises
+    ------
+    FileError
+        The source cannot be read, or the target not be written.
+    VoxSoftError
+        The design cannot be meshed or solved, or has layers.
+    """
+    origin = Path(source)
+    if origin.is_dir() and assignments:
+        raise FileError(str(origin), "is a run, whose design is settled", "export the design file")
+    file = origin / "design.toml" if origin.is_dir() else origin
+    if not file.is_file():
+        raise FileError(str(origin), "is no run folder: it holds no design.toml")
+    page_of(load(file, assignments=assignments)).save(target)
+
+
+def _filled(scene: bytes, name: str) -> str:
+    if not TEMPLATE.is_file():
+        raise FileError("studio", "the viewer was not built", "run `make studio` in the sources")
+    template = TEMPLATE.read_text(encoding="utf-8")
+    if template.count(_PLACE) != 1:
+        raise FileError(TEMPLATE.name, "has no place for a scene", "run `make studio` again")
+    packed = base64.b64encode(scene).decode("ascii")
+    titled = template.replace(_TITLE, f"<title>{html.escape(name)} · VoxSoft</title>", 1)
+    return titled.replace(_PLACE, _PLACE + packed, 1)

@@ -1,0 +1,103 @@
+"""Pages that are alive without a server."""
+
+import base64
+import html
+import json
+import re
+
+import pytest
+from typer.testing import CliRunner
+
+import voxsoft as vs
+from voxsoft.cli.app import app
+from voxsoft.design import families
+from voxsoft.errors import DesignError, FileError
+from voxsoft.studio.html import page_of
+
+CYLINDER = families.family_text("cylinder")
+
+
+def scene_of(page):
+    packed = re.search(
+        r'<script id="voxsoft-scene" type="application/octet-stream;base64">([^<]*)</script>', page
+    )
+    return base64.b64decode(packed[1], validate=True)
+
+
+def notes_of(page):
+    """The notes are a list of bytes behind magic and version."""
+    scene = scene_of(page)
+    assert scene[:4] == b"VXSC"
+    length = int.from_bytes(scene[8:12], "little")
+    return json.loads(scene[12 : 12 + length])
+
+
+def test_a_page_holds_its_scene_and_says_what_it_shows():
+    design = families.cylinder()
+    page = design.show().text
+    notes = notes_of(page)
+    assert notes["name"] == "cylinder"
+    assert "= radius - wall" in notes["text"]
+    assert notes["body"]["voxels"] == 300
+    assert notes["body"]["loads"][0]["value"] == 4000.0
+    assert len(notes["fields"]) == 9
+    assert "<title>cylinder · VoxSoft</title>" in page
+
+
+def test_a_page_loads_nothing_from_elsewhere():
+    page = families.beam().show().text
+    outside = re.findall(r"""(?:src|href)=["'](?!data:|blob:|#)([^"']+)""", page.split("<script")[0])
+    assert outside == []
+
+
+def test_a_result_shows_its_sentence_and_a_notebook_an_iframe():
+    result = vs.simulate(families.beam())
+    shown = result.show()
+    assert "At rest after" in notes_of(shown.text)["sentence"]
+    cell = shown._repr_html_()
+    assert cell.startswith("<iframe srcdoc=")
+    assert 'sandbox="allow-scripts"' in cell
+    inner = html.unescape(re.search(r'srcdoc="([^"]*)"', cell)[1])
+    assert inner == shown.text
+
+
+def test_pressure_in_several_cavities_counts_once_for_each():
+    two = CYLINDER.replace(
+        'body   = { kind = "difference", of = ["outer", "cavity"] }',
+        'ball   = { kind = "sphere", radius = "5 mm", center = [0, 0, "60 mm"] }\n'
+        'tower  = { kind = "cylinder", radius = "15 mm", height = "80 mm" }\n'
+        'both   = { kind = "union", of = ["outer", "tower"] }\n'
+        'body   = { kind = "difference", of = ["both", "cavity", "ball"] }',
+    )
+    import tomllib
+
+    design = vs.Design.from_document(tomllib.loads(two))
+    loads = notes_of(page_of(design).text)["body"]["loads"]
+    assert [load["index"] for load in loads] == [0, 1]
+
+
+def test_what_cannot_be_shown_live_is_said():
+    with pytest.raises(DesignError, match="nothing holds the body"):
+        families.cylinder().with_values("clamps=[]").show()
+
+
+def test_the_command_writes_a_page_of_a_file_and_of_a_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    families.beam().save(tmp_path / "beam.toml")
+    runner = CliRunner()
+    done = runner.invoke(app, ["export", "beam.toml", "--html", "beam.html", "--set", "length=60 mm"])
+    assert done.exit_code == 0, done.stderr
+    assert notes_of((tmp_path / "beam.html").read_text())["body"]["voxels"] == 48
+    assert runner.invoke(app, ["run", "beam.toml", "--out", "run"]).exit_code == 0
+    done = runner.invoke(app, ["export", "run", "beam.stl", "--html", "run.html"])
+    assert done.exit_code == 0, done.stderr
+    assert notes_of((tmp_path / "run.html").read_text())["name"] == "beam"
+    assert (tmp_path / "beam.stl").is_file()
+    assert runner.invoke(app, ["export", "beam.toml"]).exit_code == 2
+    assert runner.invoke(app, ["export", "run", "--html", "a.html", "--set", "a=1"]).exit_code == 3
+
+
+def test_a_missing_viewer_is_said(monkeypatch, tmp_path):
+    monkeypatch.setattr("voxsoft.studio.html.TEMPLATE", tmp_path / "viewer.html")
+    with pytest.raises(FileError, match="make studio"):
+        families.beam().show()
