@@ -46,7 +46,9 @@ def test_a_page_holds_its_scene_and_says_what_it_shows():
 
 def test_a_page_loads_nothing_from_elsewhere():
     page = families.beam().show().text
-    outside = re.findall(r"""(?:src|href)=["'](?!data:|blob:|#)([^"']+)""", page.split("<script")[0])
+    outside = re.findall(
+        r"""(?:src|href)=["'](?!data:|blob:|#)([^"']+)""", page.split("<script")[0]
+    )
     assert outside == []
 
 
@@ -85,7 +87,9 @@ def test_the_command_writes_a_page_of_a_file_and_of_a_run(tmp_path, monkeypatch)
     monkeypatch.chdir(tmp_path)
     families.beam().save(tmp_path / "beam.toml")
     runner = CliRunner()
-    done = runner.invoke(app, ["export", "beam.toml", "--html", "beam.html", "--set", "length=60 mm"])
+    done = runner.invoke(
+        app, ["export", "beam.toml", "--html", "beam.html", "--set", "length=60 mm"]
+    )
     assert done.exit_code == 0, done.stderr
     assert notes_of((tmp_path / "beam.html").read_text())["body"]["voxels"] == 48
     assert runner.invoke(app, ["run", "beam.toml", "--out", "run"]).exit_code == 0

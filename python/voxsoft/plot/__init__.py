@@ -8,13 +8,13 @@ Examples
 --------
 >>> import voxsoft as vs
 >>> from voxsoft.design import families
->>> from voxsoft.plot import body_image, plot_body
+>>> from voxsoft.plot import plot_body
 >>> figure = plot_body(vs.simulate(families.beam()))
 >>> [axes.get_label() for axes in figure.axes]
 ['body', 'colorbar']
 """
 
-from voxsoft.plot.body import plot_body
+from voxsoft.plot.body import body_image, plot_body
 from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
 from voxsoft.plot.comparison import (
     plot_agreement,
