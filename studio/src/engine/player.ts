@@ -48,7 +48,6 @@ const TELL_EVERY = 100;
 const MOST_STORED = 64 * 1024 * 1024;
 
 export class Player {
-  readonly notes: Notes;
   private playing = false;
   private past: number | null = null;
   private look: CoreLook;
@@ -65,7 +64,7 @@ export class Player {
   private fresh = true;
   private field = 0;
   private seq = 0;
-  private loads: number[];
+  private loads: number[] = [];
   private grabs = new Map<
     number,
     { vertex: number; target: [number, number, number]; stiffness: number }
@@ -81,10 +80,10 @@ export class Player {
 
   constructor(
     private readonly run: Run,
+    private readonly notes: Notes,
     private readonly audience: Audience,
   ) {
-    this.notes = JSON.parse(run.notes) as Notes;
-    this.loads = this.notes.body.loads.map((load) => load.value);
+    for (const load of notes.body.loads) this.loads[load.index] = load.value;
     this.rest = run.positions();
     this.look = run.advance(0);
   }
@@ -318,7 +317,7 @@ export class Player {
   }
 
   private load(index: number, value: number | null, factor: number | null): void {
-    const load = this.notes.body.loads[index];
+    const load = this.notes.body.loads.find((one) => one.index === index);
     if (!load) return;
     const share = factor ?? (load.value === 0 ? 0 : (value ?? 0) / load.value);
     this.run.setLoad(index, share);

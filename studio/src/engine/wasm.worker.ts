@@ -1,6 +1,6 @@
 // The worker: opens a scene with the core and lets a player play it.
 import { Core } from "./core";
-import { Player } from "./player";
+import { type Notes, Player } from "./player";
 import type { FromWorker, ToWorker } from "./wasm";
 
 const post = (message: FromWorker) =>
@@ -17,7 +17,8 @@ addEventListener("message", async (message: MessageEvent<ToWorker>) => {
   if (data.kind === "open") {
     try {
       const core = await Core.load(data.core);
-      player = new Player(core.open(new Uint8Array(data.scene)), {
+      const run = core.open(new Uint8Array(data.scene));
+      player = new Player(run, JSON.parse(run.notes) as Notes, {
         event: (event) => post({ kind: "event", event }),
         binary: (bytes) => post(bytes),
       });

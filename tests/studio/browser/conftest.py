@@ -145,10 +145,10 @@ class Tab:
     errors: list[str] = field(default_factory=list)
     requests: list[str] = field(default_factory=list)
 
-    def until(self, condition, patience=PATIENCE):
+    def until(self, condition, patience=PATIENCE, frame=None):
         """Wait for a condition in the page; its policy forbids Playwright's own way."""
         end = time.monotonic() + patience
-        while not (value := self.page.evaluate(condition)):
+        while not (value := (frame or self.page).evaluate(condition)):
             assert time.monotonic() < end, f"never came: {condition}"
             time.sleep(0.03)
         return value

@@ -1,0 +1,147 @@
+import { readFileSync } from "node:fs";
+import { beforeEach, describe, expect, it } from "vitest";
+import { Core } from "../src/engine/core";
+import type { Draft } from "../src/engine/engine";
+import { decode, type Frame, positionIn } from "../src/engine/frames";
+import { type Notes, Player } from "../src/engine/player";
+import type { AnyEvent, BodyEvent, StatEvent } from "../src/protocol";
+
+const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.meta.url)));
+
+// What a server would note of the beam of 6 x 2 x 2 voxels in beam.scene.
+const BODY: BodyEvent = {
+  ...{ t: "body", topology: 4, rev: 1, voxels: 24, vertices: 63, tets: 120 },
+  ...{ surface_vertices: 58, triangles: 112, voxel_size: 0.005, cavities: [], leaks: [] },
+  ...{ mass: 0.003, volume: 3e-6, findings: [], clamps: [], parts: [], seconds: 0, memory: 0 },
+  ...{ smooth: false, probes: [{ name: "tip", center: [0.03, 0.005, 0.005], vertices: [57] }] },
+  bounds: [
+    [0, 0, 0],
+    [0.03, 0.01, 0.01],
+  ],
+  loads: [
+    {
+      ...{ index: 0, kind: "gravity", label: "gravity", value: 9.81, unit: "m/s²", factor: 1 },
+      ...{ min: 0, max: 20, at: [0.015, 0.005, 0.005], direction: [0, 0, -1] },
+    },
+  ],
+};
+
+const NOTES: Notes = {
+  version: "0",
+  name: "beam",
+  text: "",
+  sentence: "made for a test",
+  fields: [{ id: 0, name: "displacement", title: "Displacement", unit: "m", signed: false }],
+  body: BODY,
+};
+
+let events: AnyEvent[];
+let frames: Frame[];
+let player: Player;
+let seq: number;
+let clock: number;
+
+const take = (draft: Draft) => player.take({ ...draft, seq: ++seq });
+const stat = () => events.findLast((one) => one.t === "stat") as StatEvent;
+const lastFrame = () => frames.at(-1) as Frame;
+
+/** Let `seconds` of wall-clock time pass, at 60 turns a second, with every frame shown. */
+function pass(seconds: number): void {
+  for (let i = 0; i < seconds * 60 && player.busy; i++) {
+    clock += 1000 / 60;
+    player.turn(clock);
+    while (shown < frames.length) {
+      take({ t: "ack", frame: frames[shown++]?.number ?? 0 });
+    }
+  }
+}
+let shown: number;
+
+beforeEach(async () => {
+  [events, frames, seq, shown] = [[], [], 0, 0];
+  clock = performance.now();
+  const run = (await Core.load(file("../public/voxsoft.wasm"))).open(file("beam.scene"));
+  player = new Player(run, NOTES, {
+    event: (event) => events.push(event),
+    binary(message) {
+      const decoded = decode(message);
+      if (decoded.kind === "frame") frames.push(decoded);
+    },
+  });
+  player.greet();
+});
+
+describe("a scene that plays in the page", () => {
+  it("greets as a server does", () => {
+    expect(events.map((event) => event.t)).toEqual(["hello", "document", "body", "log", "stat"]);
+    expect(stat().state).toBe("paused");
+  });
+
+  it("sags to rest, tells so, and keeps its frames", () => {
+    take({ t: "play" });
+    expect(stat().state).toBe("playing");
+    pass(20);
+    expect(stat().state).toBe("at-rest");
+    expect(lastFrame().atRest).toBe(true);
+    expect(positionIn(lastFrame(), 57)[2]).toBeLessThan(0.0099);
+    expect(stat().frames_stored).toBeGreaterThan(3);
+    const rows = events.flatMap((event) => (event.t === "plot" ? event.rows : []));
+    expect(rows.at(-1)?.[4]).toBeGreaterThan(1e-4);
+  });
+
+  it("sends no more than two frames to a page that shows none", () => {
+    take({ t: "play" });
+    for (let i = 0; i < 30; i++) {
+      clock += 1000 / 60;
+      player.turn(clock);
+    }
+    expect(frames.length).toBe(2);
+    take({ t: "ack", frame: 0 });
+    expect(frames.length).toBe(3);
+  });
+
+  it("goes back to a stored frame and to the present again", () => {
+    take({ t: "play" });
+    pass(20);
+    const present = positionIn(lastFrame(), 57);
+    take({ t: "ack", frame: 0 });
+    take({ t: "seek", frame: stat().first_frame });
+    expect(stat().state).toBe("past");
+    expect(lastFrame().time).toBeLessThan(0.05);
+    take({ t: "ack", frame: 0 });
+    take({ t: "live" });
+    const again = positionIn(lastFrame(), 57);
+    for (const axis of [0, 1, 2]) expect(again[axis]).toBeCloseTo(present[axis] as number, 7);
+  });
+
+  it("follows a load that is taken away, and wakes for it", () => {
+    take({ t: "play" });
+    pass(20);
+    const sag = positionIn(lastFrame(), 57)[2];
+    take({ t: "load", index: 0, value: 0 });
+    expect(player.busy).toBe(true);
+    pass(20);
+    // Back at its height within 2 % of the sag: rest is told within a share of the load.
+    expect(Math.abs(positionIn(lastFrame(), 57)[2] - 0.01)).toBeLessThan(0.02 * (0.01 - sag));
+    expect(stat().loads).toEqual([0]);
+  });
+
+  it("gives the force of a hand, and lets go of it with a reset", () => {
+    take({ t: "play" });
+    pass(1);
+    take({ t: "grab", id: 3, vertex: 57, target: [0.03, 0.01, 0.02], stiffness: 50 });
+    pass(20);
+    const [grab] = stat().grabs;
+    expect(grab?.vertex).toBe(57);
+    expect(Math.hypot(...(grab?.force ?? [0]))).toBeCloseTo(50 * (grab?.stretch ?? 0), 9);
+    take({ t: "reset" });
+    expect(stat().grabs).toEqual([]);
+    expect(stat().time).toBe(0);
+  });
+
+  it("says what it cannot do", () => {
+    take({ t: "undo" });
+    const error = events.findLast((one) => one.t === "error");
+    expect(error).toMatchObject({ seq: 1, what: expect.stringContaining("by itself") });
+  });
+});
