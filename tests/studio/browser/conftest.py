@@ -113,6 +113,12 @@ def chromium():
         browser.close()
 
 
+@pytest.fixture(scope="session")
+def coarse():
+    """A finger of silicone, so coarse that software can draw it."""
+    return COARSE
+
+
 def serving(folder):
     source = folder / "finger.toml"
     source.write_text(COARSE)
@@ -204,6 +210,27 @@ def tab(served, open_tab):
     one.find("reset").click()
     one.until("voxsoft.time === 0 && voxsoft.state !== 'playing'")
     return one
+
+
+@pytest.fixture
+def alone(chromium):
+    """Opens a page without any network."""
+    contexts = []
+
+    def opening(address):
+        context = chromium.new_context(viewport={"width": 1280, "height": 720}, offline=True)
+        contexts.append(context)
+        tab = Tab(context.new_page())
+        page = tab.page
+        page.on("console", lambda m: tab.errors.append(m.text) if m.type == "error" else None)
+        page.on("pageerror", lambda error: tab.errors.append(str(error)))
+        page.on("request", lambda request: tab.requests.append(request.url))
+        page.goto(address)
+        return tab
+
+    yield opening
+    for context in contexts:
+        context.close()
 
 
 OUTSIDE = re.compile(r"^(?:https?|wss?)://(?!127\.0\.0\.1[:/])")
