@@ -31,13 +31,29 @@ fn full() -> Scene {
         tet_block: (0..10).map(|t| t / 5).collect(),
         vertices: tets.vertices,
         block_fraction: vec![1.0, 0.7],
-        block_filling: vec![Filling::FULL, Filling { shift: [0.1, 0.0, 0.0], spread: [0.9; 3] }],
+        block_filling: vec![
+            Filling::FULL,
+            Filling {
+                shift: [0.1, 0.0, 0.0],
+                spread: [0.9; 3],
+            },
+        ],
         membranes: vec![Membrane::new(triangles[0], corners, fabric).unwrap()],
     };
-    let fiber = Fiber { direction: [0.0, 0.6, 0.8], modulus: 3e4, compression: true };
-    let ogden = Model::Ogden { terms: [(2e4, 1.3), (1e3, 5.0), (0.0, 0.0)] };
+    let fiber = Fiber {
+        direction: [0.0, 0.6, 0.8],
+        modulus: 3e4,
+        compression: true,
+    };
+    let ogden = Model::Ogden {
+        terms: [(2e4, 1.3), (1e3, 5.0), (0.0, 0.0)],
+    };
     let rubber = HyperelasticMaterial::new(ogden, 4e5, 1000.0).unwrap();
-    let rubber = rubber.with_fibers(vec![fiber]).unwrap().with_prony(vec![(0.2, 0.5)]).unwrap();
+    let rubber = rubber
+        .with_fibers(vec![fiber])
+        .unwrap()
+        .with_prony(vec![(0.2, 0.5)])
+        .unwrap();
     let lattice = LatticeMaterial::from_moduli(2e4, 9e4, 1000.0).unwrap();
     let ramp = History::new(vec![0.0, 1.0], vec![0.0, 2.0]).unwrap();
     let motion = Motion {
@@ -52,18 +68,32 @@ fn full() -> Scene {
         voids: vec![([0, 1, 2, 3], 0.5)],
         pressure: 300.0,
     };
-    let pull = LoadKind::Forces { vertices: vec![3], forces: vec![[0.0, 1e-3, 0.0]] };
+    let pull = LoadKind::Forces {
+        vertices: vec![3],
+        forces: vec![[0.0, 1e-3, 0.0]],
+    };
     Scene {
         notes: "{\"name\": \"Würfel\"}".into(),
-        settings: Dynamics { damping: Damping::Rate(3.0), substeps: Some(40), ..Dynamics::default() },
+        settings: Dynamics {
+            damping: Damping::Rate(3.0),
+            substeps: Some(40),
+            ..Dynamics::default()
+        },
         materials: vec![lattice.into(), rubber.into()],
         clamps: vec![
             Clamp::fixed(vec![0, 1]),
-            Clamp { vertices: vec![5], axes: [true, false, true], motion: Some(motion) },
+            Clamp {
+                vertices: vec![5],
+                axes: [true, false, true],
+                motion: Some(motion),
+            },
         ],
         loads: vec![
             Load::gravity([0.0, 0.0, -9.81]),
-            Load { kind: pressure, history: ramp },
+            Load {
+                kind: pressure,
+                history: ramp,
+            },
             Load::constant(pull),
         ],
         floor: Some(Floor { z: -0.01 }),
@@ -78,7 +108,12 @@ fn full() -> Scene {
 fn open(bytes: &[u8]) -> Result<(), SceneError> {
     let scene = Scene::read(bytes)?;
     let problem = scene.problem()?;
-    Display::surface(problem.body(), &scene.triangles, &scene.tags, scene.voxel_size)?;
+    Display::surface(
+        problem.body(),
+        &scene.triangles,
+        &scene.tags,
+        scene.voxel_size,
+    )?;
     Ok(())
 }
 
@@ -87,13 +122,23 @@ fn what_is_written_is_read_again() {
     let models = [
         Model::NeoHookean { c10: 1e4 },
         Model::MooneyRivlin { c10: 1e4, c01: 2e3 },
-        Model::Yeoh { c: [1e4, -50.0, 3.0] },
-        Model::Gent { shear: 2e4, limit: 30.0 },
+        Model::Yeoh {
+            c: [1e4, -50.0, 3.0],
+        },
+        Model::Gent {
+            shear: 2e4,
+            limit: 30.0,
+        },
     ];
     let raw = LatticeMaterial::from_compliances(1e-3, 1e-9, 1000.0).unwrap();
     let mut materials: Vec<Material> = vec![raw.into()];
     materials.extend(models.map(|m| HyperelasticMaterial::new(m, 4e5, 1000.0).unwrap().into()));
-    let plain = Scene { materials, floor: None, settings: Dynamics::default(), ..full() };
+    let plain = Scene {
+        materials,
+        floor: None,
+        settings: Dynamics::default(),
+        ..full()
+    };
     for scene in [full(), plain] {
         assert_eq!(Scene::read(&scene.write()), Ok(scene));
     }
