@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from voxsoft.cli.exits import errors_in_words
-from voxsoft.cli.output import plain, say
+from voxsoft.cli.output import say
 
 
 def studio(
@@ -34,7 +34,9 @@ def studio(
     from voxsoft.studio.server import StudioServer
 
     def ready(address: str) -> None:
-        say(f"studio at {plain(address)} (Ctrl-C ends it)")
+        # On a line of standard output by itself, for programs that start the studio.
+        typer.echo(address)
+        say("The studio is at this address. Ctrl-C ends it.")
         if not no_browser:
             import webbrowser
 
