@@ -156,6 +156,9 @@ fn what_is_cut_off_or_too_long_is_told() {
     let mut newer = bytes.clone();
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
+    // A list that says to be longer than all there is is refused before it is read.
+    let endless = b"VXSC\x01\0\0\0\xff\xff\xff\xffab";
+    assert_eq!(Scene::read(endless), Err(SceneError::CutOff(8)));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }
 
