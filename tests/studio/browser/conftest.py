@@ -119,18 +119,24 @@ def coarse():
     return COARSE
 
 
-def serving(folder):
-    source = folder / "finger.toml"
-    source.write_text(COARSE)
+def serve(folder, text=COARSE, name="finger.toml"):
+    source = folder / name
+    source.write_text(text)
     server = Served(source, folder / "runs", free_port())
     server.start()
     return server
 
 
+@pytest.fixture(scope="session")
+def serving():
+    """Starts a server on a design of the test's own; the test stops it."""
+    return serve
+
+
 @pytest.fixture(scope="module")
 def served(tmp_path_factory):
     """A server for all tests of a file: starting one takes longer than most tests."""
-    server = serving(tmp_path_factory.mktemp("studio"))
+    server = serve(tmp_path_factory.mktemp("studio"))
     yield server
     server.stop()
 
@@ -138,7 +144,7 @@ def served(tmp_path_factory):
 @pytest.fixture
 def own_server(tmp_path):
     """A server that a test may kill."""
-    server = serving(tmp_path)
+    server = serve(tmp_path)
     yield server
     server.stop()
 
@@ -178,7 +184,9 @@ class Tab:
 def open_tab(chromium):
     contexts = []
 
-    def opening(address, *, size=(1600, 900), scheme="dark", tour=False, mode="simulate"):
+    def opening(
+        address, *, size=(1600, 900), scheme="dark", tour=False, mode="simulate", symbols=True
+    ):
         context = chromium.new_context(
             viewport={"width": size[0], "height": size[1]},
             color_scheme=scheme,
@@ -187,6 +195,8 @@ def open_tab(chromium):
         contexts.append(context)
         if not tour:
             context.add_init_script("localStorage.setItem('voxsoft.tour', '{\"seen\":true}')")
+        if not symbols:  # words that can be clicked must not lie where a test presses
+            context.add_init_script("localStorage.setItem('voxsoft.view', '{\"symbols\":false}')")
         page = context.new_page()
         tab = Tab(page)
         page.on("console", lambda m: tab.errors.append(m.text) if m.type == "error" else None)
@@ -205,7 +215,7 @@ def open_tab(chromium):
 @pytest.fixture
 def tab(served, open_tab):
     """The page on a small cantilever at time zero, in the mode Simulate, with its body drawn."""
-    one = open_tab(served.address)
+    one = open_tab(served.address, symbols=False)
     one.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     one.find("reset").click()
     one.until("voxsoft.time === 0 && voxsoft.state !== 'playing'")

@@ -93,7 +93,6 @@ def test_the_page_fits_its_window(served, open_tab, size):
     for mode in ("design", "simulate"):
         tab.find(f"mode-{mode}").click()
         tab.find("view-more").wait_for()
-        tab.shot(f"studio-{mode}-{size[0]}")
 
 
 def test_a_server_that_dies_and_comes_back(own_server, open_tab):

@@ -61,7 +61,6 @@ def test_a_pull_moves_the_vertex_under_the_mouse(tab):
     before = tab.page.evaluate(f"voxsoft.vertexPosition({vertex})[2]")
     tab.until(f"voxsoft.vertexPosition({vertex})[2] > {before} + 0.001")
     assert "N" in tab.page.locator(".view-label.force").inner_text()
-    tab.shot("studio-pull")
     tab.page.mouse.up()
     tab.until("document.querySelector('[data-testid=grab]') === null")
     assert tab.errors == []

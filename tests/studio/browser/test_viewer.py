@@ -1,0 +1,54 @@
+"""A result in one file: opened from disk, or in the cell of a notebook, with no server at all."""
+
+import pytest
+
+import voxsoft as vs
+from voxsoft.studio.html import page_of
+
+LOWEST = """(() => {
+  let low = 1;
+  for (let i = 0; voxsoft.vertexPosition(i); i++) low = Math.min(low, voxsoft.vertexPosition(i)[2]);
+  return low;
+})()"""
+
+
+@pytest.fixture(scope="module")
+def live_page(tmp_path_factory, coarse):
+    source = tmp_path_factory.mktemp("design") / "finger.toml"
+    source.write_text(coarse)
+    return page_of(vs.load(source))
+
+
+def test_a_page_from_disk_plays_is_pulled_and_follows_its_loads(live_page, alone, tmp_path):
+    path = tmp_path / "finger.html"
+    live_page.save(path)
+    tab = alone(path.as_uri())
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    unloaded = tab.page.evaluate(LOWEST)
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.01")
+    x, y = tab.middle()
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x, y - 80, steps=5)
+    tab.find("grab").wait_for()
+    tab.until("document.querySelector('.view-label.force') !== null")
+    tab.page.mouse.up()
+    tab.until("document.querySelector('[data-testid=grab]') === null")
+    # Without gravity the tip goes back up to where it was.
+    slider = tab.page.get_by_label("gravity slider")
+    slider.focus()
+    tab.page.keyboard.press("Home")
+    tab.until(f"Math.abs({LOWEST} - {unloaded}) < 2e-4")
+    assert [url for url in tab.requests if not url.startswith(("file:", "blob:", "data:"))] == []
+    assert tab.errors == []
+
+
+def test_a_page_lives_in_the_cell_of_a_notebook(live_page, alone, tmp_path):
+    cell = tmp_path / "cell.html"
+    cell.write_text(f"<!doctype html><body>{live_page._repr_html_()}</body>")
+    tab = alone(cell.as_uri())
+    frame = tab.page.frame_locator("iframe")
+    frame.get_by_test_id("play").click()
+    tab.until("voxsoft.time > 0.01", frame=tab.page.frames[-1])
+    assert tab.errors == []
