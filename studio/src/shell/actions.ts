@@ -212,11 +212,8 @@ type OpenDraft = {
   name: string;
 };
 
-/** Open a document; asks first where unsaved work would be lost. */
+/** Open a document. Nothing is asked: undo brings back what was not saved of the one before. */
 export function openDocument(draft: OpenDraft): void {
-  const document = useStudio.getState().document;
-  const lost = document?.dirty && !document.can_undo;
-  if (lost && !confirm(`Leave “${document.name}” without saving its changes?`)) return;
   send(draft);
 }
 
