@@ -14,12 +14,12 @@ const RANGES: { value: RangeMode; label: string }[] = [
 
 /** The colors with their values; the ends of a locked range can be typed. */
 export function Legend() {
-  const { coloring, colormap, bands, range, field } = useView();
+  const { appearance, coloring, colormap, bands, range, field } = useView();
   const low = useShown((shown) => shown.low);
   const high = useShown((shown) => shown.high);
   const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
   const [shut, setShut] = useState(false);
-  if (coloring !== "field" || !about) return null;
+  if (coloring !== "field" || appearance === "smooth" || !about) return null;
   const unit = shownUnit(about.unit);
   const factor = factorOf(unit);
   const lock = (mode: RangeMode) =>

@@ -1,25 +1,19 @@
 // The body on the GPU: one set of vertex attributes, which frames replace, and a draw call for
 // each part and cavity.
 import {
-  AlwaysStencilFunc,
-  BackSide,
   Box3,
   BufferAttribute,
   BufferGeometry,
   Color,
   DataTexture,
-  DecrementWrapStencilOp,
   DoubleSide,
-  FrontSide,
   GLSL3,
   Group,
-  IncrementWrapStencilOp,
   type IUniform,
   LinearFilter,
   LineSegments,
   Mesh,
   ShaderMaterial,
-  type Side,
   Vector2,
   Vector3,
   Vector4,
@@ -27,13 +21,8 @@ import {
 import type { Frame, Topology } from "../engine/frames";
 import type { View } from "../store/view";
 import { texels } from "./colormaps";
-import {
-  BODY_FRAGMENT,
-  BODY_VERTEX,
-  EDGE_FRAGMENT,
-  EDGE_VERTEX,
-  STENCIL_FRAGMENT,
-} from "./shaders";
+import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
+import { stencilPair } from "./stencil";
 
 /** Colors of cavities, after Okabe and Ito; the same as in body.css. */
 export const CAVITY_COLORS = [
@@ -162,34 +151,9 @@ export class BodyMesh {
     const mesh = new Mesh(geometry, material);
     mesh.renderOrder = 2;
     mesh.frustumCulled = false;
-    const stencils = [this.stencil(geometry, BackSide), this.stencil(geometry, FrontSide)];
+    const stencils = [...stencilPair(geometry, BODY_VERTEX, this.shared)];
     this.group.add(mesh, ...stencils);
     return { owner: range.owner, mesh, stencils };
-  }
-
-  // Behind a section plane the stencil counts how deep inside of the body each pixel is.
-  private stencil(geometry: BufferGeometry, side: Side): Mesh<BufferGeometry, ShaderMaterial> {
-    const operation = side === BackSide ? IncrementWrapStencilOp : DecrementWrapStencilOp;
-    const material = new ShaderMaterial({
-      glslVersion: GLSL3,
-      vertexShader: BODY_VERTEX,
-      fragmentShader: STENCIL_FRAGMENT,
-      uniforms: this.shared,
-      side,
-      colorWrite: false,
-      depthWrite: false,
-      depthTest: false,
-      stencilWrite: true,
-      stencilFunc: AlwaysStencilFunc,
-      stencilFail: operation,
-      stencilZFail: operation,
-      stencilZPass: operation,
-    });
-    const mesh = new Mesh(geometry, material);
-    mesh.renderOrder = 0;
-    mesh.frustumCulled = false;
-    mesh.visible = false;
-    return mesh;
   }
 
   private lines(

@@ -60,6 +60,7 @@ export class Section {
     this.outline.renderOrder = 6;
     this.group.add(this.cap, this.outline);
     this.group.visible = false;
+    this.recolor();
   }
 
   recolor(): void {

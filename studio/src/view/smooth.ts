@@ -13,6 +13,7 @@ import {
 } from "three";
 import type { Smooth } from "../engine/frames";
 import type { View } from "../store/view";
+import { type StencilMesh, stencilPair } from "./stencil";
 
 const VERTEX = /* glsl */ `
 out vec3 vNormal;
@@ -47,6 +48,7 @@ export class SmoothMesh {
   readonly group = new Group();
   private readonly geometry = new BufferGeometry();
   private readonly material: ShaderMaterial;
+  private readonly stencils: readonly StencilMesh[];
 
   constructor(smooth: Smooth, section: { plane: IUniform<Vector4>; section: IUniform<number> }) {
     this.geometry.setAttribute("position", new BufferAttribute(smooth.vertices, 3));
@@ -66,17 +68,21 @@ export class SmoothMesh {
     const mesh = new Mesh(this.geometry, this.material);
     mesh.frustumCulled = false;
     mesh.renderOrder = 2;
-    this.group.add(mesh);
+    const { uPlane, uSection } = this.material.uniforms as Record<string, IUniform>;
+    this.stencils = stencilPair(this.geometry, VERTEX, { uPlane: uPlane!, uSection: uSection! });
+    this.group.add(mesh, ...this.stencils);
   }
 
-  style(_view: View, colors: { parts: readonly string[] }, visible: boolean): void {
+  style(view: View, colors: { parts: readonly string[] }, visible: boolean): void {
     (this.material.uniforms.uOwn!.value as Color).set(colors.parts[0] ?? "#e8b88a");
     this.group.visible = visible;
+    for (const stencil of this.stencils) stencil.visible = view.section !== "off";
   }
 
   dispose(): void {
     this.group.removeFromParent();
     this.geometry.dispose();
     this.material.dispose();
+    for (const stencil of this.stencils) stencil.material.dispose();
   }
 }
