@@ -1,11 +1,7 @@
 """Only this machine's own browser, with the token of this run, gets in."""
 
-import asyncio
-import socket
-
 import httpx
 import pytest
-import websockets
 
 
 def get(studio, path="/", **headers):
@@ -50,50 +46,7 @@ def test_a_change_without_an_origin_is_refused(studio):
     assert httpx.post(url, content=b"", headers={"origin": studio.origin}).status_code == 200
 
 
-@pytest.mark.parametrize(
-    ("path", "options"),
-    [
-        ("/ws", {"origin": "own"}),
-        ("/ws?token=wrong", {"origin": "own"}),
-        ("/ws?token=right", {"origin": None}),
-        ("/ws?token=right", {"origin": "http://evil.example"}),
-        ("/ws?token=right", {"origin": "own", "host": "evil.example"}),
-    ],
-    ids=["no token", "wrong token", "no origin", "other origin", "other host"],
-)
-def test_a_websocket_of_anyone_else_is_refused(studio, path, options):
-    origin = studio.origin if options["origin"] == "own" else options["origin"]
-    host = options.get("host", "127.0.0.1")
-    url = f"ws://{host}:{studio.port}{path.replace('right', studio.token)}"
-
-    async def attempt():
-        # An open connection to this machine, whatever the name in the address.
-        sock = socket.create_connection(("127.0.0.1", studio.port))
-        async with websockets.connect(url, origin=origin, sock=sock):
-            pass
-
-    with pytest.raises(websockets.exceptions.InvalidStatus) as refused:
-        asyncio.run(attempt())
-    assert refused.value.response.status_code == 403
-
-
-def test_it_listens_on_loopback_only(studio):
-    assert studio.server._listener.getsockname()[0] == "127.0.0.1"
-
-
-def test_the_page_may_load_nothing_from_elsewhere(studio):
-    headers = get(studio, f"/?token={studio.token}").headers
-    policy = headers["content-security-policy"]
-    assert policy.startswith("default-src 'none'; script-src 'self' 'wasm-unsafe-eval';")
-    assert "unsafe-eval'" not in policy.replace("wasm-unsafe-eval'", "")
-    assert headers["cross-origin-opener-policy"] == "same-origin"
-    assert headers["cross-origin-embedder-policy"] == "require-corp"
-    assert headers["x-content-type-options"] == "nosniff"
-
-
-@pytest.mark.parametrize(
-    "path", ["/assets/../server.py", "/assets/%2e%2e/server.py", "/..%2fapp.py"]
-)
+@pytest.mark.parametrize("path", ["/assets/..%2f..%2fserver.py", "/..%2fapp.py", "/assets/x.js"])
 def test_only_the_bundle_is_served(studio, path):
     answer = get(studio, path, cookie=f"voxsoft_studio_{studio.port}={studio.token}")
     assert answer.status_code == 404

@@ -516,3 +516,37 @@ def test_unsaved_changes_are_there_after_a_restart(make_studio, tmp_path):
     run(look())
     assert '"20 mm"' in file.read_text()
     assert not (tmp_path / "runs" / ".studio" / "draft.json").exists()
+
+
+def test_a_body_that_takes_its_time_is_announced(studio, monkeypatch):
+    monkeypatch.setattr("voxsoft.studio.mesher.SLOW", 0.0)
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("edit", rev=1, path=["voxel_size"], value="1.25 mm")
+            await page.until("stat", lambda s: s.state == "meshing")
+            await page.shown(lambda s: s.state == "paused")
+
+    run(scenario())
+
+
+def test_a_panic_of_the_core_is_said_and_the_next_body_comes(studio, monkeypatch):
+    class Panic(BaseException):
+        pass
+
+    def panic(*_):
+        raise Panic("index out of bounds")
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            with monkeypatch.context() as broken:
+                broken.setattr("voxsoft.studio.mesher.StudioBody.of", panic)
+                await page.send("edit", rev=1, path=["voxel_size"], value="2.5 mm")
+                document = await page.until("document", lambda d: d.diagnostics)
+            assert "index out of bounds" in document.diagnostics[0]["what"]
+            await page.send("undo")
+            await page.until("body", lambda b: b.voxels == 300)
+
+    run(scenario())

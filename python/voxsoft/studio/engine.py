@@ -95,6 +95,14 @@ class Engine(threading.Thread):
         """Take another body, at rest and at time zero."""
         self._inbox.put(lambda: self._show(body))
 
+    def wait_for_body(self) -> None:
+        """Say that a body is being meshed, unless one is moving meanwhile."""
+        self._inbox.put(self._wait_for_body)
+
+    def stay(self, sentence: str) -> None:
+        """Say why the body that was being meshed does not come."""
+        self._inbox.put(lambda: self._stay(sentence))
+
     def tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         """Pass on what the doctor says of a body, if it is still the one that is shown."""
         self._inbox.put(lambda: self._tell_report(body, report, smooth))
@@ -162,7 +170,7 @@ class Engine(threading.Thread):
             task()
         except VoxSoftError as error:
             self._halt("paused", str(error))
-        except Exception as error:
+        except BaseException as error:  # a panic of the core too: the thread must live on
             self._halt("paused", f"{type(error).__name__}: {error}")
 
     def _halt(self, state: events.SimulationState, sentence: str) -> None:
@@ -188,6 +196,17 @@ class Engine(threading.Thread):
             self._play()
         self._paint_all()
         self._stat()
+
+    def _wait_for_body(self) -> None:
+        if not self._moving and self._search is None:
+            self._state, self._sentence = "meshing", "Meshing"
+            self._stat()
+
+    def _stay(self, sentence: str) -> None:
+        if self._state == "meshing":
+            self._state = "empty" if self._body is None else "paused"
+            self._sentence = sentence
+            self._stat()
 
     def _tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         if body is not self._body:

@@ -14,6 +14,10 @@ from voxsoft.studio.smooth import pack_smooth
 
 #: A wish waits this long for a newer one, as a slider that is dragged sends many [s].
 PATIENCE: Final = 0.01
+#: The doctor looks at a body when nothing was wished for so long [s].
+IDLE: Final = 0.15
+#: A body that takes longer than this is announced [s].
+SLOW: Final = 0.25
 
 
 class _Wish(NamedTuple):
@@ -26,6 +30,8 @@ class Mesher(threading.Thread):
 
     Parameters
     ----------
+    slow
+        Called when a body takes its time.
     done
         Called with each body.
     examined
@@ -37,12 +43,13 @@ class Mesher(threading.Thread):
 
     def __init__(
         self,
+        slow: Callable[[], None],
         done: Callable[[StudioBody], None],
         examined: Callable[[StudioBody, CheckReport, bytes | None], None],
         failed: Callable[[int, VoxSoftError], None],
     ) -> None:
         super().__init__(name="studio-mesher", daemon=True)
-        self._done, self._examined, self._failed = done, examined, failed
+        self._slow, self._done, self._examined, self._failed = slow, done, examined, failed
         self._wish: _Wish | None = None
         self._changed = threading.Condition()
         self._ended = False
@@ -64,23 +71,37 @@ class Mesher(threading.Thread):
         """Fulfil wishes until the end."""
         while (wish := self._next()) is not None:
             self._count += 1
-            try:
-                body = StudioBody.of(wish.design, wish.rev, self._count)
-            except VoxSoftError as error:
-                self._failed(wish.rev, error)
-                continue
-            except MemoryError:
-                what = "needs more memory than there is"
-                self._failed(wish.rev, VoxSoftError("voxel_size", what, "make the voxels larger"))
-                continue
-            except Exception as error:  # the thread must live on, whatever a design does to it
-                self._failed(wish.rev, VoxSoftError("design", f"{type(error).__name__}: {error}"))
+            announcement = threading.Timer(SLOW, self._slow)
+            announcement.daemon = True
+            announcement.start()
+            body = self._body_of(wish)
+            announcement.cancel()
+            if body is None:
                 continue
             self._done(body)
-            with self._changed:
-                newer = self._wish is not None or self._ended
-            if not newer:
+            if self._idle():
                 self._examined(body, body.report(), pack_smooth(wish.design, body.topology))
+
+    def _body_of(self, wish: _Wish) -> StudioBody | None:
+        """Make a body; None where that fails, which is told."""
+        try:
+            return StudioBody.of(wish.design, wish.rev, self._count)
+        except VoxSoftError as error:
+            failure = error
+        except MemoryError:
+            what = "needs more memory than there is"
+            failure = VoxSoftError("voxel_size", what, "make the voxels larger")
+        except BaseException as error:  # a panic of the core too: the thread must live on
+            failure = VoxSoftError("design", f"{type(error).__name__}: {error}")
+        self._failed(wish.rev, failure)
+        return None
+
+    def _idle(self) -> bool:
+        """Wait a little; whether nothing was wished for meanwhile."""
+        with self._changed:
+            if self._wish is None and not self._ended:
+                self._changed.wait(IDLE)
+            return self._wish is None and not self._ended
 
     def _next(self) -> _Wish | None:
         with self._changed:

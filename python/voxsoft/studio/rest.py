@@ -73,7 +73,7 @@ class RestSearch(threading.Thread):
         except VoxSoftError as error:
             sentence = str(error)
             say = lambda: self._listener.not_found(self, sentence)  # noqa: E731
-        except Exception as error:  # whatever it was, the page must not wait for ever
+        except BaseException as error:  # whatever it was, the page must not wait for ever
             sentence = f"{type(error).__name__}: {error}"
             say = lambda: self._listener.not_found(self, sentence)  # noqa: E731
         if not self._stopped.is_set():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 import threading
 import uuid
 from contextlib import suppress
@@ -72,7 +73,9 @@ class Session:
         self.jobs = Jobs(self.tabs, self._runs_changed)
         self.list = RunList(self.runs, self.own, self.jobs.running_in)
         self._tables: dict[str, tuple[str, list[commands.ColumnMap] | None]] = {}
-        self._mesher = Mesher(self._meshed, self._examined, self._not_meshed)
+        self._mesher = Mesher(
+            self.engine.wait_for_body, self._meshed, self._examined, self._not_meshed
+        )
         self._lock = threading.RLock()
         self._author: Tab | None = None
         self._downloads: dict[str, Path] = {}
@@ -92,6 +95,7 @@ class Session:
         self.jobs.end()
         self._mesher.end()
         self.engine.end()
+        shutil.rmtree(self.own / "exports", ignore_errors=True)
 
     def welcome(self, tab: Tab) -> None:
         """Tell a new tab all that it needs."""
@@ -127,7 +131,7 @@ class Session:
                         seq=command.seq, where=problem.where, what=problem.what, hint=problem.hint
                     ),
                 )
-        except Exception as error:  # one tab's command must not end the studio for all
+        except BaseException as error:  # a panic of the core too: one command must not end all
             what = f"{type(error).__name__}: {error}"
             self.tabs.tell_one(tab, events.Error(seq=command.seq, where="studio", what=what))
 
@@ -398,6 +402,7 @@ class Session:
         self.engine.tell_report(body, report, smooth)
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
+        self.engine.stay(str(error))
         with self._lock:
             if rev == self.document.rev:
                 self.document.diagnostics = diagnostics_of(error, self.document.text)

@@ -1,0 +1,81 @@
+"""What waits for a tab, and in which order it is sent."""
+
+import asyncio
+
+from voxsoft.studio import events
+from voxsoft.studio.tab import LONGEST_QUEUE, Tab
+
+
+class Wire:
+    """Keeps what is sent."""
+
+    def __init__(self):
+        self.sent = []
+        self.closed = None
+
+    async def send_text(self, data):
+        self.sent.append(data)
+
+    async def send_bytes(self, data):
+        self.sent.append(data)
+
+    async def close(self, code=1000, reason=None):
+        self.closed = code
+
+
+def pumped(fill):
+    async def scenario():
+        wire = Wire()
+        tab = Tab(wire)
+        pump = asyncio.create_task(tab.pump())
+        for step in fill(tab):
+            del step
+            await asyncio.sleep(0.01)
+        await asyncio.sleep(0.01)
+        pump.cancel()
+        return wire
+
+    return asyncio.run(scenario())
+
+
+def test_without_credits_the_newest_frame_waits_alone():
+    def fill(tab):
+        for name in (b"1", b"2", b"3", b"4"):
+            yield tab.put_frame(name)
+        yield tab.ack()
+
+    assert pumped(fill).sent == [b"1", b"2", b"4"]
+
+
+def test_a_new_topology_goes_before_frames_and_drops_the_one_that_waits():
+    def fill(tab):
+        tab.put_frame(b"old")
+        tab.put_topology(b"topology")
+        yield tab.put_frame(b"new")
+
+    assert pumped(fill).sent == [b"topology", b"new"]
+
+
+def test_statistics_and_rows_are_merged_while_they_wait():
+    def fill(tab):
+        for time in (0.0, 1.0):
+            tab.put(events.Stat(topology=1, state="playing", sentence="", time=time))
+        for row in (1.0, 2.0):
+            tab.put(events.Plot(topology=1, names=["t"], units=["s"], rows=[[row]]))
+        yield None
+
+    sent = pumped(fill).sent
+    assert len(sent) == 2
+    assert '"time":1.0' in sent[0]
+    assert '"rows":[[1.0],[2.0]]' in sent[1]
+
+
+def test_a_tab_that_does_not_keep_up_is_cut_off():
+    def fill(tab):
+        for _ in range(LONGEST_QUEUE + 1):
+            tab.put(events.Log(level="info", text=""))
+        yield None
+
+    wire = pumped(fill)
+    assert wire.closed == 1013
+    assert wire.sent == []
