@@ -50,7 +50,7 @@ def test_without_credits_the_newest_frame_waits_alone():
 def test_a_new_topology_goes_before_frames_and_drops_the_one_that_waits():
     def fill(tab):
         tab.put_frame(b"old")
-        tab.put_topology(b"topology")
+        yield tab.put_topology(b"topology")
         yield tab.put_frame(b"new")
 
     assert pumped(fill).sent == [b"topology", b"new"]
