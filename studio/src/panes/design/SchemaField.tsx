@@ -297,16 +297,15 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
               values.length > 1 ? () => set(values.filter((_, other) => other !== i)) : undefined
             }
           />
-          {i > 0 && (
-            <Button
-              icon
-              kind="quiet"
-              label={`Move ${props.label} ${i + 1} up`}
-              onClick={() => set(swapped(values, i, i - 1))}
-            >
-              <Glyph name="up" />
-            </Button>
-          )}
+          <Button
+            icon
+            kind="quiet"
+            label={`Move ${props.label} ${i + 1} up`}
+            disabled={i === 0}
+            onClick={() => set(swapped(values, i, i - 1))}
+          >
+            <Glyph name="up" />
+          </Button>
         </div>
       ))}
       <Button kind="quiet" onClick={() => set([...values, starter(root, props.item, names)])}>

@@ -81,12 +81,17 @@ export default function ComparePane() {
 
 function Head(props: { side: Side }) {
   const { side } = props;
+  // The picture of a study is that of its best design, not of any other.
   const trial = side.id.includes("/");
   return (
     <th scope="col">
       <div className="compare-head">
-        {side.thumbnail && <img className="compare-picture" src={side.thumbnail} alt="" />}
-        <strong>{side.name}</strong>
+        {side.thumbnail && !trial && (
+          <img className="compare-picture" src={side.thumbnail} alt="" />
+        )}
+        <strong title={side.id}>
+          {trial ? `Design ${side.id.slice(side.id.lastIndexOf("/") + 1)}` : side.name}
+        </strong>
         <span>
           <span className={`badge ${side.status === "ok" ? "good" : "warn"}`}>
             {side.status || "no result"}

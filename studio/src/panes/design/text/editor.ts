@@ -134,6 +134,7 @@ export function makeEditor(parent: HTMLElement, text: string, hooks: EditorHooks
         highlightActiveLine(),
         highlightActiveLineGutter(),
         drawSelection(),
+        EditorView.lineWrapping,
         indentOnInput(),
         bracketMatching(),
         closeBrackets(),

@@ -29,7 +29,7 @@ export function project(
   const up = cb * z + sb * back;
   const near = -cb * back + sb * z;
   // A camera at some distance: near things are larger.
-  const scale = (0.3 * Math.min(width, height) * turn.zoom * 6) / (6 - near);
+  const scale = (0.25 * Math.min(width, height) * turn.zoom * 6) / (6 - near);
   return { x: width / 2 + right * scale, y: height / 2 - up * scale, near };
 }
 
