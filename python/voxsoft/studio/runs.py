@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
+import tomllib
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import UTC, datetime
@@ -13,6 +14,7 @@ from typing import Any, Final, Literal
 
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.run_folder import make_folder
+from voxsoft.metrics import METRICS
 from voxsoft.studio import events
 from voxsoft.studio.running import THUMBNAIL
 from voxsoft.studio.task import TASK, Task
@@ -202,25 +204,35 @@ def _summed_up(
     if not told:
         return "interrupted", "", None, None
     if kind == "run":
-        return str(told["status"]), _best_of_run(told), float(told["seconds"]), None
+        return str(told["status"]), _best_of_run(told, folder), float(told["seconds"]), None
     if kind == "study":
         best = told["best"]
-        shown = (
-            ""
-            if best is None
-            else ", ".join(f"{name} {value:.4g}" for name, value in best["objectives"].items())
-        )
+        shown = "" if best is None else _with_units(best["objectives"], folder)
         return "ok" if best else "no design", shown, None, int(told["trials"])
     return "ok", f"mean error {_length(told['mean_error'])}", None, int(told["evaluations"])
 
 
-def _best_of_run(told: dict[str, Any]) -> str:
-    from voxsoft.metrics import METRICS
-
+def _best_of_run(told: dict[str, Any], folder: Path) -> str:
     own = {name: value for name, value in told["metrics"].items() if name not in METRICS}
     if own:
-        return ", ".join(f"{name} {value:.4g}" for name, value in own.items())
+        return _with_units(own, folder)
     return f"largest displacement {_length(told['metrics']['max_displacement'])}"
+
+
+def _with_units(values: dict[str, float], folder: Path) -> str:
+    """Objectives with the units of their metrics, as far as the folder tells what they measure."""
+    kinds: dict[str, str] = {}
+    with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
+        if (folder / "study.json").is_file():
+            told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        else:
+            told = tomllib.loads((folder / "design.toml").read_text(encoding="utf-8"))
+        for name, target in told["objectives"].items():
+            kinds[name] = METRICS[target.get("maximize") or target["minimize"]]
+    return ", ".join(
+        f"{name} {format_quantity(float(f'{value:.4g}'), kinds.get(name, 'number'))}"
+        for name, value in values.items()
+    )
 
 
 def _length(value: float) -> str:
