@@ -19,6 +19,8 @@ export interface TableProps<Row> {
   onChoose?(row: Row, extend: boolean): void;
   onHover?(row: Row | null): void;
   empty?: ReactNode;
+  /** How many rows are drawn at most, after sorting. */
+  most?: number;
   testId?: string;
 }
 
@@ -66,7 +68,7 @@ export function Table<Row>(props: TableProps<Row>) {
           </tr>
         </thead>
         <tbody>
-          {sorted.map((row) => {
+          {sorted.slice(0, props.most).map((row) => {
             const key = props.rowKey(row);
             return (
               <tr
@@ -91,6 +93,11 @@ export function Table<Row>(props: TableProps<Row>) {
           })}
         </tbody>
       </table>
+      {props.most !== undefined && sorted.length > props.most && (
+        <p className="table-more muted">
+          {sorted.length - props.most} more rows: sort or filter to see them.
+        </p>
+      )}
     </div>
   );
 }

@@ -147,6 +147,15 @@ describe("trials", () => {
       { x: 3, y: 0.002 },
     ]);
   });
+  it("keeps equals on the front, and takes off what a later trial beats", () => {
+    const one = (index: number, rise: number, weight: number) => ({
+      ...trial(index, 0.01, 1),
+      objectives: { rise, weight },
+    });
+    const trials = [one(0, 1, 1), one(1, 2, 2), one(2, 2, 2), one(3, 3, 2), one(4, 0, 3)];
+    expect([...frontOf({ ...STUDY, trials })]).toEqual([0, 3]);
+    expect([...frontOf({ ...STUDY, trials: trials.slice(0, 3) })]).toEqual([0, 1, 2]);
+  });
   it("keeps what is brushed", () => {
     const kept = STUDY.trials.filter((one) =>
       within(one, axes, { "parameter:wall": [0.004, 0.012] }),

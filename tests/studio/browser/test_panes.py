@@ -219,12 +219,51 @@ class TestStudy:
         )
 
 
+@pytest.fixture
+def finer(own_server):
+    """The cantilever in smaller voxels: a design of it takes long enough to be held."""
+    text = own_server.source.read_text().replace('voxel_size = "5 mm"', 'voxel_size = "2 mm"')
+    own_server.stop()
+    own_server.source.write_text(text)
+    own_server.start()
+    return own_server
+
+
+class TestHoldingAStudy:
+    def test_a_study_is_paused_goes_on_and_is_stopped_with_what_it_has(self, finer, open_tab):
+        tab = open_tab(finer.address, mode="optimize")
+        tab.find("study-form").wait_for()
+        add_objective(tab)
+        tab.page.get_by_label("Sampler").select_option("random")
+        # Without a step no two designs are the same, so that the study does not end by itself.
+        step = tab.find("vary-length").get_by_label("length step")
+        step.fill("")
+        step.press("Enter")
+        tab.page.get_by_role("textbox", name="Budget").fill("5000")
+        tab.page.get_by_role("textbox", name="Budget").press("Enter")
+        tab.find("study-start").click()
+        job = tab.find("job-study")
+        tab.page.locator("[data-testid=history-chart] circle.chart-point").first.wait_for()
+        job.get_by_role("button", name="Pause").click()
+        tab.page.locator("[data-testid=job-study][data-state=paused]").wait_for(timeout=JOB)
+        job.get_by_role("button", name="Go on").click()
+        tab.page.locator("[data-testid=job-study][data-state=running]").wait_for(timeout=JOB)
+        # Another tab, or the same one loaded anew, shows the study with its designs.
+        tab.page.reload()
+        tab.page.locator("[data-testid=history-chart] circle.chart-point").first.wait_for()
+        job.get_by_role("button", name="Stop").click()
+        tab.page.locator("[data-testid=job-study][data-state=stopped]").wait_for(timeout=JOB)
+        assert tab.find("trials-table").locator("tbody tr").count() > 0
+        assert tab.errors == []
+
+
 class TestRuns:
     def test_a_run_is_renamed_deleted_taken_back_and_opened(self, studied):
         studied.find("mode-runs").click()
         table = studied.find("runs-table")
         row = table.locator("tbody tr").first
         row.wait_for()
+        assert re.search("goal .* mm", row.inner_text())
         name = row.locator("strong").inner_text()
         row.hover()
         row.get_by_role("button", name=f"Rename {name}").click()

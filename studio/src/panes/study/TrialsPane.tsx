@@ -21,6 +21,9 @@ export default function TrialsPane() {
   return <Trials current={current} />;
 }
 
+/** Rows that are drawn; each costs the page time whenever a trial arrives. */
+const MOST = 300;
+
 function read(text: string, kind: string): number {
   const parsed = parseQuantity(text, writtenUnit(kind) || "1");
   return "value" in parsed ? parsed.value : Number.NaN;
@@ -123,6 +126,7 @@ function Trials(props: { current: CurrentStudy }) {
         <Table
           label="Designs of the study"
           testId="trials-table"
+          most={MOST}
           columns={columns}
           rows={rows}
           rowKey={(trial) => String(trial.index)}

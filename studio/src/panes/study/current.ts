@@ -1,5 +1,5 @@
 // The study that the panes speak of.
-import { useEffect, useMemo } from "react";
+import { useEffect, useMemo, useRef, useState } from "react";
 import type { JobEvent, TrialsEvent } from "../../protocol";
 import { usePage } from "../../store/page";
 import { useStudio } from "../../store/studio";
@@ -32,13 +32,40 @@ export function useJob(kind: JobEvent["kind"]): JobEvent | null {
   }, [chosen, jobs, kind]);
 }
 
+/** Shortest time between two pictures of a study that runs, ms; longer where it has many trials. */
+const CALM = 150;
+
+/** A study as it was lately: quick trials would have the plots drawn more often than is seen. */
+function useCalm(study: TrialsEvent | undefined): TrialsEvent | undefined {
+  const [shown, show] = useState(study);
+  const latest = useRef(study);
+  const timer = useRef<ReturnType<typeof setTimeout> | null>(null);
+  latest.current = study;
+  useEffect(() => {
+    if (study === shown || timer.current !== null) return;
+    const pause = study?.job === shown?.job ? CALM + (study?.trials.length ?? 0) : 0;
+    timer.current = setTimeout(() => {
+      timer.current = null;
+      show(latest.current);
+    }, pause);
+  }, [study, shown]);
+  useEffect(
+    () => () => {
+      if (timer.current !== null) clearTimeout(timer.current);
+      timer.current = null;
+    },
+    [],
+  );
+  return shown?.job === study?.job ? shown : study;
+}
+
 /** The trials of the chosen study, of one that runs, or of a past one that was opened. */
 export function useStudy(): CurrentStudy | null {
   const chosen = usePage((page) => page.job);
   const job = useJob("study");
   const all = useStudio((state) => state.trials);
   const id = chosen !== null && all[chosen] ? chosen : (job?.id ?? Object.keys(all).at(-1) ?? null);
-  const study = id === null ? undefined : all[id];
+  const study = useCalm(id === null ? undefined : all[id]);
   const found = useMemo(
     () => (study ? { axes: axesOf(study), front: frontOf(study) } : null),
     [study],

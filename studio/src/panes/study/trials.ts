@@ -94,12 +94,15 @@ function dominates(a: TrialEvent, b: TrialEvent, study: TrialsEvent): boolean {
 
 /** Numbers of the trials that no other feasible one beats. */
 export function frontOf(study: TrialsEvent): Set<number> {
-  const good = study.trials.filter((trial) => trial.feasible && isDone(trial));
-  return new Set(
-    good
-      .filter((trial) => !good.some((other) => dominates(other, trial, study)))
-      .map((trial) => trial.index),
-  );
+  // Each trial meets only those that stand so far: few, also where thousands were tried.
+  let front: TrialEvent[] = [];
+  for (const trial of study.trials) {
+    if (!trial.feasible || !isDone(trial)) continue;
+    if (front.some((other) => dominates(other, trial, study))) continue;
+    front = front.filter((other) => !dominates(trial, other, study));
+    front.push(trial);
+  }
+  return new Set(front.map((trial) => trial.index));
 }
 
 /** The trial with the best first objective among the feasible ones. */
