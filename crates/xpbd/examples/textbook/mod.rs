@@ -17,6 +17,10 @@ pub struct Textbook {
     pub state: State,
     /// In m/s².
     gravity: Vec3,
+    /// Triangles that bear a pressure, with normals out of the solid; none at first.
+    pub pressed: Vec<[u32; 3]>,
+    /// Their pressure in Pa.
+    pub pressure: f64,
 }
 
 impl Textbook {
@@ -54,6 +58,8 @@ impl Textbook {
             start: body.rest().to_vec(),
             state: State::at_rest(body),
             gravity,
+            pressed: Vec::new(),
+            pressure: 0.0,
         }
     }
 
@@ -70,10 +76,21 @@ impl Textbook {
     pub fn substep(&mut self, h: f64, rate: f64) {
         self.start.copy_from_slice(&self.state.positions);
         let keep = (-rate * h).exp();
+        for velocity in &mut self.state.velocities {
+            *velocity = scale(keep, *velocity);
+        }
+        for triangle in &self.pressed {
+            let vertices = triangle.map(|v| v as usize);
+            let [a, b, c] = vertices.map(|v| self.start[v]);
+            let force = scale(-self.pressure / 6.0, cross(sub(b, a), sub(c, a)));
+            for vertex in vertices {
+                let velocity = &mut self.state.velocities[vertex];
+                axpy(velocity, h * self.weights[vertex], force);
+            }
+        }
         for (vertex, weight) in self.weights.iter().enumerate() {
             if *weight > 0.0 {
                 let velocity = &mut self.state.velocities[vertex];
-                *velocity = scale(keep, *velocity);
                 axpy(velocity, h, self.gravity);
                 axpy(&mut self.state.positions[vertex], h, *velocity);
             }
