@@ -23,12 +23,12 @@ DEFAULT_TOLERANCE: Final = 1e-5
 DEFAULT_MAX_STEPS: Final = 400_000
 
 #: Steps of relaxation after which a body that is not at rest shows how slow it is.
-TRIAL_STEPS: Final = 400
-#: Statics takes over where more than this part of the load is still out of balance then. A mode
-#: that is damped critically, as relaxation damps the slowest, keeps (1 + ωt) exp(-ωt): half of it
-#: at ωt = 1.7, and 1e-5 at ωt = 14.2. So 400 steps to a half mean some 3,400 to rest, which is
-#: where statics was found to cost the same (2,000 to 7,000 on plates, robots and beams).
-SLOW_RESIDUAL: Final = 0.5
+TRIAL_STEPS: Final = 200
+#: Statics takes over where more than this part of the load is still out of balance then. On bars
+#: and plates it is 0.51 where relaxation takes 1,700 steps, 0.60 with 3,300, 0.62 with 3,800 to
+#: 4,600 and 0.70 with 6,900; statics was found to cost as much as 2,000 to 7,000 steps on plates,
+#: robots and beams.
+SLOW_RESIDUAL: Final = 0.6
 
 Progress = Callable[[int, float, float], None] | None
 #: Settings as used, and the core's report.

@@ -39,7 +39,7 @@ def simulate(
 
     Designs of hyperelastic parts, and those with layers, are solved by statics, Newton's method on
     the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and knows no
-    time, or, where its first 400 steps leave more than half of the load out of balance, by statics.
+    time, or, where its first 200 steps leave more than 0.6 of the load out of balance, by statics.
     With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a
     `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
     dynamics); all come to rest in the same state. Real time is damped critically on the way to
