@@ -14,7 +14,7 @@ BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
-.PHONY: help install demo test test-rust test-python test-all lint format bench docs studio wasm clean
+.PHONY: help install demo test test-rust test-python test-studio test-all lint format bench docs studio wasm clean
 
 help:
 	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
@@ -44,13 +44,19 @@ $(STAMP): $(VENV)/bin/python pyproject.toml Cargo.toml Cargo.lock $(RUST_SOURCES
 demo: install
 	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo
 
-test: install test-rust test-python
+test: install test-rust test-python test-studio
 
 test-rust:
 	cargo test --workspace --exclude voxsoft-python --quiet
 
 test-python: install
 	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"
+
+# The page's own units; users need no Node, and neither does anyone who leaves the page alone.
+test-studio:
+	@if ! command -v npm >/dev/null; then echo "The tests of the studio's page in TypeScript are skipped: there is no Node here."; \
+	elif ! (cd studio && npm ci --silent); then echo "The tests of the studio's page in TypeScript are skipped: npm could not fetch what they need."; \
+	else cd studio && NO_COLOR=1 npm test --silent; fi
 
 test-all: install
 	cargo test --workspace --exclude voxsoft-python --quiet -- --include-ignored
