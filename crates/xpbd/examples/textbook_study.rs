@@ -11,7 +11,7 @@
 //!
 //! With one sweep and multipliers from zero the loop rests where stiffnesses look smaller by a part that grows
 //! like the square of the substep (`textbook_step`): where walls are one voxel thick, rises are 0.04 to 0.08 % too
-//! large with substeps of 25 µs, 0.6 to 1.3 % with 0.1 ms, 9 to 22 % with 0.4 ms, and the forces never balance to the 1e-5
+//! large with substeps of 25 µs, 0.6 to 1.3 % with 0.1 ms, 8 to 22 % with 0.4 ms, and the forces never balance to the 1e-5
 //! of the load that the solver of this crate is asked for. So there are two aims: the rise within 0.1 % of the
 //! equilibrium, and, with a longer substep, within 0.1 % of where that substep ends. A run is over as soon as
 //! its rise stays there for 0.1 s, which it is told: it pays neither for a look at forces nor for those 0.1 s.
