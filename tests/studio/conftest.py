@@ -10,6 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 import websockets
+from own_loop import run
 
 from voxsoft.studio.protocol import PROTOCOL
 from voxsoft.studio.server import StudioServer
@@ -163,6 +164,6 @@ def at_rest(tmp_path_factory):
             await page.send("rest")
             await page.shown(lambda s: s.state == "at-rest" and "residual" in s.sentence)
 
-    asyncio.run(asyncio.wait_for(scenario(), 60))
+    run(scenario())
     yield studio
     studio.stop()

@@ -18,12 +18,13 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(tmp_path):
     process = subprocess.Popen(
         [sys.executable, "-c", "from voxsoft.cli import main; main()", "studio", "--no-browser"],
         cwd=tmp_path,
+        stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
     )
     try:
-        line = process.stderr.readline()
-        address = re.search(r"http://127\.0\.0\.1:\d+/\?token=[\w-]{32}", line)[0]
+        line = process.stdout.readline()
+        address = re.fullmatch(r"(http://127\.0\.0\.1:\d+/\?token=[\w-]{32})\n", line)[1]
         assert httpx.get(address).status_code == 200
         process.send_signal(signal.SIGINT)
         assert process.wait(20) == 0
@@ -31,6 +32,7 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(tmp_path):
     finally:
         process.kill()
         process.wait()
+        process.stdout.close()
         process.stderr.close()
 
 

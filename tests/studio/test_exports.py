@@ -1,6 +1,5 @@
 """Files of what is shown, read back by the programs they are for."""
 
-import asyncio
 import io
 import tomllib
 import zipfile
@@ -11,10 +10,6 @@ import numpy as np
 import pytest
 
 from voxsoft.files import read_mesh
-
-
-def run(scenario):
-    return asyncio.run(asyncio.wait_for(scenario, 60))
 
 
 def export(studio, format, **options):

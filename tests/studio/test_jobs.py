@@ -1,11 +1,11 @@
 """Jobs in processes of their own: studies, calibrations, runs, and the list of what they left."""
 
-import asyncio
 import os
 import shutil
 import signal
 from pathlib import Path
 
+import own_loop
 import pytest
 
 from voxsoft.design import families
@@ -16,7 +16,7 @@ DATA = Path(__file__).parents[2] / "examples" / "data" / "paper_beams" / "ecofle
 
 
 def run(scenario):
-    return asyncio.run(asyncio.wait_for(scenario, 120))
+    return own_loop.run(scenario, 120)
 
 
 def small_study(**changes):

@@ -1,6 +1,5 @@
 """The studio driven over its websocket, as a page would."""
 
-import asyncio
 import json
 import socket
 
@@ -10,6 +9,7 @@ import pytest
 import websockets
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from own_loop import run
 
 from voxsoft.design import families
 from voxsoft.simulation import simulate
@@ -24,10 +24,6 @@ def positions_of(frame):
     scale = np.frombuffer(frame.bytes, "<f4", 3, 44).astype(float)
     steps = np.frombuffer(frame.bytes, "<u2", 4 * frame.n, 64).reshape(-1, 4)[:, :3]
     return origin + scale * steps / 65535
-
-
-def run(scenario):
-    return asyncio.run(asyncio.wait_for(scenario, 60))
 
 
 def test_a_tab_is_shown_the_design_and_its_body(studio):

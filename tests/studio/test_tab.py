@@ -2,6 +2,8 @@
 
 import asyncio
 
+from own_loop import run
+
 from voxsoft.studio import events
 from voxsoft.studio.tab import LONGEST_QUEUE, Tab
 
@@ -35,7 +37,7 @@ def pumped(fill):
         pump.cancel()
         return wire
 
-    return asyncio.run(scenario())
+    return run(scenario())
 
 
 def test_without_credits_the_newest_frame_waits_alone():

@@ -101,6 +101,7 @@ def test_a_load_follows_its_slider_by_keyboard(tab):
 def test_a_stored_frame_is_held_and_live_goes_back(tab):
     tab.find("play").click()
     tab.until("voxsoft.time > 0.05")
+    tab.until("!document.querySelector('[data-testid=scrubber]').disabled")
     scrubber = tab.find("scrubber")
     scrubber.focus()
     tab.page.keyboard.press("Home")

@@ -1,0 +1,16 @@
+"""Coroutines in a loop of their own, also where Playwright keeps one running in the main thread."""
+
+import asyncio
+from collections.abc import Coroutine
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+
+def run(scenario: Coroutine[Any, Any, Any], seconds: float = 60.0) -> Any:
+    """What a coroutine returns, if it does so in time."""
+
+    def in_thread() -> Any:
+        return asyncio.run(asyncio.wait_for(scenario, seconds))
+
+    with ThreadPoolExecutor(1) as threads:
+        return threads.submit(in_thread).result()
