@@ -265,10 +265,7 @@ impl<'a> Equilibrium<'a> {
                 return Err(Failure::Lost);
             }
             if self.stands_still(positions, largest, relative) {
-                return Ok(Found {
-                    iterations: iteration,
-                    residual: relative,
-                });
+                return Ok(self.take_last(positions, &moves, point, iteration, relative));
             }
             if let Some(limit) = self.largest_turn.take() {
                 let turn = largest_turn(body, positions, &moves);
@@ -299,6 +296,36 @@ impl<'a> Equilibrium<'a> {
         }
         self.tell(positions, point, relative, observer)?;
         Ok((forces, self.jump(positions, point)))
+    }
+
+    /// Takes the step at a standstill too, if it still helps: stiff parts balance by moves far below
+    /// what can be told from the motion of a slender body.
+    fn take_last(
+        &self,
+        positions: &mut [Vec3],
+        moves: &[Vec3],
+        point: Point,
+        iterations: u32,
+        relative: f64,
+    ) -> Found {
+        let moved: Vec<Vec3> = positions
+            .iter()
+            .zip(moves)
+            .map(|(x, m)| add(*x, *m))
+            .collect();
+        let residual = self.forces(&moved, point).relative();
+        if residual < relative {
+            positions.copy_from_slice(&moved);
+            Found {
+                iterations: iterations + 1,
+                residual,
+            }
+        } else {
+            Found {
+                iterations,
+                residual: relative,
+            }
+        }
     }
 
     /// Whether a step of the size `largest` (m) is nothing but rounding.
@@ -377,10 +404,7 @@ impl<'a> Equilibrium<'a> {
             }
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
             if self.stands_still(positions, largest, relative) {
-                return Ok(Found {
-                    iterations: iteration,
-                    residual: relative,
-                });
+                return Ok(self.take_last(positions, &moves, point, iteration, relative));
             }
             let gain: f64 = step.iter().zip(&forces.free).map(|(s, f)| s * f).sum();
             self.advance(positions, &moves, point, gain, &forces, jump.is_some())?;
