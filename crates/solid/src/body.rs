@@ -1,6 +1,6 @@
 //! The body: masses and constraints of a tetrahedral mesh with materials.
 //!
-//! Long because a mesh is turned into all kinds of constraints in one pass over its tetrahedra.
+//! Long because the shares of edges and the checks of a mesh, used nowhere else, stand with the body they serve.
 //!
 //! # The share of an edge
 //!
