@@ -1,0 +1,94 @@
+"""The pictures of a body that tabs are given: topologies once, frames as they can take them."""
+
+from __future__ import annotations
+
+from voxsoft.simulation.check import CheckReport
+from voxsoft.studio import events
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.playback import Playback
+from voxsoft.studio.tab import Tab
+
+
+class Pictures:
+    """Paints what is played back for every tab, each as it wants it.
+
+    Parameters
+    ----------
+    playback
+        What is shown.
+    outlet
+        Where events and frames go.
+    """
+
+    def __init__(self, playback: Playback, outlet: Outlet) -> None:
+        self._playback = playback
+        self._outlet = outlet
+        self._report: CheckReport | None = None
+        self._smooth: bytes | None = None
+
+    def begin(self, body: StudioBody) -> None:
+        """Give every tab another body, of which the doctor has said nothing yet."""
+        self._report = self._smooth = None
+        self._outlet.tell(body.event())
+        canvas = self._playback.require_canvas()
+        for mode in {tab.view.mode for tab in self._outlet.tabs()}:
+            self._outlet.topology(canvas.topology(mode), mode)
+        self.forget()
+
+    def examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
+        """Pass on what the doctor says of the body, and its smooth surface if it has one."""
+        self._report, self._smooth = report, smooth
+        self._outlet.tell(self._event(body))
+        if smooth is not None:
+            for tab in self._outlet.tabs():
+                self._outlet.smooth_for(tab, smooth)
+
+    def welcome(self, tab: Tab) -> None:
+        """Give a new tab all there is of the body."""
+        body, canvas = self._playback.body, self._playback.canvas
+        if body is None or canvas is None:
+            return
+        self._outlet.tell_one(tab, self._event(body))
+        self._outlet.topology_for(tab, canvas.topology(tab.view.mode))
+        if self._smooth is not None:
+            self._outlet.smooth_for(tab, self._smooth)
+        self._outlet.tell_one(tab, self._playback.plots.whole())
+        self.repaint(tab)
+
+    def change_mode(self, tab: Tab) -> None:
+        """Give a tab the topology of the mode that it has turned to."""
+        if self._playback.canvas is not None:
+            self._outlet.topology_for(tab, self._playback.canvas.topology(tab.view.mode))
+
+    def forget(self) -> None:
+        """Paint anew for every tab, though the frame has the number of the one before."""
+        for tab in self._outlet.tabs():
+            tab.painted = None
+
+    def repaint(self, tab: Tab) -> None:
+        """Paint for a tab, whatever it has already."""
+        tab.painted = None
+        self.paint(tab)
+
+    def paint_all(self) -> None:
+        """Paint for every tab."""
+        for tab in self._outlet.tabs():
+            self.paint(tab)
+
+    def paint(self, tab: Tab) -> None:
+        """Pack what a tab shows, if it can take it and has not got it."""
+        playback, view = self._playback, tab.view
+        body, canvas = playback.body, playback.canvas
+        if body is None or canvas is None or not tab.hungry:
+            return
+        number = playback.frame if playback.shown is None else -playback.shown.number
+        key = (body.topology, number, view.field, view.mode, playback.state)
+        if tab.painted != key:
+            tab.painted = key
+            self._outlet.frame(tab, canvas.frame(playback.moment, view.field, view.mode, tab.seq))
+
+    def _event(self, body: StudioBody) -> events.Body:
+        event = body.event(self._report)
+        event.smooth = self._smooth is not None
+        return event
