@@ -30,8 +30,7 @@ export function Table<Row>(props: TableProps<Row>) {
   const sorted = useMemo(() => {
     const by = order && props.columns.find((column) => column.key === order.key)?.sort;
     if (!by || !order) return props.rows;
-    const sign = order.down ? -1 : 1;
-    return [...props.rows].sort((a, b) => sign * compare(by(a), by(b)));
+    return [...props.rows].sort((a, b) => compare(by(a), by(b), order.down ? -1 : 1));
   }, [props.rows, props.columns, order]);
   if (props.rows.length === 0 && props.empty) return <>{props.empty}</>;
   return (
@@ -102,9 +101,14 @@ export function Table<Row>(props: TableProps<Row>) {
   );
 }
 
-function compare(a: number | string | null, b: number | string | null): number {
+/** What has no value stands last, whichever way the others are sorted. */
+export function compare(
+  a: number | string | null,
+  b: number | string | null,
+  sign: 1 | -1,
+): number {
   if (a === b) return 0;
-  if (a === null) return 1; // what has no value stands last
+  if (a === null) return 1;
   if (b === null) return -1;
-  return a < b ? -1 : 1;
+  return a < b ? -sign : sign;
 }

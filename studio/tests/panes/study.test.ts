@@ -1,11 +1,19 @@
 import { describe, expect, it } from "vitest";
+import { compare } from "../../src/controls/Table";
 import { project } from "../../src/panes/study/chart/space";
 import { ticks } from "../../src/panes/study/chart/ticks";
 import type { StudyDraft } from "../../src/panes/study/draft";
-import { choices, countOf, gridSize, obstacle, studySpec } from "../../src/panes/study/setup";
+import {
+  choices,
+  countOf,
+  gridSize,
+  obstacle,
+  samplerOf,
+  studySpec,
+} from "../../src/panes/study/setup";
 import {
   axesOf,
-  bestOf,
+  bestFirst,
   bestSoFar,
   frontOf,
   matchesFilter,
@@ -68,6 +76,17 @@ describe("setup", () => {
       wall: { low: 0.005, high: 0.015, step: 0.005, log: false },
       cap: { low: 0.005, high: 0.02, step: null, log: false },
     });
+  });
+  it("tries all designs where they are few, and searches where not, unless told", () => {
+    const open = { ...DRAFT, sampler: null };
+    const few = choices([RANGED], open);
+    expect(samplerOf(few, open)).toBe("grid");
+    expect(studySpec(few, open).sampler).toBe("grid");
+    const fine = { ...open, ranges: { wall: { step: 1e-6 } } };
+    expect(samplerOf(choices([RANGED], fine), fine)).toBe("tpe");
+    const free = { ...open, ranges: { wall: { step: null } } };
+    expect(samplerOf(choices([RANGED], free), free)).toBe("tpe");
+    expect(samplerOf(few, { ...open, sampler: "random" })).toBe("random");
   });
   it("says why a study cannot start", () => {
     const ranged = choices([RANGED], DRAFT);
@@ -137,7 +156,6 @@ describe("trials", () => {
     expect(valueOn(words.trials[0] as TrialEvent, axis as never)).toBe(1);
   });
   it("finds the best and the front among designs that are allowed", () => {
-    expect(bestOf(STUDY)?.index).toBe(2);
     // Design 2 rises more and weighs less than 0; 3 would be better but breaks a constraint.
     expect([...frontOf(STUDY)]).toEqual([2]);
     expect(bestSoFar(STUDY, 0)).toEqual([
@@ -155,6 +173,10 @@ describe("trials", () => {
     const trials = [one(0, 1, 1), one(1, 2, 2), one(2, 2, 2), one(3, 3, 2), one(4, 0, 3)];
     expect([...frontOf({ ...STUDY, trials })]).toEqual([0, 3]);
     expect([...frontOf({ ...STUDY, trials: trials.slice(0, 3) })]).toEqual([0, 1, 2]);
+  });
+  it("lists the best first, then what is not allowed, then what failed", () => {
+    const league = bestFirst(STUDY, frontOf(STUDY)).map((one) => one.index);
+    expect(league).toEqual([2, 0, 3, 1]);
   });
   it("keeps what is brushed", () => {
     const kept = STUDY.trials.filter((one) =>
@@ -197,4 +219,10 @@ it("draws what is nearer larger, and up as up", () => {
   const [near, far] = [project([1, -1, 0], turn, 200, 100), project([1, 1, 0], turn, 200, 100)];
   expect(near.near).toBeGreaterThan(far.near);
   expect(near.x).toBeGreaterThan(far.x);
+});
+
+it("sorts what has no value to the end, up and down", () => {
+  const rows = [2, null, 1, 3];
+  expect([...rows].sort((a, b) => compare(a, b, 1))).toEqual([1, 2, 3, null]);
+  expect([...rows].sort((a, b) => compare(a, b, -1))).toEqual([3, 2, 1, null]);
 });

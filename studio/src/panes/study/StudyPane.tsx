@@ -15,7 +15,7 @@ import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { jobsOf, useJob, useStudy } from "./current";
 import { changeRange, toggleSweep, useStudyDraft } from "./draft";
-import { type Choice, choices, countOf, gridSize, obstacle, studySpec } from "./setup";
+import { type Choice, choices, countOf, gridSize, obstacle, samplerOf, studySpec } from "./setup";
 import "../design/design.css";
 import "./study.css";
 
@@ -78,7 +78,8 @@ export default function StudyPane() {
     ? obstacle(all, objectives, draft, samplers)
     : "Mend the errors of the design first.";
   const grid = gridSize(chosen);
-  const designs = draft.sampler === "grid" ? grid : draft.budget;
+  const sampler = samplerOf(chosen, draft);
+  const designs = sampler === "grid" ? grid : draft.budget;
   const start = () => {
     expect();
     send({ t: "job_start", spec: studySpec(all, draft) });
@@ -93,7 +94,7 @@ export default function StudyPane() {
           <p className="muted">The design has no parameters; add some in its form.</p>
         )}
         {all.map((choice) => (
-          <Vary key={choice.parameter.name} choice={choice} grid={draft.sampler === "grid"} />
+          <Vary key={choice.parameter.name} choice={choice} grid={sampler === "grid"} />
         ))}
       </Section>
       <FormContext value={form}>
@@ -102,8 +103,8 @@ export default function StudyPane() {
       <Section title="Search">
         <Select
           label="Sampler"
-          value={draft.sampler}
-          title={samplers.find((one) => one.name === draft.sampler)?.title ?? ""}
+          value={sampler}
+          title={samplers.find((one) => one.name === sampler)?.title ?? ""}
           options={samplers.map((one) => ({
             value: one.name,
             label: one.name,
@@ -111,10 +112,8 @@ export default function StudyPane() {
           }))}
           onChange={(sampler) => useStudyDraft.setState({ sampler })}
         />
-        <p className="sampler-note muted">
-          {samplers.find((one) => one.name === draft.sampler)?.title}
-        </p>
-        {draft.sampler === "grid" ? (
+        <p className="sampler-note muted">{samplers.find((one) => one.name === sampler)?.title}</p>
+        {sampler === "grid" ? (
           <div className="field">
             <span className="field-label">Designs</span>
             <span className="field-value">{grid === null ? "needs steps" : grid}</span>

@@ -1,4 +1,4 @@
-// All designs of a study as a table: sort by a click, filter by words and comparisons.
+// All designs of a study as a table, the best first: sort by a click, filter by words and comparisons.
 import { useDeferredValue, useMemo, useState } from "react";
 import { Button, Toggle } from "../../controls/Choice";
 import { writtenUnit } from "../../controls/kinds";
@@ -8,7 +8,7 @@ import type { TrialEvent } from "../../protocol";
 import { type CurrentStudy, useStudy } from "./current";
 import { NoStudy } from "./NoStudy";
 import { choose, comparePinned, hover, pin, useSelection } from "./selection";
-import { matchesFilter, textOn, valueOn, within } from "./trials";
+import { bestFirst, matchesFilter, textOn, valueOn, within } from "./trials";
 import "./study.css";
 
 export default function TrialsPane() {
@@ -37,10 +37,10 @@ function Trials(props: { current: CurrentStudy }) {
   const words = useDeferredValue(filter);
   const rows = useMemo(
     () =>
-      study.trials.filter(
+      bestFirst(study, front).filter(
         (trial) => within(trial, axes, brushes) && matchesFilter(trial, axes, words, read),
       ),
-    [study, axes, brushes, words],
+    [study, axes, front, brushes, words],
   );
   const columns = useMemo((): Column<TrialEvent>[] => {
     const shown = axes.filter((axis) => metrics || axis.role !== "metric");

@@ -10,7 +10,8 @@ export interface Sweep {
 
 export interface StudyDraft {
   readonly name: string;
-  readonly sampler: string;
+  /** Null until one is chosen by hand. */
+  readonly sampler: string | null;
   readonly budget: number;
   readonly workers: number | null;
   readonly seed: number;
@@ -22,7 +23,7 @@ export interface StudyDraft {
 
 export const useStudyDraft = create<StudyDraft>(() => ({
   name: "",
-  sampler: "tpe",
+  sampler: null,
   budget: 60,
   workers: null,
   seed: 0,

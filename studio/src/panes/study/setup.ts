@@ -62,6 +62,16 @@ export function gridSize(chosen: readonly Choice[]): number | null {
   return size;
 }
 
+// Up to here a grid is solved as quickly as a search, and misses nothing.
+const SMALL_GRID = 200;
+
+/** The sampler that was chosen; else all designs where they are few, and a search where not. */
+export function samplerOf(chosen: readonly Choice[], draft: StudyDraft): string {
+  if (draft.sampler !== null) return draft.sampler;
+  const size = gridSize(chosen);
+  return size !== null && size <= SMALL_GRID ? "grid" : "tpe";
+}
+
 /** Why the study cannot be started, in words with a remedy; null where it can. */
 export function obstacle(
   all: readonly Choice[],
@@ -70,7 +80,8 @@ export function obstacle(
   samplers: readonly Sampler[],
 ): string | null {
   const chosen = all.filter((one) => one.on);
-  const sampler = samplers.find((one) => one.name === draft.sampler);
+  const name = samplerOf(chosen, draft);
+  const sampler = samplers.find((one) => one.name === name);
   if (chosen.length === 0) return "Choose at least one parameter to vary.";
   const wrong = chosen.find((one) => one.problem);
   if (wrong) return `${wrong.parameter.name}: ${wrong.problem}.`;
@@ -78,11 +89,11 @@ export function obstacle(
   if (sampler?.single_objective && objectives > 1) {
     return `${sampler.name} takes one objective; choose tpe or nsga-ii for several.`;
   }
-  if (draft.sampler === "grid") {
+  if (name === "grid") {
     const without = chosen.find((one) => countOf(one.sweep) === null);
     if (without) return `${without.parameter.name}: a grid needs a step.`;
   } else if (!(draft.budget >= 1)) return "Give a budget of at least one design.";
-  if (draft.sampler === "gradient" && chosen.some((one) => one.sweep.step !== null)) {
+  if (name === "gradient" && chosen.some((one) => one.sweep.step !== null)) {
     return "gradient needs ranges without steps; empty their steps.";
   }
   return null;
@@ -96,7 +107,10 @@ export function studySpec(all: readonly Choice[], draft: StudyDraft): StudySpec 
   }
   return {
     kind: "study",
-    sampler: draft.sampler,
+    sampler: samplerOf(
+      all.filter((one) => one.on),
+      draft,
+    ),
     budget: Math.round(draft.budget),
     seed: Math.round(draft.seed),
     workers: draft.workers,

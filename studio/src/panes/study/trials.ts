@@ -105,18 +105,17 @@ export function frontOf(study: TrialsEvent): Set<number> {
   return new Set(front.map((trial) => trial.index));
 }
 
-/** The trial with the best first objective among the feasible ones. */
-export function bestOf(study: TrialsEvent): TrialEvent | null {
+/** Trials as a league: those that no other beats, the others that count, then what may not or failed. */
+export function bestFirst(study: TrialsEvent, front: ReadonlySet<number>): TrialEvent[] {
   const name = study.objectives[0];
-  if (name === undefined) return null;
   const sign = study.directions[0] === "maximize" ? -1 : 1;
-  let best: TrialEvent | null = null;
-  for (const trial of study.trials) {
-    if (!trial.feasible || !isDone(trial)) continue;
-    const value = sign * (trial.objectives?.[name] ?? Number.NaN);
-    if (best === null || value < sign * (best.objectives?.[name] ?? Number.NaN)) best = trial;
-  }
-  return best;
+  const league = (trial: TrialEvent) =>
+    front.has(trial.index) ? 0 : !isDone(trial) ? 3 : trial.feasible ? 1 : 2;
+  const value = (trial: TrialEvent) =>
+    name !== undefined && isDone(trial) ? sign * (trial.objectives?.[name] ?? 0) : 0;
+  return [...study.trials].sort(
+    (a, b) => league(a) - league(b) || value(a) - value(b) || a.index - b.index,
+  );
 }
 
 /** The best value so far after each feasible trial, in the order of the trials. */
