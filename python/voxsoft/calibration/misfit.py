@@ -6,7 +6,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, TypeVar
 
 import numpy as np
@@ -47,11 +47,14 @@ class Comparison:
         What is and what would be measured, (n, q), m; `simulated` is scaled already.
     scale
         The factor on the simulated shape; 1 unless it was freed.
+    positions
+        Vertices of the simulated body at rest under load, before scaling, (v, 3), m.
     """
 
     simulated: NDArray[np.float64]
     measured: NDArray[np.float64]
     scale: float
+    positions: NDArray[np.float64] = field(repr=False)
 
     @property
     def errors(self) -> NDArray[np.float64]:
@@ -298,7 +301,8 @@ class Misfit:
                 simulated = experiment.seen_at(result.positions)
                 measured = experiment.measurement.values
                 scale = best_scale(simulated, measured) if self.free_scale else 1.0
-                here.append((Comparison(scale * simulated, measured, scale), result))
+                compared = Comparison(scale * simulated, measured, scale, result.positions)
+                here.append((compared, result))
         return found
 
     def _settled(

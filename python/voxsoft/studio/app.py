@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import threading
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -31,6 +32,9 @@ HELLO_WITHIN: Final = 20.0
 #: Wrong messages in a row after which a tab is cut off.
 MOST_WRONG: Final = 200
 
+#: Seconds between two looks whether somebody still waits for a body that is solved.
+LOOK_AGAIN: Final = 0.2
+
 _NO_PAGE: Final = """<!doctype html><meta charset="utf-8"><title>VoxSoft studio</title>
 <p>The server runs, but the page was not built: run <code>make studio</code> in the sources,
 or install VoxSoft from a wheel.</p>"""
@@ -52,6 +56,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
     routes = [
         Route("/", pages.index),
         Route("/assets/{path:path}", pages.asset),
+        Route("/still", pages.still),
         Route("/{name}", pages.file),
         Route("/download/{id}", pages.download),
         Route("/thumbnail/{run:path}", pages.thumbnail),
@@ -78,10 +83,13 @@ class _Pages:
         # One thread for commands, so that they follow each other as they were sent.
         self._commands = ThreadPoolExecutor(1, "studio-commands")
         self._files = ThreadPoolExecutor(2, "studio-files")
+        # Solving for pictures takes long: other files must not wait for it.
+        self._stills = ThreadPoolExecutor(2, "studio-stills")
 
     def end(self) -> None:
         self._commands.shutdown(wait=False, cancel_futures=True)
         self._files.shutdown(wait=False, cancel_futures=True)
+        self._stills.shutdown(wait=False, cancel_futures=True)
 
     async def index(self, request: Request) -> Response:
         page = STATIC / "index.html"
@@ -110,6 +118,26 @@ class _Pages:
         if picture is None:
             return _problem(404, "thumbnail", "there is none")
         return FileResponse(picture, headers={"cache-control": "no-cache"})
+
+    async def still(self, request: Request) -> Response:
+        """Answer with a body at rest; solving it ends when nobody waits for it any more."""
+        cancelled, name = threading.Event(), request.query_params.get("of", "")
+        work = asyncio.get_running_loop().run_in_executor(
+            self._stills, self._session.stills.packed, name, cancelled
+        )
+        work.add_done_callback(lambda done: done.cancelled() or done.exception())
+        try:
+            while not work.done():
+                await asyncio.wait([work], timeout=LOOK_AGAIN)
+                if not work.done() and await request.is_disconnected():
+                    return Response(status_code=499)
+            content = work.result()
+        except VoxSoftError as error:
+            return _problem(422, error.where, error.what, error.hint)
+        finally:
+            cancelled.set()
+        headers = {"cache-control": "no-store"}
+        return Response(content, media_type="application/octet-stream", headers=headers)
 
     async def upload(self, request: Request) -> Response:
         try:

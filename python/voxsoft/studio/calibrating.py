@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from voxsoft import files
 from voxsoft.calibration import Calibration, CalibrationEvent, Experiment, calibrate
@@ -15,7 +14,7 @@ from voxsoft.calibration.table import read_measurement
 from voxsoft.files.cards import card_text
 from voxsoft.studio import events
 from voxsoft.studio.commands import CalibrateSpec
-from voxsoft.studio.message import Triple
+from voxsoft.studio.specimen import stations, write_specimen
 from voxsoft.studio.task import Task
 from voxsoft.units import format_quantity
 
@@ -55,7 +54,7 @@ def run_calibration(task: Task, progress: Progress) -> str:
             )
             if event.mean_error < smallest:
                 smallest = event.mean_error
-                progress.tell(overlay_event(task.id, event.fits()))
+                _show(task.id, event.fits(), progress)
         done = event.done if event.stage == "search" else spec.generations
         best = ""
         if np.isfinite(event.mean_error):
@@ -77,9 +76,16 @@ def run_calibration(task: Task, progress: Progress) -> str:
     )
     name = _card_name(task.name)
     files.write_calibration(answer, progress.folder, name)
-    progress.tell(overlay_event(task.id, answer.fits))
+    _show(task.id, answer.fits, progress)
     progress.tell(calibrated_event(task.id, answer, card_text(answer.card(name))))
     return f"Mean error {_length(answer.mean_error)}, largest {_length(answer.max_error)}."
+
+
+def _show(job: str, fits: Sequence[Fit], progress: Progress) -> None:
+    """Leave the specimen of the best candidate in the folder, and tell the page of it."""
+    if fits:  # all are of one design and one material: they differ in what was measured
+        write_specimen(fits[0], progress.folder)
+    progress.tell(overlay_event(job, fits))
 
 
 def overlay_event(job: str, fits: Sequence[Fit]) -> events.Overlay:
@@ -89,12 +95,13 @@ def overlay_event(job: str, fits: Sequence[Fit]) -> events.Overlay:
         experiments=[
             events.OverlayExperiment(
                 name=fit.experiment.name,
-                measured=_points(fit, fit.comparison.measured),
-                simulated=_points(fit, fit.comparison.simulated),
+                measured=measured,
+                simulated=simulated,
                 error=fit.errors.tolist(),
                 percent=fit.percent.tolist(),
             )
             for fit in fits
+            for measured, simulated in [stations(fit)]
         ],
     )
 
@@ -137,16 +144,6 @@ def calibrated_event(job: str, answer: Calibration, card: str) -> events.Calibra
         material=answer.material.model_dump(mode="json", exclude_none=True),
         card=card,
     )
-
-
-def _points(fit: Fit, values: NDArray[np.float64]) -> list[Triple]:
-    """Where stations are in the design's space, m; unmeasured coordinates are those at rest."""
-    experiment = fit.experiment
-    moved = values - experiment.offsets
-    points = experiment.points.copy()
-    for column, axis in enumerate(experiment.measurement.axes):
-        points[:, axis] += moved[:, column]
-    return [(float(x), float(y), float(z)) for x, y, z in points]
 
 
 def _length(value: float) -> str:

@@ -8,12 +8,12 @@ from contextlib import suppress
 from typing import Any
 
 from voxsoft.design import Design
-from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.errors import VoxSoftError
 from voxsoft.files.designs import read_document, read_text, with_whole_paths
 from voxsoft.records import place
 from voxsoft.studio import events
 from voxsoft.studio.runs import RunList, kind_of, read_summary
-from voxsoft.studio.studying import design_text_of, stored_study
+from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.task import DESIGN
 
 
@@ -42,9 +42,7 @@ def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
     metrics: dict[str, float | None] = {}
     status = ""
     if run:
-        trial = next((t for t in stored_study(folder).trials if str(t.number) == number), None)
-        if trial is None:
-            raise FileError(name, "is no trial of that study")
+        trial = stored_trial(folder, number)
         parameters, status = dict(trial.parameters), trial.status
         metrics = {**trial.objectives, **trial.metrics}
         design = Design.from_document(with_whole_paths(document, folder))

@@ -31,7 +31,8 @@ from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.runs import RunList, kind_of
-from voxsoft.studio.studying import design_text_of, stored_study, trials_event
+from voxsoft.studio.stills import Stills
+from voxsoft.studio.studying import design_text_of, stored_study, stored_trial, trials_event
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
 from voxsoft.studio.task import DESIGN, Table, Task
@@ -72,6 +73,7 @@ class Session:
         self.engine = Engine(self.tabs)
         self.jobs = Jobs(self.tabs, self._runs_changed)
         self.list = RunList(self.runs, self.own, self.jobs.running_in)
+        self.stills = Stills(self.list)
         self._tables: dict[str, tuple[str, list[commands.ColumnMap] | None]] = {}
         self._mesher = Mesher(
             self.engine.wait_for_body, self._meshed, self._examined, self._not_meshed
@@ -241,11 +243,7 @@ class Session:
         """Open the design of one trial: that of its study, with the trial's parameters."""
         run, _, number = name.rpartition("/")
         folder = self.list.folder_of(run)
-        trial = next(
-            (each for each in stored_study(folder).trials if str(each.number) == number), None
-        )
-        if trial is None:
-            raise FileError(name, "is no trial of that study")
+        trial = stored_trial(folder, number)
         document = self._document_of(folder)
         design = document.design
         if design is None:

@@ -141,6 +141,20 @@ def stored_study(folder: Path) -> StudyResult:
         raise FileError(str(folder), f"holds a damaged study: {error}") from None
 
 
+def stored_trial(folder: Path, number: str) -> Trial:
+    """Read one trial of a study folder by its number.
+
+    Raises
+    ------
+    FileError
+        There is none.
+    """
+    found = next((each for each in stored_study(folder).trials if str(each.number) == number), None)
+    if found is None:
+        raise FileError(f"{folder.name}/{number}", "is no trial of that study")
+    return found
+
+
 def trial_event(job: str, trial: Trial, *, front: bool = False) -> events.Trial:
     """A trial as the page wants it."""
     return events.Trial(

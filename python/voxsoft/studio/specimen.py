@@ -1,0 +1,88 @@
+"""The specimen of a calibration: where its best candidate stands beside what was measured."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.calibration.result import Fit
+from voxsoft.errors import FileError
+from voxsoft.files.whole import write_whole
+from voxsoft.studio.message import Triple
+
+#: The file of a calibration that holds the specimen, as NumPy writes arrays.
+SPECIMEN: Final = "specimen.npz"
+
+Floats = NDArray[np.float64]
+
+
+def drawn_positions(fit: Fit) -> Floats:
+    """Where the vertices of a fit stand [m], with the scale of the fit if it has one.
+
+    A scale counts positions from the clamp face, and displacements from where the vertices were.
+    """
+    experiment, measurement = fit.experiment, fit.experiment.measurement
+    center = experiment.setup.mesh.vertices.copy()
+    for axis, is_position in zip(measurement.axes, measurement.are_positions, strict=True):
+        if is_position:
+            center[:, axis] = experiment.station_line.foot[axis]
+    drawn: Floats = center + fit.comparison.scale * (fit.comparison.positions - center)
+    return drawn
+
+
+def stations(fit: Fit) -> tuple[list[Triple], list[Triple]]:
+    """Measured and simulated stations as points of the design's space [m].
+
+    A coordinate that was not measured is that of the simulated station, so that the line between
+    the two is the error.
+    """
+    experiment, comparison = fit.experiment, fit.comparison
+    drawn = drawn_positions(fit)
+    simulated = np.array([place.weights @ drawn[place.vertices] for place in experiment.places])
+    measured = simulated.copy()
+    short = comparison.measured - comparison.simulated
+    for column, axis in enumerate(experiment.measurement.axes):
+        measured[:, axis] += short[:, column]
+    return _triples(measured), _triples(simulated)
+
+
+def write_specimen(fit: Fit, folder: Path) -> None:
+    """Leave the specimen in the folder of a calibration.
+
+    Raises
+    ------
+    FileError
+        It cannot be written.
+    """
+    content = io.BytesIO()
+    np.savez_compressed(content, positions=drawn_positions(fit))
+    write_whole(folder / SPECIMEN, content.getvalue())
+
+
+def read_specimen(folder: Path, vertices: int) -> Floats:
+    """Read the positions of the specimen [m], of so many vertices.
+
+    Raises
+    ------
+    FileError
+        There are none, or not of this body.
+    """
+    file = folder / SPECIMEN
+    if not file.is_file():
+        raise FileError(folder.name, "holds no simulated shape: no candidate came to rest yet")
+    try:
+        with np.load(file, allow_pickle=False) as content:
+            positions: Floats = np.asarray(content["positions"], dtype=np.float64)
+    except (OSError, ValueError, KeyError, EOFError) as error:
+        raise FileError(str(file), f"is damaged: {error}") from None
+    if positions.shape != (vertices, 3) or not np.isfinite(positions).all():
+        raise FileError(str(file), "is not of this design", "start the calibration again")
+    return positions
+
+
+def _triples(points: Floats) -> list[Triple]:
+    return [(float(x), float(y), float(z)) for x, y, z in points]

@@ -1,0 +1,232 @@
+"""Bodies at rest for pictures beside the view: of runs, of designs of studies, of calibrations.
+
+They come from what lies on disk, or are solved here, and the body that the view shows is not
+touched.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import Design
+from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
+from voxsoft.files.designs import read_document, read_text, with_whole_paths
+from voxsoft.files.meshes import read_mesh_file
+from voxsoft.simulation import Setup, simulate
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED, pack_points
+from voxsoft.studio.runs import RunList, kind_of, read_summary
+from voxsoft.studio.specimen import read_specimen
+from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
+from voxsoft.studio.surface import Surface, pack_surface
+from voxsoft.studio.task import DESIGN, Task
+from voxsoft.study.trial import Trial
+
+#: What a run leaves of its body.
+RESULT: Final = "result.vtu"
+#: Bodies that were solved for a picture and are kept, so that another look costs nothing.
+MOST_KEPT: Final = 4
+#: The number of the one topology of an answer, which its frames name.
+_TOPOLOGY: Final = 1
+_DISPLACEMENT: Final = FIELDS[0]
+#: Fields that tell something of a body at rest.
+_FIELDS: Final = tuple(each for each in FIELDS if each.name != "speed")
+_FLAGS: Final = {"ok": PAUSED | AT_REST, "diverged": PAUSED | DIVERGED}
+
+
+class StillCancelledError(Exception):
+    """Nobody waits for the picture any more."""
+
+
+@dataclass(frozen=True, eq=False)
+class Still:
+    """A body in one state.
+
+    Attributes
+    ----------
+    setup
+        The body.
+    positions
+        Where its vertices are [m], (n, 3).
+    status
+        How the solution ended: ``ok``, ``not-at-rest`` or ``diverged``.
+    fields
+        What can be told of that state.
+    """
+
+    setup: Setup = field(repr=False)
+    positions: NDArray[np.float64] = field(repr=False)
+    status: str = "ok"
+    fields: tuple[str, ...] = tuple(each.name for each in _FIELDS)
+
+    def packed(self) -> bytes:
+        """Write it as the page reads it: the surface, then a frame for each field."""
+        mesh, flags = self.setup.mesh, _FLAGS.get(self.status, PAUSED)
+        surface = Surface.of(mesh)
+        messages = [pack_surface(surface, mesh, _TOPOLOGY)]
+        try:
+            triangles, size = mesh.triangles.astype(np.uint32), mesh.voxel_size or 0.0
+            display = _core.Display.surface(self.setup.problem, triangles, surface.tags, size)
+        except VoxSoftError:  # no problem to solve, such as a card that is gone: only the shape
+            moved = np.linalg.norm(self.positions - mesh.vertices, axis=1)
+            shape = pack_points(
+                self.positions[surface.vertices],
+                moved[surface.vertices],
+                topology=_TOPOLOGY,
+                frame=0,
+                time=0.0,
+                seq=0,
+                field=_DISPLACEMENT.id,
+                flags=flags,
+            )
+            return b"".join([*messages, shape])
+        messages += [
+            display.pack_frame(
+                self.positions, topology=_TOPOLOGY, frame=0, field=each.id, flags=flags
+            )
+            for each in _FIELDS
+            if each.name in self.fields
+        ]
+        return b"".join(messages)
+
+
+class Stills:
+    """Finds or solves bodies by the names that the list of runs gives them.
+
+    Parameters
+    ----------
+    runs
+        The list.
+    """
+
+    def __init__(self, runs: RunList) -> None:
+        self._runs = runs
+        self._solved: OrderedDict[str, Still] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def packed(self, name: str, cancelled: threading.Event) -> bytes:
+        """Write a body as the page reads it.
+
+        Parameters
+        ----------
+        name
+            A run; a study, for its best design; "STUDY/NUMBER" for another; or a calibration, for
+            its best candidate.
+        cancelled
+            Set where nobody waits for it any more.
+
+        Raises
+        ------
+        VoxSoftError
+            There is no such body, or it cannot be solved.
+        StillCancelledError
+            `cancelled` was set meanwhile.
+        """
+        try:
+            if cancelled.is_set():
+                raise StillCancelledError
+            return self._still(name, cancelled).packed()
+        except (VoxSoftError, StillCancelledError):
+            raise
+        except MemoryError:
+            what = "needs more memory than there is"
+            raise MeshError("voxel_size", what, "make the voxels larger") from None
+        except BaseException as error:  # a panic of the core too: the page must hear of it
+            raise SimulationError(name, f"{type(error).__name__}: {error}") from None
+
+    def _still(self, name: str, cancelled: threading.Event) -> Still:
+        run, _, number = name.rpartition("/")
+        folder = self._runs.folder_of(run or name)
+        if run:
+            return self._trial(folder, stored_trial(folder, number), cancelled)
+        match kind_of(folder):
+            case "run":
+                return _of_run(folder)
+            case "study":
+                best = stored_study(folder).best
+                if best is None:
+                    raise FileError(name, "holds no good design yet")
+                return self._trial(folder, best, cancelled)
+            case "calibrate":
+                setup = Setup.of(design_in(folder))
+                positions = read_specimen(folder, len(setup.mesh.vertices))
+                # The stress would be that of the material of the design, not of the candidate.
+                return Still(setup, positions, fields=(_DISPLACEMENT.name,))
+        raise FileError(name, "holds neither a run nor a study")
+
+    def _trial(self, folder: Path, trial: Trial, cancelled: threading.Event) -> Still:
+        design = design_in(folder).with_parameters(**trial.parameters)
+        key = design.hash
+        with self._lock:
+            if (known := self._solved.get(key)) is not None:
+                self._solved.move_to_end(key)
+                return known
+        still = _solved(design, cancelled)
+        with self._lock:
+            self._solved[key] = still
+            while len(self._solved) > MOST_KEPT:
+                self._solved.popitem(last=False)
+        return still
+
+
+def design_in(folder: Path) -> Design:
+    """Read the design that a folder is about.
+
+    Raises
+    ------
+    VoxSoftError
+        There is none, or it cannot be read.
+    """
+    file = folder / DESIGN
+    try:
+        task = Task.read(folder)
+    except VoxSoftError:  # a folder that the studio did not write
+        text = read_text(file) if file.is_file() else design_text_of(folder)
+        return Design.from_document(with_whole_paths(read_document(text, folder.name), folder))
+    return task.read_design()
+
+
+def _of_run(folder: Path) -> Still:
+    """Read what a run left."""
+    file = folder / RESULT
+    if not file.is_file():
+        raise FileError(
+            folder.name, "holds no result: it has not ended, or not well", "start it again"
+        )
+    design = design_in(folder)
+    content = read_mesh_file(file)
+    moved = content.point_data.get("displacement")
+    if moved is None or np.shape(moved) != content.mesh.vertices.shape:
+        raise FileError(str(file), "holds no displacement", "start the run again")
+    try:
+        status = str(read_summary(folder).get("status", "ok"))
+    except OSError:
+        status = "ok"
+    positions = content.mesh.vertices + np.asarray(moved, dtype=np.float64)
+    return Still(Setup(design, content.mesh), positions, status)
+
+
+def _solved(design: Design, cancelled: threading.Event) -> Still:
+    """Mesh and solve a design, as its study did."""
+    body = StudioBody.of(design, rev=0, topology=_TOPOLOGY)
+    if body.refusal is not None:
+        raise body.refusal
+
+    def look(*_: object) -> None:
+        if cancelled.is_set():
+            raise StillCancelledError
+
+    look()
+    result = simulate(body.setup, progress=look)
+    if not np.isfinite(result.positions).all():
+        raise SimulationError(design.name, result.message, "look at a design with a smaller load")
+    return Still(body.setup, result.positions, result.status)
