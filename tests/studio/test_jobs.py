@@ -44,6 +44,8 @@ def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
             best = next(t for t in reversed(trials["trials"]) if t["feasible"])
             await page.send("open", what="trial", name=f"{job.id}/{best['index']}")
             document = await page.until("document", lambda d: d.name.startswith(job.id))
+            # It is shown as it ended, blown up, though nobody pressed a button.
+            await page.shown(lambda stat: stat.state == "at-rest")
             await page.send("compare", a=f"{job.id}/0", b=f"{job.id}/{best['index']}")
             compared = await page.until("compared")
         assert started.kind == "study"

@@ -47,9 +47,9 @@ class Engine(threading.Thread):
         """Stop the thread."""
         self._inbox.put(None)
 
-    def show(self, body: StudioBody) -> None:
-        """Take another body, at rest and at time zero."""
-        self._inbox.put(lambda: self._stage.show(body))
+    def show(self, body: StudioBody, *, loaded: bool = False) -> None:
+        """Take another body, unloaded and at time zero, and look for its rest where asked."""
+        self._inbox.put(lambda: self._stage.show(body, loaded=loaded))
 
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""

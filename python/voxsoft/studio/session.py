@@ -80,6 +80,7 @@ class Session:
         )
         self._lock = threading.RLock()
         self._author: Tab | None = None
+        self._loaded_rev: int | None = None
         self._downloads: dict[str, Path] = {}
         self._drafts = Drafts(self.own)
         self._notes: list[str] = []
@@ -199,13 +200,14 @@ class Session:
             case "trial":
                 self._open_trial(command.name)
 
-    def _open(self, document: DesignDocument) -> None:
-        """Show another document; the one before can be brought back by undo."""
+    def _open(self, document: DesignDocument, *, loaded: bool = False) -> None:
+        """Show another document, at rest where asked; undo brings back the one before."""
         before = self.document
         document.rev = before.rev + 1
         if before.dirty and before.text != document.text:
             document.remember(before.text)
         self.document = document
+        self._loaded_rev = document.rev if loaded else None
         self.engine.forget()
         self._announce()
 
@@ -234,10 +236,11 @@ class Session:
     def _open_run(self, name: str, tab: Tab) -> None:
         """Open the design of a run, and tell what its folder holds."""
         folder = self.list.folder_of(name)
-        if kind_of(folder) == "study":
+        kind = kind_of(folder)
+        if kind == "study":
             result = stored_study(folder)
             self.tabs.tell_one(tab, trials_event(name, result))
-        self._open(self._document_of(folder))
+        self._open(self._document_of(folder), loaded=kind == "run")
 
     def _open_trial(self, name: str) -> None:
         """Open the design of one trial: that of its study, with the trial's parameters."""
@@ -256,7 +259,7 @@ class Session:
             inner = ["value"] if isinstance(table, dict) else []
             text = with_value(text, ["parameters", parameter, *inner], shown)
         opened = DesignDocument(text, f"{run}-{number}.toml", folder=document.folder)
-        self._open(opened)
+        self._open(opened, loaded=trial.status == "ok")
 
     # Jobs
 
@@ -394,7 +397,8 @@ class Session:
     # The mesher's answers, on its thread
 
     def _meshed(self, body: StudioBody) -> None:
-        self.engine.show(body)
+        # What came to rest when it ran is shown as it ended, not as it began.
+        self.engine.show(body, loaded=body.rev == self._loaded_rev)
 
     def _examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         self.engine.tell_report(body, report, smooth)

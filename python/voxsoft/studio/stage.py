@@ -45,8 +45,8 @@ class Stage:
 
     # The body
 
-    def show(self, body: StudioBody) -> None:
-        """Take another body, at rest and at time zero."""
+    def show(self, body: StudioBody, *, loaded: bool = False) -> None:
+        """Take another body, unloaded and at time zero, and look for its rest where asked."""
         self.stop_search()
         self.playback.begin(body)
         self.pictures.begin(body)
@@ -54,6 +54,8 @@ class Stage:
         if self.playback.wants_play:
             self.playback.play()
         self.painted()
+        if loaded and body.refusal is None and not self.playback.moving:
+            self.find_rest()
 
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""
