@@ -128,11 +128,19 @@ export interface ReleaseCommand {
   id: number;
 }
 
-/** Show a stored frame; time stops. */
+/** Let time run so many times as fast as the clock; null leaves it to the motion. */
+export interface PaceCommand {
+  t: "pace";
+  seq: number;
+  factor?: number | null;
+}
+
+/** Show a stored frame, by its number or by its time in s; time stops. */
 export interface SeekCommand {
   t: "seek";
   seq: number;
-  frame: number;
+  frame?: number;
+  time?: number | null;
 }
 
 /** Go back from a stored frame to the present. */
@@ -530,8 +538,9 @@ export interface GrabState {
 /**
  * Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
  *
- * `real_time_factor` is simulated over wall-clock time. Stored frames run from `first_frame`
- * to `last_frame`.
+ * `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
+ * `pace_chosen` is what the user chose, or null. Stored frames run from `first_frame` to
+ * `last_frame`.
  */
 export interface StatEvent {
   t: "stat";
@@ -542,6 +551,8 @@ export interface StatEvent {
   step_ms: number;
   substeps: number;
   real_time_factor: number;
+  pace: number;
+  pace_chosen: number | null;
   residual: number | null;
   elastic: number | null;
   kinetic: number | null;
@@ -816,6 +827,7 @@ export type AnyCommand =
   | LoadCommand
   | GrabCommand
   | ReleaseCommand
+  | PaceCommand
   | SeekCommand
   | LiveCommand
   | ViewCommand

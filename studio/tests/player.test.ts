@@ -59,7 +59,6 @@ let shown: number;
 
 beforeEach(async () => {
   [events, frames, seq, shown] = [[], [], 0, 0];
-  clock = performance.now();
   const run = (await Core.load(file("../public/voxsoft.wasm"))).open(file("beam.scene"));
   player = new Player(run, NOTES, {
     event: (event) => events.push(event),
@@ -69,6 +68,7 @@ beforeEach(async () => {
     },
   });
   player.greet();
+  clock = performance.now() + 60_000; // ahead of the real one: no turn is cut short here
 });
 
 describe("a scene that plays in the page", () => {
@@ -143,5 +143,73 @@ describe("a scene that plays in the page", () => {
     take({ t: "undo" });
     const error = events.findLast((one) => one.t === "error");
     expect(error).toMatchObject({ seq: 1, what: expect.stringContaining("by itself") });
+  });
+});
+
+describe("slow motion", () => {
+  const rows = () => events.flatMap((event) => (event.t === "plot" ? event.rows : []));
+
+  it("is chosen where a motion is over too soon to be seen, says so, and stores its steps", () => {
+    take({ t: "play" });
+    // The beam of the test comes to rest within a fraction of a second.
+    expect(stat().pace).toBeLessThan(1);
+    expect(stat().pace_chosen).toBeNull();
+    expect(stat().sentence).toMatch(
+      /times slower than real time, as it comes to rest within [\d.]+ ms\./,
+    );
+    const begun = clock;
+    pass(60);
+    expect(stat().state).toBe("at-rest");
+    expect(clock - begun).toBeGreaterThan(900);
+    expect(stat().frames_stored).toBeGreaterThan(40);
+  });
+
+  it("gives way to the user's choice, which holds", () => {
+    take({ t: "pace", factor: 0.1 });
+    take({ t: "play" });
+    expect(stat()).toMatchObject({ pace: 0.1, pace_chosen: 0.1 });
+    const begun = clock;
+    pass(0.2);
+    expect(lastFrame().time).toBeCloseTo((0.1 * (clock - begun)) / 1000, 3);
+    take({ t: "pace", factor: null });
+    expect(stat().pace_chosen).toBeNull();
+  });
+
+  it("takes no more substeps than are due, and a single one by hand", () => {
+    take({ t: "pace", factor: 1 / 1000 });
+    take({ t: "step", n: 1 });
+    const { frame, substeps } = stat();
+    expect([frame, substeps]).toEqual([1, 1]);
+    take({ t: "play" });
+    pass(1);
+    // A second at 1/1000 is a millisecond of time, some 13 substeps.
+    expect(stat().time).toBeLessThan(0.0012);
+    expect(stat().time).toBeGreaterThan(0.0008);
+    expect(rows().length).toBe(stat().frames_stored);
+  });
+
+  it("ends where a hand touches the body, so that pulls are felt at once", () => {
+    take({ t: "play" });
+    pass(0.1);
+    take({ t: "grab", id: 1, vertex: 57, target: [0.03, 0.01, 0.02], stiffness: 50 });
+    expect(stat().pace).toBe(1);
+  });
+
+  it("leaves the motion as it is: looking ahead is not seen", () => {
+    take({ t: "pace", factor: 1 });
+    take({ t: "play" });
+    expect(stat()).toMatchObject({ time: 0, substeps: 0, state: "playing" });
+  });
+
+  it("finds stored frames by their time, also where the pace has changed", () => {
+    take({ t: "pace", factor: 1 / 50 });
+    take({ t: "play" });
+    pass(0.5);
+    take({ t: "pace", factor: 1 });
+    pass(20);
+    take({ t: "ack", frame: 0 });
+    take({ t: "seek", time: 0.005 });
+    expect(stat().state).toBe("past");
+    expect(stat().time).toBeCloseTo(0.005, 3);
   });
 });

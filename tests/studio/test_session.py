@@ -142,6 +142,71 @@ def test_stored_frames_can_be_looked_at_again(studio):
     run(scenario())
 
 
+def test_a_body_that_rests_too_soon_to_be_seen_is_shown_slowly(studio):
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("play")
+            slow = await page.until("stat", lambda s: s.state == "playing" and s.frame > 5)
+            rest, _ = await page.shown(lambda s: s.state == "at-rest")
+            rows = [row for event in page.log if event["t"] == "plot" for row in event["rows"]]
+        assert slow.pace == 1 / 50
+        assert slow.pace_chosen is None
+        assert "Shown 50 times slower than real time, as it comes to rest" in slow.sentence
+        # Looking ahead has changed nothing: time begins at zero, and each step is there to see.
+        assert rows[0][0] < 1e-3
+        assert rest.frames_stored == len(rows) > 100
+        assert rest.sentence.endswith("forces balance within 0.01 % of the load.")
+
+    run(scenario())
+
+
+def test_the_pace_that_is_chosen_holds_and_a_hand_ends_the_automatic_one(studio):
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("pace", factor=0.1)
+            await page.send("play")
+            chosen = await page.until("stat", lambda s: s.state == "playing")
+            rest, _ = await page.shown(lambda s: s.state == "at-rest")
+            await page.send("reset")
+            await page.send("pace")
+            await page.send("play")
+            slow = await page.until("stat", lambda s: s.pace_chosen is None and s.pace < 1)
+            await page.send("load", index=0, value=3000.0)
+            quick = await page.until("stat", lambda s: s.loads == [3000.0])
+            await page.send("pace", factor=2.0)
+            error = await page.until("error")
+        assert (chosen.pace, chosen.pace_chosen) == (0.1, 0.1)
+        assert chosen.sentence == "Shown 10 times slower than real time."
+        assert rest.frames_stored > 20
+        assert slow.pace == 1 / 50
+        assert quick.pace == 1.0
+        assert "factor" in error.what
+
+    run(scenario())
+
+
+def test_a_stored_frame_is_found_by_its_time_though_the_pace_has_changed(studio):
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("pace", factor=1 / 200)
+            await page.send("step", n=10)
+            begun, _ = await page.shown(lambda s: s.frame >= 10 and s.state != "playing")
+            await page.send("pace", factor=1.0)
+            await page.send("play")
+            await page.shown(lambda s: s.state == "at-rest")
+            await page.send("seek", time=begun.time)
+            stat, past = await page.shown(lambda s: s.state == "past")
+        # The first ten frames span no more than one of the later ones.
+        assert begun.time < 1 / 60
+        assert stat.frame == 10
+        assert past.time == begun.time
+
+    run(scenario())
+
+
 def test_a_slider_gives_a_new_body_and_a_bad_value_keeps_the_old_one(studio):
     async def scenario():
         async with studio.page() as page:
@@ -250,7 +315,7 @@ def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
     async def scenario():
         async with studio.page() as page:
             await page.until("topology")
-            await page.send("step", n=50)
+            await page.send("step", n=500)
             last = await page.until("stat", lambda s: s.state == "at-rest", ack=False)
             await page.quiet()
             assert len(page.frames) == 2

@@ -11,6 +11,7 @@ from voxsoft.design import Pressure, Solver
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.setup import Setup
+from voxsoft.units import format_percent
 
 DEFAULT_STATICS_TOLERANCE = 1e-8
 DEFAULT_STEPS = 20
@@ -117,7 +118,7 @@ def too_large_a_tangent(vertices: int, needed: int) -> str:
 def sentence(report: dict[str, Any]) -> str:
     """Say how statics ended."""
     iterations = f"{report['steps']} Newton iterations"
-    residual = f"residual {report['residual']:.1e} of the load"
+    residual = f"residual {format_percent(report['residual'])} of the load"
     carried = f"{100 * report['factor']:.4g} % of the load"
     match report["status"]:
         case "at-rest":

@@ -26,6 +26,7 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.slopes import Target, metric_at, metric_slope
+from voxsoft.units import format_percent
 
 Floats = NDArray[np.float64]
 
@@ -293,9 +294,10 @@ def _check_state(result: Result) -> None:
             "lower the loads to before the limit",
         )
     if not result.residual <= LARGEST_RESIDUAL:
+        left = f"{format_percent(result.residual)} of the load"
         raise SimulationError(
             "gradient",
-            f"the residual is {result.residual:.1e} of the load, too much for a derivative",
+            f"the residual is {left}, too much for a derivative",
             f"solve with a tolerance of {LARGEST_RESIDUAL:g} or less; 1e-10 costs one step more",
         )
 

@@ -19,6 +19,7 @@ from voxsoft.simulation.places import Place
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.run import simulate
 from voxsoft.simulation.setup import Setup
+from voxsoft.units import format_percent
 
 #: Products of 3 x 3 blocks for each voxel of a body beyond which relaxation, one candidate after
 #: the other, is as quick. Measured on one core against relaxation to the same tolerance: a beam of
@@ -144,7 +145,7 @@ class Ensemble:
         places = np.flatnonzero(fits).tolist()
         for place, (status, positions, residual) in zip(places, solved, strict=True):
             if status == "at-rest":
-                words = f"equilibrium, residual {residual:.1e} of the load"
+                words = f"equilibrium, residual {format_percent(residual)} of the load"
                 settled = Settled("ok", words, positions, float(residual), "lanes", self.setup)
                 found[place] = settled
         return found

@@ -16,6 +16,7 @@ from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sente
 from voxsoft.simulation.rest import quickest_rest, relax_fully
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
+from voxsoft.units import format_percent
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
@@ -267,7 +268,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], second
 
 
 def _sentence(report: dict[str, Any]) -> str:
-    residual = f"residual {report['residual']:.1e} of the load"
+    residual = f"residual {format_percent(report['residual'])} of the load"
     steps = f"{report['steps']} steps"
     match report["status"]:
         case "at-rest":

@@ -120,10 +120,17 @@ class Release(Command):
     id: Count
 
 
-class Seek(Command):
-    """Show a stored frame; time stops."""
+class Pace(Command):
+    """Let time run so many times as fast as the clock; null leaves it to the motion."""
 
-    frame: Count
+    factor: Annotated[float, Meta(gt=0, le=1)] | None = None
+
+
+class Seek(Command):
+    """Show a stored frame, by its number or by its time in s; time stops."""
+
+    frame: Count = 0
+    time: float | None = None
 
 
 class Live(Command):
@@ -315,6 +322,7 @@ AnyCommand = (
     | Load
     | Grab
     | Release
+    | Pace
     | Seek
     | Live
     | View

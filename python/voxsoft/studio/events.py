@@ -241,8 +241,9 @@ class GrabState(Entry):
 class Stat(Event):
     """Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
 
-    `real_time_factor` is simulated over wall-clock time. Stored frames run from `first_frame`
-    to `last_frame`.
+    `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
+    `pace_chosen` is what the user chose, or null. Stored frames run from `first_frame` to
+    `last_frame`.
     """
 
     topology: int
@@ -252,6 +253,8 @@ class Stat(Event):
     step_ms: float = 0.0
     substeps: int = 0
     real_time_factor: float = 0.0
+    pace: float = 1.0
+    pace_chosen: float | None = None
     residual: float | None = None
     elastic: float | None = None
     kinetic: float | None = None

@@ -15,6 +15,9 @@ from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.message import Triple
 
+#: How far a motion is looked ahead: seconds of it, and vertices times steps, some 0.05 s of work.
+LONGEST_LOOK: Final = 1.0
+MOST_WORK: Final = 1_000_000
 #: Residual at which a body counts as at rest: small beside what a picture shows.
 TOLERANCE: Final = 1e-4
 
@@ -53,6 +56,7 @@ class Mover:
     breakdown: Triple | None = None
     loads: list[float] = field(default_factory=list)
     _held: dict[int, _Grab] = field(default_factory=dict)
+    _due: float = 0.0
 
     def __post_init__(self) -> None:
         body, solver = self.body, self.body.setup.design.solver
@@ -83,15 +87,36 @@ class Mover:
     def advance(self, seconds: float, budget: float) -> int:
         """Simulate for some seconds, or for as long as the budget of the clock allows.
 
+        Parts of a step are carried over to the next call.
+
         Returns
         -------
         int
-            Steps that were taken.
+            Steps that were taken: none where less than one is due.
         """
-        wanted = max(1, round(seconds / self._live.substep))
+        self._due += seconds / self._live.substep
+        wanted = int(self._due)
+        if wanted == 0:
+            return 0
+        self._due -= wanted
         report = self._live.advance_for(budget, wanted)
         self._take(report)
         return int(report["taken"])
+
+    def time_to_rest(self) -> float | None:
+        """Look ahead, unseen, how long the body takes to come to rest from its unloaded shape [s].
+
+        Returns
+        -------
+        float or None
+            None where it has moved already, is pulled, or does not rest soon.
+        """
+        if self.steps > 0 or self._held:
+            return None
+        work = MOST_WORK // max(1, len(self.body.mesh.vertices))
+        report = self._live.advance(min(work, round(LONGEST_LOOK / self._live.substep)))
+        self._live.reset()
+        return float(report["time"]) if report["status"] == "at-rest" else None
 
     def set_load(self, index: int, *, value: float | None, factor: float | None) -> None:
         """Change a load of the design at once, its history or not.
@@ -169,6 +194,7 @@ class Mover:
                 self._live.set_load(inner, None)
         self.loads = list(self._final)
         self.time, self.steps, self.state = 0.0, 0, "moving"
+        self._due = 0.0
         self.residual = self.elastic = self.kinetic = None
         self.breakdown = None
 

@@ -35,6 +35,7 @@ def _(command: commands.View, stage: Stage, tab: Tab) -> None:
 def _(command: commands.Play, stage: Stage, tab: Tab) -> None:
     stage.playback.to_present()
     stage.playback.wants_play = True
+    stage.playback.look_ahead()
     stage.play()
     stage.tell_stat()
 
@@ -54,6 +55,7 @@ def _(command: commands.Pause, stage: Stage, tab: Tab) -> None:
 def _(command: commands.Step, stage: Stage, tab: Tab) -> None:
     stage.playback.to_present()
     stage.playback.wants_play = False
+    stage.playback.look_ahead()
     stage.play()
     stage.playback.steps_left = command.n
     stage.tell_stat()
@@ -104,8 +106,14 @@ def _(command: commands.Release, stage: Stage, tab: Tab) -> None:
 
 
 @obey.register
+def _(command: commands.Pace, stage: Stage, tab: Tab) -> None:
+    stage.playback.choose_pace(command.factor)
+    stage.tell_stat()
+
+
+@obey.register
 def _(command: commands.Seek, stage: Stage, tab: Tab) -> None:
-    stage.playback.look_at(command.frame)
+    stage.playback.look_at(command.frame, command.time)
     stage.stop_search()
     stage.painted()
 

@@ -58,6 +58,10 @@ class Past:
             return None
         return self._frames[min(max(number - self.first, 0), len(self._frames) - 1)]
 
+    def at_time(self, time: float) -> StoredFrame | None:
+        """The frame nearest to a time [s]; None if there is none."""
+        return min(self._frames, key=lambda frame: abs(frame.time - time), default=None)
+
     def cut_after(self, number: int) -> None:
         """Forget the frames after one, as time begins anew from there."""
         while self._frames and self._frames[-1].number > number:

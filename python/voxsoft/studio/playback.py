@@ -17,6 +17,7 @@ from voxsoft.studio.canvas import Canvas, Moment
 from voxsoft.studio.exports import Shown
 from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED
 from voxsoft.studio.mover import Mover
+from voxsoft.studio.pace import Pace, RealTimeFactor
 from voxsoft.studio.past import Past, StoredFrame
 from voxsoft.studio.plots import Plots
 from voxsoft.studio.sentences import at_rest, diverged
@@ -39,6 +40,8 @@ class Playback:
         Whether time runs again once a load or a pull wakes the body.
     steps_left
         Frames until time stops, or None to go on.
+    pace
+        How fast time is shown.
     method
         The solver of the search for rest.
     frame
@@ -58,6 +61,7 @@ class Playback:
     progress: float | None = None
     wants_play: bool = False
     steps_left: int | None = None
+    pace: Pace = field(default_factory=Pace)
     method: str = "auto"
     frame: int = 0
     past: Past = field(default_factory=Past)
@@ -65,7 +69,7 @@ class Playback:
     plots: Plots = field(default_factory=Plots)
     result: Result | None = None
     _mover: Mover | None = None
-    _speed: float = 0.0
+    _speed: RealTimeFactor = field(default_factory=RealTimeFactor)
     _step_ms: float = 0.0
 
     def begin(self, body: StudioBody) -> None:
@@ -74,7 +78,7 @@ class Playback:
         self.plots.begin(body)
         self._mover, self.result, self.shown = None, None, None
         self.past, self.frame = Past(), 0
-        self.state, self.progress = "paused", None
+        self.state, self.progress, self.pace.rest_in = "paused", None, None
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
 
     def reset(self) -> None:
@@ -86,7 +90,7 @@ class Playback:
         if self._mover is not None:
             self._mover.reset()
         self.state = "paused" if self.body is not None else "empty"
-        self.sentence, self.progress = "", None
+        self.sentence, self.progress, self.pace.rest_in = "", None, None
 
     def halt(self, state: events.SimulationState, sentence: str) -> None:
         """Stop time for good, and say why."""
@@ -106,21 +110,45 @@ class Playback:
         self.result = None
         self.state, self.sentence, self.progress = "playing", "", None
         self.steps_left = None
+        self._speed.restart()
+
+    def look_ahead(self) -> None:
+        """Find out how soon the body comes to rest, to show it slowly enough to be seen.
+
+        Raises
+        ------
+        VoxSoftError
+            Nothing can move.
+        """
+        mover = self.require_mover()
+        if mover.steps == 0:
+            self.pace.rest_in = mover.time_to_rest()
+
+    def choose_pace(self, factor: float | None) -> None:
+        """Take the user's pace, or None for the automatic one."""
+        self.pace.chosen = factor
+        self._speed.restart()
+
+    def touched(self) -> None:
+        """Hear that a hand is on a load or a pull: what it does is shown at once."""
+        self.result, self.pace.rest_in = None, None
 
     def to_present(self) -> None:
         """Look at the present again."""
         if self.shown is not None:
             self.shown, self.state, self.sentence = None, "paused", ""
 
-    def look_at(self, number: int) -> None:
-        """Look at a stored frame, or at the nearest that is still there; time stops.
+    def look_at(self, number: int, time: float | None = None) -> None:
+        """Look at a stored frame by number, or by time [s] where one is given; time stops.
+
+        The nearest that is still there is taken.
 
         Raises
         ------
         SimulationError
             No frame is stored.
         """
-        stored = self.past.at(number)
+        stored = self.past.at(number) if time is None else self.past.at_time(time)
         if stored is None:
             raise SimulationError("seek", "no frame is stored yet", "press play first")
         self.wants_play = False
@@ -128,14 +156,19 @@ class Playback:
         self.sentence = f"Frame {stored.number} of {self.past.last}"
 
     def take_frame(self, seconds: float, budget: float) -> None:
-        """Move for the time between two frames, or as far as a budget of the clock allows [s]."""
+        """Move for the time between two frames, or as far as a budget of the clock allows [s].
+
+        In slow motion there may be no step to take yet; then there is no frame either.
+        """
         mover = self.require_mover()
-        before, began = mover.time, time.perf_counter()
-        steps = mover.advance(seconds, budget)
-        took = time.perf_counter() - began
+        began = time.perf_counter()
+        steps = mover.advance(seconds * self.pace.factor, budget)
+        ended = time.perf_counter()
+        self._speed.mark(mover.time, ended)
         if steps:
-            self._step_ms = 1e3 * took / steps
-        self._speed += 0.2 * ((mover.time - before) / max(took, seconds) - self._speed)
+            self._step_ms = 1e3 * (ended - began) / steps
+        elif mover.state == "moving":
+            return
         self.frame += 1
         positions = mover.positions()
         self.past.keep(self.frame, mover.time, positions)
@@ -203,11 +236,13 @@ class Playback:
         return events.Stat(
             topology=0 if body is None else body.topology,
             state=self.state,
-            sentence=self.sentence,
+            sentence=self.sentence or (self.pace.words if self.moving else ""),
             time=self.time,
             step_ms=self._step_ms,
             substeps=0 if mover is None else mover.steps,
-            real_time_factor=self._speed if self.moving else 0.0,
+            real_time_factor=self._speed.value if self.moving else 0.0,
+            pace=self.pace.factor,
+            pace_chosen=self.pace.chosen,
             residual=None if mover is None else mover.residual,
             elastic=None if mover is None else mover.elastic,
             kinetic=None if mover is None else mover.kinetic,

@@ -11,6 +11,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.rest import DEFAULT_TOLERANCE
 from voxsoft.studio.body import StudioBody
+from voxsoft.units import format_percent
 
 
 class Listener(Protocol):
@@ -84,7 +85,9 @@ class RestSearch(threading.Thread):
             raise _StoppedError
         if math.isfinite(residual):
             self._largest = max(self._largest, residual)
-        sentence = f"Looking for rest: step {steps:,}, residual {residual:.1e} of the load"
+        sentence = (
+            f"Looking for rest: step {steps:,}, residual {format_percent(residual)} of the load"
+        )
         self._listener.searching(self, sentence, digits_lost(residual, self._largest))
 
 

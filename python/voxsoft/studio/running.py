@@ -14,6 +14,7 @@ from voxsoft.simulation import Result, simulate
 from voxsoft.studio.commands import RunSpec
 from voxsoft.studio.rest import digits_lost
 from voxsoft.studio.task import Task
+from voxsoft.units import format_percent
 
 if TYPE_CHECKING:
     from voxsoft.studio.worker import Progress
@@ -40,7 +41,8 @@ def run_once(task: Task, progress: Progress) -> str:
         largest = max(largest, residual if math.isfinite(residual) else 0.0)
         end = design.solver.end_time
         share = when / end if end else digits_lost(residual, largest)
-        progress.at(min(99, int(100 * share)), 100, stage=f"residual {residual:.1e} of the load")
+        left = f"residual {format_percent(residual)} of the load"
+        progress.at(min(99, int(100 * share)), 100, stage=left)
 
     result = simulate(design, progress=tell, **task.spec.solver)
     files.write_run(result, progress.folder)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from voxsoft.units import format_quantity
+from voxsoft.units import format_percent, format_quantity
 
 
 def said_time(seconds: float) -> str:
@@ -24,9 +24,24 @@ def at_rest(seconds: float, tolerance: float) -> str:
     Examples
     --------
     >>> at_rest(0.8, 1e-5)
-    'At rest after 0.8 s: forces balance within 1e-05 of the load.'
+    'At rest after 0.8 s: forces balance within 0.001 % of the load.'
     """
-    return f"At rest after {said_time(seconds)}: forces balance within {tolerance:.0e} of the load."
+    share = format_percent(tolerance)
+    return f"At rest after {said_time(seconds)}: forces balance within {share} of the load."
+
+
+def slowed(factor: float, rest_in: float | None) -> str:
+    """Say how slowly a motion is shown and, where it slows itself down, why.
+
+    Examples
+    --------
+    >>> slowed(0.02, 0.0497)
+    'Shown 50 times slower than real time, as it comes to rest within 49.7 ms.'
+    >>> slowed(0.5, None)
+    'Shown 2 times slower than real time.'
+    """
+    why = "" if rest_in is None else f", as it comes to rest within {said_time(rest_in)}"
+    return f"Shown {1 / factor:.3g} times slower than real time{why}."
 
 
 def diverged(seconds: float, place: Sequence[float] | None) -> str:

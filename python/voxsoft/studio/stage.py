@@ -97,7 +97,7 @@ class Stage:
     def stirred(self) -> None:
         """Go on after a change of load or a grab, if time was running before it came to rest."""
         playback = self.playback
-        playback.result = None
+        playback.touched()
         self.pictures.forget()
         if playback.state in ("at-rest", "solving"):
             self.stop_search()

@@ -44,7 +44,13 @@ from voxsoft.units.factors import (
     um,
 )
 from voxsoft.units.kinds import KINDS, Dimension, Kind, Number, Quantity, describe_dimension
-from voxsoft.units.text import format_quantity, parse, parse_any, round_significant
+from voxsoft.units.text import (
+    format_percent,
+    format_quantity,
+    parse,
+    parse_any,
+    round_significant,
+)
 from voxsoft.units.types import (
     FILE_CONTEXT,
     Acceleration,
@@ -118,6 +124,7 @@ __all__ = [
     "cm",
     "deg",
     "describe_dimension",
+    "format_percent",
     "format_quantity",
     "g",
     "inch",

@@ -109,6 +109,23 @@ def parse_any(text: str, *, where: str = "quantity") -> Quantity:
     return _quantity(number, unit, text, where)
 
 
+def format_percent(share: float) -> str:
+    """Write a share in percent with two digits, as people read it: never with an exponent.
+
+    Examples
+    --------
+    >>> format_percent(1e-4), format_percent(0.04567), format_percent(3.21e-8)
+    ('0.01 %', '4.6 %', '0.0000032 %')
+    >>> format_percent(1e-14)
+    'less than 0.0000001 %'
+    """
+    if not math.isfinite(share):
+        return f"{share} %"
+    if 0 < abs(share) < 1e-9:
+        return "less than 0.0000001 %"
+    return f"{_plain(Decimal(f'{100 * share:.2g}'))} %"
+
+
 def format_quantity(value: float, kind: str) -> str:
     """Write an SI value with a unit that suits its size, to 12 significant digits.
 

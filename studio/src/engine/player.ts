@@ -4,6 +4,7 @@ import type { AnyEvent, BodyEvent, Field, GrabState, StatEvent } from "../protoc
 import { PROTOCOL } from "../protocol";
 import type { CoreLook, CoreRun } from "./core";
 import type { Draft } from "./engine";
+import { Pace, RealTimeFactor } from "./pace";
 
 /** What of the core a player needs. */
 export type Run = Pick<
@@ -45,6 +46,9 @@ const CREDITS = 2;
 /** Wall-clock time that one turn may take, ms: the rest belongs to drawing and input. */
 const TURN = 12;
 const TELL_EVERY = 100;
+/** How far a motion is looked ahead: seconds of it, and vertices times substeps. */
+const LONGEST_LOOK = 1;
+const MOST_WORK = 1_000_000;
 const MOST_STORED = 64 * 1024 * 1024;
 
 export class Player {
@@ -73,9 +77,11 @@ export class Player {
   private rows: (number | null)[][] = [];
   private lastTold = -Infinity;
   private lastTurn: number | null = null;
-  private realTime = 0;
+  private readonly pace = new Pace();
+  private readonly realTime = new RealTimeFactor();
+  /** Substeps that are due, with parts of one. */
+  private due = 0;
   private stepMs = 0;
-  private simulated = 0;
   private readonly rest: Float64Array;
 
   constructor(
@@ -133,8 +139,14 @@ export class Player {
     switch (command.t) {
       case "play":
         this.goLive();
+        this.lookAhead();
         this.playing = true;
         this.lastTurn = null;
+        this.realTime.restart();
+        break;
+      case "pace":
+        this.pace.chosen = command.factor ?? null;
+        this.realTime.restart();
         break;
       case "pause":
         this.playing = false;
@@ -142,7 +154,8 @@ export class Player {
       case "step":
         this.goLive();
         this.playing = false;
-        for (let i = 0; i < (command.n ?? 1); i++) this.step(1 / 60, Number.POSITIVE_INFINITY);
+        this.lookAhead();
+        for (let i = 0; i < (command.n ?? 1); i++) this.step(1 / 60, Number.POSITIVE_INFINITY, 1);
         break;
       case "reset":
         this.resetAll();
@@ -156,10 +169,11 @@ export class Player {
       case "release":
         this.run.release(command.id);
         this.grabs.delete(command.id);
+        this.pace.restIn = null;
         break;
       case "seek":
         this.playing = false;
-        this.past = command.frame;
+        this.past = command.time == null ? (command.frame ?? 0) : this.frameAt(command.time);
         break;
       case "live":
         this.goLive();
@@ -203,25 +217,37 @@ export class Player {
     this.lastTurn = now;
     this.step(passed, now + TURN);
     this.send();
+    this.realTime.mark(this.look.time, now);
     if (now - this.lastTold >= TELL_EVERY) {
       this.lastTold = now;
-      this.realTime = passed > 0 ? this.simulated / passed : 0;
       this.tell();
     }
   }
 
-  private step(seconds: number, until: number): void {
+  /** How soon it comes to rest from the unloaded shape, to show it slowly enough to be seen. */
+  private lookAhead(): void {
+    if (this.look.time > 0 || this.grabs.size > 0) return;
+    const work = Math.floor(MOST_WORK / Math.max(1, this.rest.length / 3));
+    const look = this.run.advance(Math.min(work, Math.round(LONGEST_LOOK / this.look.substep)));
+    this.run.reset();
+    this.look = this.run.advance(0);
+    this.pace.restIn = look.status === "at-rest" ? look.time : null;
+  }
+
+  /** Take the substeps of a time at the pace in force, as far as the clock allows. */
+  private step(seconds: number, until: number, least = 0): void {
+    this.due = Math.max(least, this.due + (seconds * this.pace.factor) / this.look.substep);
+    const wanted = Math.floor(this.due);
+    if (wanted === 0) return; // in slow motion the next one is not due yet
+    this.due -= wanted;
     const start = performance.now();
-    const from = this.look.time;
     let taken = 0;
-    while (this.look.time - from < seconds && (taken === 0 || performance.now() < until)) {
-      const left = Math.ceil((seconds - (this.look.time - from)) / this.look.substep);
-      const count = Math.max(1, Math.min(8, left));
+    while (taken < wanted && (taken === 0 || performance.now() < until)) {
+      const count = Math.min(8, wanted - taken);
       this.look = this.run.advance(count);
       taken += count;
       if (this.look.status !== "moving") break;
     }
-    this.simulated = this.look.time - from;
     this.stepMs = (performance.now() - start) / Math.max(1, taken);
     if (this.look.status !== "moving") this.playing = false;
     this.frame += 1;
@@ -279,6 +305,15 @@ export class Player {
     return this.stored.find((one) => one.frame >= frame) ?? this.stored.at(-1) ?? null;
   }
 
+  /** Number of the stored frame nearest to a time. */
+  private frameAt(time: number): number {
+    let best = this.stored[0];
+    for (const one of this.stored) {
+      if (best && Math.abs(one.time - time) < Math.abs(best.time - time)) best = one;
+    }
+    return best?.frame ?? this.frame;
+  }
+
   private send(): void {
     if (!this.fresh || this.credits <= 0) return;
     this.fresh = false;
@@ -305,6 +340,8 @@ export class Player {
   private resetAll(): void {
     this.playing = false;
     this.past = null;
+    this.pace.restIn = null;
+    this.due = 0;
     for (const id of this.grabs.keys()) this.run.release(id);
     this.grabs.clear();
     this.run.reset();
@@ -334,8 +371,9 @@ export class Player {
     this.wake();
   }
 
-  // What was at rest is so no more.
+  // What was at rest is so no more, and what a hand does is shown at once.
   private wake(): void {
+    this.pace.restIn = null;
     if (this.look.status === "at-rest" && this.past === null) {
       this.playing = true;
       this.lastTurn = null;
@@ -418,7 +456,9 @@ export class Player {
       time: old?.time ?? look.time,
       step_ms: this.stepMs,
       substeps: look.substeps,
-      real_time_factor: this.realTime,
+      real_time_factor: this.playing ? this.realTime.value : 0,
+      pace: this.pace.factor,
+      pace_chosen: this.pace.chosen,
       residual: finite(look.residual),
       elastic: finite(look.elastic),
       kinetic: finite(look.kinetic),
@@ -439,9 +479,8 @@ export class Player {
     if (state === "at-rest") return `At rest after ${time}.`;
     if (state === "diverged") return `Diverged at ${time}: reset, and load it less.`;
     if (state === "past") return "A stored frame; LIVE goes back to the present.";
-    return state === "playing"
-      ? "Time runs. Drag the body to pull on it."
-      : "Press Space, or drag the body.";
+    if (state !== "playing") return "Press Space, or drag the body.";
+    return this.pace.words || "Time runs. Drag the body to pull on it.";
   }
 }
 

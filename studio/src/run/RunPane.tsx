@@ -47,9 +47,9 @@ function State() {
   const stat = useStudio((state) => state.stat);
   if (!stat) return null;
   const facts: [string, string][] = [
-    ["Real time", stat.state === "playing" ? `${formatNumber(stat.real_time_factor, 3)} ×` : "–"],
+    ["Real time", stat.state === "playing" ? `${formatNumber(stat.real_time_factor, 2)} ×` : "–"],
     ["Substep", `${formatNumber(stat.step_ms, 3)} ms`],
-    ["Residual", stat.residual === null ? "–" : formatNumber(stat.residual, 3)],
+    ["Residual", stat.residual === null ? "–" : formatQuantity(stat.residual, "%", 2)],
     ["Elastic energy", stat.elastic === null ? "–" : formatQuantity(stat.elastic, "J", 3)],
     ["Kinetic energy", stat.kinetic === null ? "–" : formatQuantity(stat.kinetic, "J", 3)],
     ["Stored frames", `${stat.frames_stored} (${formatNumber(stat.bytes_stored / 1e6, 3)} MB)`],

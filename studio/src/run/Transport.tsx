@@ -4,6 +4,7 @@ import { stepFrames, togglePlay } from "../shell/actions";
 import { Icon } from "../shell/icons";
 import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
+import { PaceChoice } from "./PaceChoice";
 import "./run.css";
 
 /** Time: play, step, reset, rest, and the stored frames to go back to. */
@@ -76,6 +77,7 @@ export function Transport() {
           <Icon name="rest" /> Rest
         </Button>
       )}
+      <PaceChoice />
       <input
         className="scrubber"
         type="range"

@@ -1,5 +1,6 @@
 // Every action with a name: the palette lists them, keys start them, the help sheet shows them.
 
+import { nextPace } from "../engine/pace";
 import { MODE_TITLES, MODES, openSheet, setMode, type ThemeChoice, usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -53,6 +54,12 @@ export function stepFrames(count: number): void {
   }
   const next = Math.min(stat.last_frame, Math.max(stat.first_frame, stat.frame + count));
   send({ t: "seek", frame: next });
+}
+
+/** Show time slower by a step of 1, or faster by one of −1. */
+export function changePace(steps: number): void {
+  const stat = useStudio.getState().stat;
+  if (stat) send({ t: "pace", factor: nextPace(stat.pace, steps) });
 }
 
 export function setTheme(theme: ThemeChoice): void {
@@ -117,6 +124,26 @@ function simple(): Action[] {
       run: () => stepFrames(-10),
     },
     {
+      id: "slower",
+      title: "Show time slower",
+      group: "Simulation",
+      keys: [",", "<"],
+      run: () => changePace(1),
+    },
+    {
+      id: "faster",
+      title: "Show time faster",
+      group: "Simulation",
+      keys: [".", ">"],
+      run: () => changePace(-1),
+    },
+    {
+      id: "pace-auto",
+      title: "Show time as fast as the motion can be seen",
+      group: "Simulation",
+      run: () => send({ t: "pace", factor: null }),
+    },
+    {
       id: "live",
       title: "Back to the present",
       group: "Simulation",
@@ -171,6 +198,7 @@ function simple(): Action[] {
 
 const ALONE = new Set([
   ...["play", "step", "back", "step10", "back10", "live", "reset"],
+  ...["slower", "faster", "pace-auto"],
   ...["palette", "shortcuts", "theme-dark", "theme-light", "theme-system"],
 ]);
 

@@ -1,1 +1,1 @@
-import{w as e}from"./index.js";import{i as t}from"./studio.js";function n(n){let{stat:r,history:i}=t.getState();if(!r||r.last_frame<=r.first_frame)return;let a=i.columns[0]??[],[o,s]=[a[0]??0,a.at(-1)??0];if(!(s>o))return;let c=Math.min(1,Math.max(0,(n-o)/(s-o))),l=Math.round(r.first_frame+c*(r.last_frame-r.first_frame));e({t:`seek`,frame:l})}export{n as t};
+import{k as e,w as t}from"./index.js";function n(n){let{stat:r}=e.getState();!r||r.last_frame<=r.first_frame||t({t:`seek`,time:n})}export{n as t};

@@ -1,0 +1,27 @@
+import { Select } from "../controls/Choice";
+import { PACES, paceName } from "../engine/pace";
+import { send } from "../store/session";
+import { useStudio } from "../store/studio";
+
+const AUTO = "auto";
+
+/** How fast time is shown; the automatic pace says which one it has found. */
+export function PaceChoice() {
+  const pace = useStudio((state) => state.stat?.pace ?? 1);
+  const chosen = useStudio((state) => state.stat?.pace_chosen ?? null);
+  const auto = chosen === null && pace !== 1 ? `auto · ${paceName(pace)}` : "auto";
+  const options = [
+    { value: AUTO, label: auto },
+    ...PACES.map((one) => ({ value: String(one), label: paceName(one) })),
+  ];
+  return (
+    <Select
+      bare
+      label="Speed of time"
+      title="Speed of time: slower (,) and faster (.)"
+      value={chosen === null ? AUTO : String(chosen)}
+      options={options}
+      onChange={(value) => send({ t: "pace", factor: value === AUTO ? null : Number(value) })}
+    />
+  );
+}
