@@ -7,13 +7,12 @@ export const CREDITS = 2;
 
 export type Triple = [number, number, number];
 
-/** First message of a tab: the protocol that it speaks, and its token where it has no cookie. */
+/** First message of a tab: the protocol that it speaks. */
 export interface HelloCommand {
   t: "hello";
   seq: number;
   protocol: number;
   version?: string;
-  token?: string;
 }
 
 /**
@@ -275,6 +274,13 @@ export interface JobResumeCommand {
 /** Stop a job; what is finished is kept. */
 export interface JobStopCommand {
   t: "job_stop";
+  seq: number;
+  id: string;
+}
+
+/** Tell what the folder of a study or calibration holds, as it was told when it ran. */
+export interface JobShowCommand {
+  t: "job_show";
   seq: number;
   id: string;
 }
@@ -838,6 +844,7 @@ export type AnyCommand =
   | JobPauseCommand
   | JobResumeCommand
   | JobStopCommand
+  | JobShowCommand
   | RunsCommand
   | RunRenameCommand
   | RunDeleteCommand

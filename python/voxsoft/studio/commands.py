@@ -23,11 +23,10 @@ class Command(Message):
 
 
 class Hello(Command):
-    """First message of a tab: the protocol that it speaks, and its token where it has no cookie."""
+    """First message of a tab: the protocol that it speaks."""
 
     protocol: int
     version: str = ""
-    token: str = ""
 
 
 class Open(Command):
@@ -259,6 +258,12 @@ class JobStop(Command):
     id: ShortText
 
 
+class JobShow(Command):
+    """Tell what the folder of a study or calibration holds, as it was told when it ran."""
+
+    id: ShortText
+
+
 class Runs(Command):
     """Ask for the list of runs."""
 
@@ -333,6 +338,7 @@ AnyCommand = (
     | JobPause
     | JobResume
     | JobStop
+    | JobShow
     | Runs
     | RunRename
     | RunDelete

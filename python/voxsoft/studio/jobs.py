@@ -16,6 +16,7 @@ import msgspec
 from voxsoft.errors import StudyError
 from voxsoft.records import closest
 from voxsoft.studio import events
+from voxsoft.studio.job_journal import FINISHED, JobJournal
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.task import Task
@@ -27,7 +28,6 @@ PATIENCE: Final = 10.0
 #: Lines of the log that are told where a process died.
 _LAST_LINES: Final = 3
 
-_FINISHED: Final = frozenset({"stopped", "done", "failed", "interrupted"})
 _decoder: Final[msgspec.json.Decoder[events.AnyEvent]] = msgspec.json.Decoder(events.AnyEvent)
 
 
@@ -55,7 +55,7 @@ class Job:
     @property
     def running(self) -> bool:
         """Whether its process still works."""
-        return self.state.state not in _FINISHED
+        return self.state.state not in FINISHED
 
     def order(self, word: str) -> None:
         """Send a word to the process, if it is still there."""
@@ -187,12 +187,11 @@ class Jobs:
             self._said(job, event)
         code = job.process.wait()
         if job.running:
-            self._said(
-                job,
-                msgspec.structs.replace(
-                    job.state, state="failed", left=None, message=self._died(job, code)
-                ),
+            failed = msgspec.structs.replace(
+                job.state, state="failed", left=None, message=self._died(job, code)
             )
+            JobJournal(job.folder).keep(failed)
+            self._said(job, failed)
         self._changed()
 
     def _said(self, job: Job, event: events.Event) -> None:

@@ -17,7 +17,7 @@ from voxsoft.files.run_folder import make_folder
 from voxsoft.metrics import METRICS
 from voxsoft.studio import events
 from voxsoft.studio.running import THUMBNAIL
-from voxsoft.studio.task import TASK, Task
+from voxsoft.studio.task import DESIGN, TASK, Task
 from voxsoft.units import format_quantity
 
 #: Where folders go that are deleted, so that they can come back.
@@ -160,6 +160,11 @@ def kind_of(folder: Path) -> Kind:
     if (folder / "shapes.csv").is_file():
         return "calibrate"
     return "run" if (folder / "design.toml").is_file() else "unknown"
+
+
+def card_of(folder: Path) -> Path | None:
+    """The material card that a calibration left in its folder, or None."""
+    return next((file for file in sorted(folder.glob("*.toml")) if file.name != DESIGN), None)
 
 
 def read_summary(folder: Path) -> dict[str, Any]:

@@ -1,4 +1,7 @@
-"""What all tabs share: the document, the body, the jobs and the runs."""
+"""What all tabs share: the document, the body, the jobs and the runs.
+
+Long because every command that is not about time is obeyed here, one short method each.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +33,10 @@ from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
-from voxsoft.studio.runs import RunList, kind_of
+from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.stills import Stills
-from voxsoft.studio.studying import design_text_of, stored_study, stored_trial, trials_event
+from voxsoft.studio.stored_job import stored_job
+from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
 from voxsoft.studio.task import DESIGN, Table, Task
@@ -196,7 +200,7 @@ class Session:
             case "upload":
                 self._open_upload(command.name)
             case "run":
-                self._open_run(command.name, tab)
+                self._open_run(self.list.folder_of(command.name))
             case "trial":
                 self._open_trial(command.name)
 
@@ -233,14 +237,15 @@ class Session:
         else:
             raise FileError(name, "holds measurements", "open it in the Calibrate pane")
 
-    def _open_run(self, name: str, tab: Tab) -> None:
-        """Open the design of a run, and tell what its folder holds."""
-        folder = self.list.folder_of(name)
+    def _open_run(self, folder: Path) -> None:
         kind = kind_of(folder)
-        if kind == "study":
-            result = stored_study(folder)
-            self.tabs.tell_one(tab, trials_event(name, result))
-        self._open(self._document_of(folder), loaded=kind == "run")
+        try:
+            self._open(self._document_of(folder), loaded=kind == "run")
+        except FileError as error:
+            if kind != "calibrate":
+                raise
+            # One that `voxsoft calibrate` wrote: there is still its result to be shown.
+            self.tabs.tell(events.Log(level="info", text=str(error)))
 
     def _open_trial(self, name: str) -> None:
         """Open the design of one trial: that of its study, with the trial's parameters."""
@@ -304,6 +309,12 @@ class Session:
         self._runs_changed()
 
     @_obey.register
+    def _(self, command: commands.JobShow, tab: Tab) -> None:
+        if self.jobs.known(command.id) is None:  # all tabs know those of this studio
+            for event in stored_job(self.list.folder_of(command.id)):
+                self.tabs.tell_one(tab, event)
+
+    @_obey.register
     def _(self, command: commands.Measurement, tab: Tab) -> None:
         event, _ = measured(command.name, command.text, command.columns, command.select)
         self._tables[command.name] = (command.text, command.columns)
@@ -324,7 +335,7 @@ class Session:
     @_obey.register
     def _(self, command: commands.CardSave, tab: Tab) -> None:
         folder = self.list.folder_of(command.job)
-        card = next((file for file in sorted(folder.glob("*.toml")) if file.name != DESIGN), None)
+        card = card_of(folder)
         if card is None:
             raise FileError(command.job, "holds no material card", "wait until it is done")
         found = load_card_file(card).model_copy(update={"name": command.name})

@@ -17,6 +17,7 @@ from typing import TextIO
 
 from voxsoft.errors import VoxSoftError
 from voxsoft.studio import events
+from voxsoft.studio.job_journal import JobJournal
 from voxsoft.studio.protocol import encode
 from voxsoft.studio.task import Task
 
@@ -153,12 +154,20 @@ def main(folder: Path) -> int:
     os.dup2(2, 1)
     lock = threading.Lock()
 
+    task = Task.read(folder)
+    # Only a study goes on where it was; other work begins anew.
+    journal = JobJournal(folder, anew=task.kind != "study")
+
     def tell(event: events.Event) -> None:
         with lock:
+            written = not journal.trouble
+            journal.keep(event)
+            if written and journal.trouble:
+                what = f"how the job goes cannot be kept: {journal.trouble}"
+                line_out.write(encode(events.Log(level="warning", text=what)) + "\n")
             line_out.write(encode(event) + "\n")
             line_out.flush()
 
-    task = Task.read(folder)
     controls = Controls(sys.stdin)
     progress = Progress(task, folder, tell, controls)
     threading.Thread(target=controls.listen, daemon=True).start()

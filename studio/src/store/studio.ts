@@ -107,7 +107,8 @@ export function apply(event: AnyEvent): void {
   const set = useStudio.setState;
   switch (event.t) {
     case "hello":
-      set({ hello: event });
+      // All jobs that this server knows are told anew; others are asked for (watchJob).
+      set({ hello: event, jobs: {} });
       break;
     case "document":
       set({ document: event });

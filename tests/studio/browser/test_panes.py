@@ -278,7 +278,10 @@ class TestRuns:
         row.hover()
         row.get_by_role("button", name="Work on with renamed").click()
         studied.until("location.hash.includes('mode=optimize')")
-        studied.find("past-study").get_by_text("4 designs").wait_for()
+        # What the job said last is there under its new name, and its designs with it.
+        job = studied.page.locator("[data-testid=job-study][data-state=done]")
+        job.get_by_text("4 of 4 designs").wait_for()
+        assert job.locator("strong").inner_text() == "renamed"
         assert studied.find("trials-table").locator("tbody tr").count() == 4
         assert studied.errors == []
 
@@ -315,6 +318,24 @@ class TestCalibrate:
         tab.find("card-save").click()
         tab.find("toast").get_by_text(re.compile("Saved .*beam-calibration.toml")).wait_for()
         assert tab.errors == []
+
+        own_server.stop()
+        own_server.start()
+        for again in ("loaded anew", "opened from the list"):
+            if again == "loaded anew":  # by the job in its address
+                tab.page.reload()
+            else:
+                tab = open_tab(own_server.address, mode="runs")
+                row = tab.find("runs-table").locator("tbody tr")
+                row.hover()
+                row.get_by_role("button", name="Work on with").click()
+                tab.until("location.hash.includes('mode=calibrate')")
+            tab.page.locator("[data-testid=job-calibrate][data-state=done]").wait_for()
+            tab.find("calibrated").get_by_text("Mean error").wait_for()
+            tab.find("errors-table").locator("tbody tr").nth(2).wait_for()
+            tab.page.get_by_role("tab", name="Measured and simulated").click()
+            tab.page.locator("[data-testid=overlay-chart] .overlay-measured").nth(2).wait_for()
+        tab.shot("calibration-of-the-past")
 
 
 class TestExport:

@@ -59,7 +59,9 @@ export default function CalibratePane() {
     <div className="pane calibrate" data-testid="calibrate-form">
       {current?.job && <JobCard job={current.job} unit="generations" />}
       <JobChooser kind="calibrate" label="Calibration" />
-      {current?.result && <Result result={current.result} root={form.root} />}
+      {current?.result && (
+        <Result key={current.result.job} result={current.result} root={form.root} />
+      )}
       <Section
         title="Specimen"
         action={

@@ -30,7 +30,9 @@ const TONES: Readonly<Record<JobEvent["state"], string>> = {
 export function JobCard(props: { job: JobEvent; unit: string }) {
   const { job } = props;
   const live = job.state === "running" || job.state === "paused" || job.state === "stopping";
-  const again = job.state === "paused" || job.state === "stopped" || job.state === "interrupted";
+  const ended = job.state === "stopped" || job.state === "interrupted" || job.state === "failed";
+  // Only a study has a journal from which it goes on; other work gives the same again.
+  const again = ended && job.kind !== "study" ? "Start again" : "Go on";
   return (
     <div className="job" data-testid={`job-${job.kind}`} data-state={job.state}>
       <div className="job-head">
@@ -42,8 +44,8 @@ export function JobCard(props: { job: JobEvent; unit: string }) {
               <Icon name="pause" />
             </Button>
           )}
-          {again && (
-            <Button icon label="Go on" onClick={() => send({ t: "job_resume", id: job.id })}>
+          {(ended || job.state === "paused") && (
+            <Button icon label={again} onClick={() => send({ t: "job_resume", id: job.id })}>
               <Icon name="play" />
             </Button>
           )}

@@ -171,7 +171,7 @@ export default function StudyPane() {
   );
 }
 
-/** A study of the list of runs, which the plots show: it can go on. */
+/** A study that was not started in the studio, which the plots show. */
 function Past(props: { id: string }) {
   const count = useStudio((state) => state.trials[props.id]?.trials.length ?? 0);
   return (
@@ -179,15 +179,8 @@ function Past(props: { id: string }) {
       <div className="job-head">
         <strong>{props.id}</strong>
         <span className="badge">{count} designs</span>
-        <span className="job-buttons">
-          <Button
-            label={`Go on with ${props.id}`}
-            onClick={() => send({ t: "job_resume", id: props.id })}
-          >
-            Go on
-          </Button>
-        </span>
       </div>
+      <p className="muted">It was made outside the studio, and goes on where it was begun.</p>
     </div>
   );
 }
