@@ -46,6 +46,7 @@ export default defineConfig({
       "/download": server,
       "/thumbnail": server,
       "/export": server,
+      "/still": server,
     },
   },
 });

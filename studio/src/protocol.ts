@@ -745,7 +745,6 @@ export interface Side {
   status: string;
   parameters: Record<string, unknown>;
   metrics: Record<string, number | null>;
-  thumbnail: string | null;
   text: string;
 }
 

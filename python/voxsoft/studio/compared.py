@@ -57,14 +57,12 @@ def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
             status = str(told.get("status", "ok"))
             if kind_of(folder) == "run":
                 metrics = dict(told.get("metrics", {}))
-    thumbnail = f"/thumbnail/{folder.name}" if runs.picture(folder.name) else None
     side = events.Side(
         id=name,
         name=name,
         status=status,
         parameters=parameters,
         metrics=metrics,
-        thumbnail=thumbnail,
         text=text,
     )
     return side, document

@@ -446,7 +446,6 @@ class Side(Entry):
     status: str
     parameters: dict[str, Json]
     metrics: dict[str, float | None]
-    thumbnail: str | None
     text: str
 
 

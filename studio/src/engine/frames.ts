@@ -63,6 +63,27 @@ export function decode(buffer: ArrayBuffer): Topology | Frame | Smooth {
   throw new FrameError(`unknown kind ${kind}`);
 }
 
+/** Read messages that stand one behind the other, as answers over HTTP have them. */
+export function decodeAll(buffer: ArrayBuffer): (Topology | Frame | Smooth)[] {
+  const messages: (Topology | Frame | Smooth)[] = [];
+  for (let at = 0; at < buffer.byteLength; ) {
+    // A copy, as the arrays of a message must begin at whole multiples of their numbers' size.
+    const message = decode(buffer.slice(at));
+    messages.push(message);
+    at += lengthOf(message);
+  }
+  return messages;
+}
+
+function lengthOf(message: Topology | Frame | Smooth): number {
+  if (message.kind === "frame") return HEADER + message.packed.byteLength;
+  if (message.kind === "smooth")
+    return HEADER + message.vertices.byteLength + message.triangles.byteLength;
+  const { rest, triangles, edges, owners } = message;
+  const bytes = rest.byteLength + triangles.byteLength + edges.byteLength + owners.byteLength;
+  return HEADER + bytes + (-bytes & 3);
+}
+
 function topology(buffer: ArrayBuffer, view: DataView): Topology {
   const n = view.getUint32(24, true);
   const t = view.getUint32(28, true);

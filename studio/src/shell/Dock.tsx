@@ -16,7 +16,7 @@ import { add, build } from "./layouts";
 import "./dock.css";
 
 // Grows when the default layouts change, so that a kept layout of old does not hide new panes.
-const EDITION = 2;
+const EDITION = 3;
 
 interface KeptLayout {
   edition: number;

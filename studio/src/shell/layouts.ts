@@ -39,7 +39,7 @@ export const LAYOUTS: Readonly<Record<Mode, Layout>> = {
   },
   optimize: {
     left: [["study"]],
-    main: ["view"],
+    main: ["view", "compare"],
     bottom: [["trials", "log"]],
     right: [["history"], ["scatter", "pareto"], ["parallel"]],
     leftShare: 0.22,

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 import { FORMATS, obstacle, request } from "../../src/panes/export/formats";
-import { comparedRows, unitIn } from "../../src/panes/runs/compared";
+import { comparedRows, percentChange, sideTitle, unitIn } from "../../src/panes/runs/compared";
 import { ago, inTrash, matchesSearch } from "../../src/panes/runs/rows";
-import type { RunRow } from "../../src/protocol";
+import type { RunRow, Side } from "../../src/protocol";
 
 const row = (id: string): RunRow => ({
   id,
@@ -73,4 +73,15 @@ describe("export", () => {
   it("says in a sentence what each file is for", () => {
     for (const format of FORMATS) expect(format.purpose).toMatch(/^[A-Z].*\.$/);
   });
+});
+
+it("calls runs by their names, and designs of studies by their numbers", () => {
+  const side = (id: string) => ({ id, name: id }) as Side;
+  expect(sideTitle(side("arm"))).toBe("arm");
+  expect(sideTitle(side("arm-study/12"))).toBe("Design 12");
+});
+
+it("gives changes in percent of the size of what was before", () => {
+  expect(percentChange(2, 3)).toBe(50);
+  expect(percentChange(-2, -3)).toBe(-50);
 });

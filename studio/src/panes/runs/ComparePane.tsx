@@ -4,7 +4,9 @@ import { describeValue } from "../../controls/kinds";
 import type { Side } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
-import { type ComparedRow, comparedRows, otherDifferences } from "./compared";
+import { ComparedBodies } from "./ComparedBodies";
+import { type ComparedRow, comparedRows, otherDifferences, sideTitle } from "./compared";
+import "../study/study.css";
 import "./runs.css";
 
 /** The kind of a quantity by its name, from all that the page knows of names. */
@@ -43,6 +45,7 @@ export default function ComparePane() {
   const others = otherDifferences(compared);
   return (
     <div className="pane compare" data-testid="compare">
+      <ComparedBodies a={a} b={b} />
       <table className="table" aria-label={`${a.name} and ${b.name} side by side`}>
         <thead>
           <tr>
@@ -81,17 +84,10 @@ export default function ComparePane() {
 
 function Head(props: { side: Side }) {
   const { side } = props;
-  // The picture of a study is that of its best design, not of any other.
-  const trial = side.id.includes("/");
   return (
     <th scope="col">
       <div className="compare-head">
-        {side.thumbnail && !trial && (
-          <img className="compare-picture" src={side.thumbnail} alt="" />
-        )}
-        <strong title={side.id}>
-          {trial ? `Design ${side.id.slice(side.id.lastIndexOf("/") + 1)}` : side.name}
-        </strong>
+        <strong title={side.id}>{sideTitle(side)}</strong>
         <span>
           <span className={`badge ${side.status === "ok" ? "good" : "warn"}`}>
             {side.status || "no result"}
@@ -99,7 +95,7 @@ function Head(props: { side: Side }) {
           <Button
             kind="quiet"
             label={`Show ${side.name} in the view`}
-            onClick={() => openHere(trial ? "trial" : "run", side.id)}
+            onClick={() => openHere(side.id.includes("/") ? "trial" : "run", side.id)}
           >
             Show
           </Button>

@@ -1,7 +1,7 @@
 // What two designs side by side come to, as rows of a table.
 import { describeValue, formatKind } from "../../controls/kinds";
 import { factorOf, formatNumber, unitText } from "../../controls/units";
-import type { ComparedEvent } from "../../protocol";
+import type { ComparedEvent, Side } from "../../protocol";
 
 export interface ComparedRow {
   readonly name: string;
@@ -49,11 +49,22 @@ export function comparedRows(
   });
 }
 
+/** The change from one number to another in percent of the size of the first. */
+export function percentChange(a: number, b: number): number {
+  return (100 * (b - a)) / Math.abs(a);
+}
+
+/** What a side is called: a run by its name, a trial by its number. */
+export function sideTitle(side: Side): string {
+  const slash = side.id.lastIndexOf("/");
+  return slash < 0 ? side.name : `Design ${side.id.slice(slash + 1)}`;
+}
+
 function changeOf(a: unknown, b: unknown, kind: string): string {
   if (typeof a !== "number" || typeof b !== "number" || a === b) return "";
   const sign = b > a ? "+" : "";
   if (a === 0) return `${sign}${formatKind(b - a, kind, 3)}`;
-  return `${sign}${formatNumber((100 * (b - a)) / Math.abs(a), 3)} %`;
+  return `${sign}${formatNumber(percentChange(a, b), 3)} %`;
 }
 
 /** Differences of the designs that are not told by the parameters already. */

@@ -1,0 +1,48 @@
+// Bodies at rest beside the one of the view: of runs, of designs of studies, of calibrations.
+import { decodeAll, type Frame, type Topology } from "../../engine/frames";
+
+export interface Still {
+  readonly topology: Topology;
+  /** One frame for each field that can be told, by the field's number. */
+  readonly frames: ReadonlyMap<number, Frame>;
+}
+
+interface Refusal {
+  readonly where: string;
+  readonly what: string;
+  readonly hint: string;
+}
+
+/** Ask for a body by its name; aborting ends the solver that works on it. */
+export async function fetchStill(name: string, signal: AbortSignal): Promise<Still> {
+  const answer = await fetch(`/still?${new URLSearchParams({ of: name })}`, { signal });
+  if (!answer.ok) throw new Error(sentenceOf((await answer.json()) as Refusal));
+  return stillOf(await answer.arrayBuffer());
+}
+
+/** Read an answer: a surface, and frames of it. */
+export function stillOf(buffer: ArrayBuffer): Still {
+  let topology: Topology | null = null;
+  const frames = new Map<number, Frame>();
+  for (const message of decodeAll(buffer)) {
+    if (message.kind === "topology") topology = message;
+    else if (message.kind === "frame") frames.set(message.field, message);
+  }
+  if (!topology || frames.size === 0) throw new Error("The body came without a shape.");
+  return { topology, frames };
+}
+
+/** What is wrong, as a sentence for people. */
+function sentenceOf({ where, what, hint }: Refusal): string {
+  const cause = [where, what].filter(Boolean).join(": ");
+  return hint ? `${cause}. Try: ${hint}.` : `${cause}.`;
+}
+
+/** The range of colors that several frames share; null where there is none yet. */
+export function commonRange(frames: readonly Frame[]): readonly [number, number] | null {
+  if (frames.length === 0) return null;
+  return [
+    Math.min(...frames.map((frame) => frame.min)),
+    Math.max(...frames.map((frame) => frame.max)),
+  ];
+}

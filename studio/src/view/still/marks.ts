@@ -1,0 +1,70 @@
+// Measured points in space: a ball at each, a thin line to the simulated station, a word with the
+// error. They are drawn over the body, or those inside of it could not be seen.
+import {
+  BufferGeometry,
+  Color,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  SphereGeometry,
+  Vector3,
+} from "three";
+import type { Triple } from "../../protocol";
+import type { Label } from "../labels";
+
+export interface Mark {
+  readonly key: string;
+  readonly measured: Triple;
+  readonly simulated: Triple;
+  readonly text: string;
+  readonly title: string;
+  readonly color: string;
+}
+
+// Radius of a ball over the size of the body.
+const BALL = 0.009;
+
+export class Marks {
+  readonly group = new Group();
+  readonly labels: readonly Label[];
+  private readonly disposables: { dispose(): void }[] = [];
+
+  constructor(marks: readonly Mark[], size: number, lineColor: Color) {
+    const ball = new SphereGeometry(BALL * size, 16, 12);
+    const over = { depthTest: false, transparent: true };
+    const ends = marks.flatMap(({ measured, simulated }) => [
+      new Vector3(...measured),
+      new Vector3(...simulated),
+    ]);
+    const lines = new LineSegments(
+      new BufferGeometry().setFromPoints(ends),
+      new LineBasicMaterial({ ...over, color: lineColor }),
+    );
+    lines.renderOrder = 8;
+    this.group.add(lines);
+    this.disposables.push(ball, lines.geometry, lines.material);
+    for (const { measured, color } of marks) {
+      const material = new MeshBasicMaterial({ ...over, color: new Color(color) });
+      const mesh = new Mesh(ball, material);
+      mesh.position.set(...measured);
+      mesh.renderOrder = 9;
+      this.group.add(mesh);
+      this.disposables.push(material);
+    }
+    this.labels = marks.map(({ key, measured, text, title, color }) => ({
+      key,
+      kind: "probe",
+      text,
+      title,
+      color,
+      at: (out) => out.set(...measured),
+    }));
+  }
+
+  dispose(): void {
+    this.group.removeFromParent();
+    for (const one of this.disposables) one.dispose();
+  }
+}

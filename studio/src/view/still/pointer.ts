@@ -1,0 +1,71 @@
+// The mouse and the keys on bodies at rest: the left or right button turns, Shift or the middle
+// button moves, the wheel zooms to the pointer. Nothing is pulled or picked here.
+import type { StandardView } from "../camera";
+import type { StillStage } from "./stage";
+
+const TURN = 24;
+const ZOOM = 1.12;
+const STANDARD: Readonly<Record<string, StandardView>> = {
+  1: "front",
+  2: "back",
+  3: "left",
+  4: "right",
+  5: "top",
+  6: "bottom",
+  7: "corner",
+};
+const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-TURN, 0],
+  ArrowRight: [TURN, 0],
+  ArrowUp: [0, -TURN],
+  ArrowDown: [0, TURN],
+};
+
+export function listen(stage: StillStage): void {
+  const canvas = stage.renderer.domElement;
+  let drag: { moves: boolean; x: number; y: number } | null = null;
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.focus({ preventScroll: true });
+    canvas.setPointerCapture(event.pointerId);
+    const moves = event.button === 1 || (event.button === 0 && event.shiftKey);
+    drag = { moves, x: event.clientX, y: event.clientY };
+    event.preventDefault();
+  });
+  canvas.addEventListener("pointermove", (event) => {
+    if (!drag) return;
+    const [dx, dy] = [event.clientX - drag.x, event.clientY - drag.y];
+    const { moves } = drag;
+    drag = { moves, x: event.clientX, y: event.clientY };
+    stage.steer((rig) => (moves ? rig.move(dx, dy) : rig.turn(dx, dy)));
+  });
+  const finish = () => {
+    drag = null;
+  };
+  canvas.addEventListener("pointerup", finish);
+  canvas.addEventListener("pointercancel", finish);
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      const clicks = event.deltaMode === 1 ? event.deltaY / 3 : event.deltaY / 100;
+      const [x, y] = stage.within(event.clientX, event.clientY);
+      stage.steer((rig) => rig.zoom(ZOOM ** clicks, x, y));
+    },
+    { passive: false },
+  );
+  canvas.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrow = ARROWS[event.key];
+    const standard = STANDARD[event.key];
+    if (arrow) stage.steer((rig) => rig.turn(...arrow));
+    else if (standard) stage.look(standard);
+    else if (event.key === "+") stage.steer((rig) => rig.zoom(1 / ZOOM, 0, 0));
+    else if (event.key === "-") stage.steer((rig) => rig.zoom(ZOOM, 0, 0));
+    else if (event.key === "f") stage.fit();
+    else return;
+    // The same keys steer the main view, which is not meant here.
+    event.stopPropagation();
+    event.preventDefault();
+  });
+}

@@ -1,0 +1,66 @@
+import { describe, expect, it } from "vitest";
+import type { Frame } from "../src/engine/frames";
+import { commonRange, stillOf } from "../src/view/still/fetchStill";
+
+const MAGIC = 0x31465856;
+
+function head(bytes: number, kind: number, field = 0): DataView {
+  const view = new DataView(new ArrayBuffer(bytes));
+  view.setUint32(0, MAGIC, true);
+  view.setUint8(4, kind);
+  view.setUint16(6, field, true);
+  view.setUint32(8, 1, true);
+  return view;
+}
+
+// Three vertices and one triangle: one byte for its owner, and three to fill up.
+function topology(): DataView {
+  const view = head(64 + 36 + 12 + 8 + 4, 1);
+  view.setUint32(24, 3, true);
+  view.setUint32(28, 1, true);
+  view.setUint32(32, 1, true);
+  for (const [i, vertex] of [0, 1, 2].entries()) view.setUint32(100 + 4 * i, vertex, true);
+  view.setUint8(120, 128);
+  return view;
+}
+
+function frame(field: number, max: number): DataView {
+  const view = head(64 + 24, 2, field);
+  view.setUint32(24, 3, true);
+  view.setFloat32(60, max, true);
+  view.setUint16(64 + 6, 7 * field, true);
+  return view;
+}
+
+function joined(...parts: DataView[]): ArrayBuffer {
+  const bytes = new Uint8Array(parts.reduce((sum, part) => sum + part.byteLength, 0));
+  let at = 0;
+  for (const part of parts) {
+    bytes.set(new Uint8Array(part.buffer), at);
+    at += part.byteLength;
+  }
+  return bytes.buffer;
+}
+
+describe("a body at rest", () => {
+  it("is read as a surface and a frame for each field", () => {
+    const still = stillOf(joined(topology(), frame(0, 0.5), frame(5, 2)));
+    expect([...still.topology.triangles]).toEqual([0, 1, 2]);
+    expect([...still.topology.owners]).toEqual([128]);
+    expect([...still.frames.keys()]).toEqual([0, 5]);
+    expect(still.frames.get(5)?.max).toBe(2);
+    expect(still.frames.get(5)?.packed[3]).toBe(35);
+  });
+
+  it("is refused where a part is missing", () => {
+    expect(() => stillOf(joined(topology()))).toThrow("without a shape");
+    expect(() => stillOf(joined(frame(0, 1)))).toThrow("without a shape");
+    expect(() => stillOf(joined(topology(), frame(0, 1)).slice(0, -1))).toThrow("announced");
+  });
+});
+
+it("shares one range of colors among all bodies", () => {
+  const of = (min: number, max: number) => ({ min, max }) as Frame;
+  expect(commonRange([of(0, 2), of(-1, 1)])).toEqual([-1, 2]);
+  expect(commonRange([])).toBeNull();
+});

@@ -1,0 +1,174 @@
+"""Two bodies side by side under one camera, and the specimen of a calibration with its stations."""
+
+import io
+import json
+import re
+import shutil
+
+import numpy as np
+import pytest
+
+from voxsoft import files, load
+from voxsoft.simulation import simulate
+from voxsoft.study import Study
+
+
+def pixels(tab, part=(0.0, 1.0)):
+    """Colors of a part of the picture between two shares of its width, (h, w, 3)."""
+    from matplotlib.image import imread
+
+    box = tab.page.locator("[data-testid=still] canvas").bounding_box()
+    clip = {
+        # The words at the top are no part of the picture.
+        "x": box["x"] + part[0] * box["width"] + 2,
+        "y": box["y"] + 50,
+        "width": (part[1] - part[0]) * box["width"] - 4,
+        "height": box["height"] - 52,
+    }
+    return imread(io.BytesIO(tab.page.screenshot(clip=clip)))[:, :, :3]
+
+
+LEFT, RIGHT = (0.0, 0.5), (0.5, 1.0)
+
+
+def colors(picture):
+    return len(np.unique((255 * picture).astype(np.uint8).reshape(-1, 3), axis=0))
+
+
+def alike(one, other):
+    """Whether two pictures are the same but for the rims of cells."""
+    height, width = (min(pair) for pair in zip(one.shape[:2], other.shape[:2], strict=True))
+    apart = np.abs(one[:height, :width] - other[:height, :width]).max(axis=2) > 0.05
+    return apart.mean() < 0.004
+
+
+def bright(picture):
+    """How many points have the color of the largest value."""
+    red, green, blue = np.moveaxis(picture, 2, 0)
+    return int(((red > 0.6) & (green > 0.6) & (blue < 0.35)).sum())
+
+
+def settled(tab, part=(0.0, 1.0)):
+    """The picture once it stays the same."""
+    before = pixels(tab, part)
+    while True:
+        now = pixels(tab, part)
+        if np.array_equal(before, now):
+            return now
+        before = now
+
+
+@pytest.fixture(scope="module")
+def compared_runs(served):
+    """Two runs and a study of the server's design, as the command line leaves them."""
+    for name, length in (("short", 0.04), ("long", 0.06)):
+        design = load(served.source, length=length)
+        files.write_run(simulate(design), served.runs / name)
+    sag = {"sag": {"minimize": "max_displacement"}}
+    folder = served.runs / "bars"
+    Study(load(served.source), {"length": [0.03, 0.05]}, sag, folder=folder).grid(workers=1)
+    return served
+
+
+def compare(tab, *names):
+    for name in names:
+        tab.page.get_by_label(f"Compare {name}", exact=True).check()
+    tab.find("compare-runs").click()
+    tab.find("compared-bodies").wait_for()
+
+
+@pytest.fixture
+def side_by_side(compared_runs, open_tab):
+    tab = open_tab(compared_runs.address, mode="runs")
+    tab.find("runs-table").get_by_text("short").wait_for()
+    compare(tab, "short", "long")
+    tab.find("largest-long").wait_for()
+    tab.find("largest-short").wait_for()
+    return tab
+
+
+def largest_of(tab, name):
+    return re.search(r"largest ([\d.]+) mm", tab.find(f"largest-{name}").inner_text())[1]
+
+
+class TestCompare:
+    def test_two_runs_stand_side_by_side_with_what_their_summaries_say(
+        self, side_by_side, compared_runs
+    ):
+        tab = side_by_side
+        due = {}
+        for name in ("short", "long"):
+            told = json.loads((compared_runs.runs / name / "summary.json").read_text())
+            due[name] = 1e3 * told["metrics"]["max_displacement"]
+            assert float(largest_of(tab, name)) == pytest.approx(due[name], rel=1e-3)
+        change = re.search(r"\(([+−][\d.]+) %\)", tab.find("largest-long").inner_text())[1]
+        assert float(change) == pytest.approx(100 * (due["long"] / due["short"] - 1), rel=1e-2)
+        # Both are colored over one range, that of the larger.
+        assert f"{due['long']:.3g} mm" in tab.find("color-bar").inner_text()
+        for part in (LEFT, RIGHT):
+            assert colors(settled(tab, part)) > 200
+        assert bright(settled(tab, LEFT)) == 0 < bright(settled(tab, RIGHT))
+        tab.shot("compare")
+        assert tab.errors == []
+
+    def test_turning_one_turns_the_other(self, compared_runs, open_tab):
+        if not (compared_runs.runs / "twin").exists():
+            shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "twin")
+        tab = open_tab(compared_runs.address, mode="runs")
+        compare(tab, "short", "twin")
+        tab.find("largest-short").wait_for()
+        tab.find("largest-twin").wait_for()
+        box = tab.page.locator("[data-testid=still] canvas").bounding_box()
+        before = settled(tab, LEFT)
+        assert alike(before, settled(tab, RIGHT))
+        x, y = box["x"] + box["width"] / 4, box["y"] + box["height"] / 2
+        tab.page.mouse.move(x, y)
+        tab.page.mouse.down()
+        tab.page.mouse.move(x + 70, y + 20, steps=4)
+        tab.page.mouse.up()
+        turned = settled(tab, LEFT)
+        assert not alike(turned, before)
+        assert alike(turned, settled(tab, RIGHT))
+        # The wheel and the keys on the other side steer both as well.
+        tab.page.mouse.move(box["x"] + 0.75 * box["width"], y)
+        tab.page.mouse.wheel(0, 300)
+        far = settled(tab, LEFT)
+        assert not alike(far, turned)
+        tab.page.keyboard.press("ArrowLeft")
+        last = settled(tab, LEFT)
+        assert not alike(last, far)
+        assert alike(last, settled(tab, RIGHT))
+
+    def test_another_field_colors_both_and_one_lies_over_the_other(self, side_by_side):
+        tab = side_by_side
+        tab.page.get_by_label("Color both by").select_option(label="Von Mises stress")
+        tab.find("largest-short").get_by_text("kPa").wait_for()
+        assert "kPa" in tab.find("color-bar").inner_text()
+        tab.find("compare-over").click()
+        one = settled(tab)
+        assert colors(one) > 200
+        tab.shot("compare-over")
+        assert tab.errors == []
+
+    def test_designs_of_a_study_are_solved_for_the_picture(self, compared_runs, open_tab):
+        tab = open_tab(compared_runs.address, mode="runs")
+        compare(tab, "bars", "short")
+        tab.find("largest-bars").wait_for()
+        tab.find("largest-short").wait_for()
+        assert float(largest_of(tab, "bars")) < float(largest_of(tab, "short"))
+
+    def test_a_run_that_was_deleted_meanwhile_is_said_beside_the_other(
+        self, compared_runs, open_tab
+    ):
+        shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "doomed")
+        (compared_runs.runs / "doomed" / "result.vtu").unlink()
+        tab = open_tab(compared_runs.address, mode="runs")
+        tab.find("runs-table").get_by_text("doomed").wait_for()
+        compare(tab, "short", "doomed")
+        tab.find("largest-short").wait_for()
+        told = tab.find("still").get_by_role("alert")
+        told.get_by_text("holds no result").wait_for()
+        shutil.rmtree(compared_runs.runs / "doomed")
+        told.get_by_role("button", name="Try again").click()
+        told.get_by_text("is not in the list of runs any more").wait_for()
+        assert colors(settled(tab, LEFT)) > 200
