@@ -399,7 +399,8 @@ export interface HelloEvent {
 /**
  * A parameter of the document; numbers are SI, `text` is the value as it is written.
  *
- * `display_unit` and `factor`: value / factor is the number to show with that unit.
+ * `display_unit` and `factor`: value / factor is the number to show with that unit. `former` is
+ * the value when the document was opened or saved last.
  */
 export interface Parameter {
   name: string;
@@ -412,6 +413,7 @@ export interface Parameter {
   display_unit: string;
   factor: number;
   formula: boolean;
+  former: number | null;
   description: string;
 }
 

@@ -28,6 +28,14 @@ describe("parseQuantity", () => {
     ["20 %", "1", 0.2],
     ["1.07 g/cm³", "kg/m^3", 1070],
     [".5 µm", "mm", 5e-7],
+    ["2*5 mm", "mm", 0.01],
+    ["5 mm + 0.5 cm", "mm", 0.01],
+    ["2*5", "mm", 0.01],
+    ["(1e1 - 5)/2", "cm", 0.025],
+    ["10 mm / 2 mm", "1", 5],
+    ["min(3, 4) * 2", "kPa", 6000],
+    ["max(0,5 mm)", "mm", 0.005],
+    ["5 mm - 5 mm", "mm", 0],
   ])("reads %s in a field of %s", (text, unit, expected) => {
     expect(value(text, unit)).toBeCloseTo(expected, 12);
   });
@@ -36,9 +44,15 @@ describe("parseQuantity", () => {
     ["", "mm", "no number"],
     ["wide", "mm", "no number"],
     ["5 kPa", "mm", "a length is due"],
-    ["5 furlongs", "mm", "unknown unit"],
+    ["5 furlongs", "mm", "no unit"],
     ["1,000 mm", "mm", "two things"],
     ["1e999", "mm", "out of range"],
+    ["2*5 kPa", "mm", "a pressure; a length is due"],
+    ["5 mm * 2 mm", "mm", "an area; a length is due"],
+    ["4 mm / 2 mm", "mm", "a plain number; a length is due"],
+    ["5 + 5 mm", "mm", "cannot be added: give the number a unit"],
+    ["2*", "mm", "is not complete"],
+    ["2*wall", "mm", '"wall" is not a parameter'],
   ])("says what is wrong with %s", (text, unit, problem) => {
     const read = parseQuantity(text, unit);
     expect("problem" in read && read.problem).toContain(problem);

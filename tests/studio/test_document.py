@@ -64,6 +64,18 @@ def test_a_slider_changes_one_value_and_keeps_the_comments():
     assert edited.design.parameters["radius"].value == pytest.approx(0.02)
 
 
+def test_a_parameter_tells_its_value_at_opening_or_at_the_last_saving(tmp_path):
+    edited = document()
+    former = lambda: edited.event().parameters[0].former  # noqa: E731
+    edited.edit(["parameters", "radius", "value"], "20 mm")
+    assert former() == pytest.approx(0.025)
+    edited.replace("a = [")
+    edited.undo()
+    assert former() == pytest.approx(0.025)
+    edited.save(tmp_path / "cylinder.toml")
+    assert former() == pytest.approx(0.02)
+
+
 @pytest.mark.parametrize(
     ("path", "value"),
     [
@@ -125,6 +137,20 @@ def test_undo_takes_back_a_drag_of_a_slider_as_one():
     assert edited.redo()
     assert not edited.redo()
     assert '"2.5 mm"' in edited.text
+
+
+def test_a_slider_that_was_dragged_back_leaves_nothing_to_undo():
+    edited = document()
+    edited.edit(["voxel_size"], "2.5 mm", now=0.0)
+    fine = edited.text
+    for step, size in enumerate(("20 mm", "25 mm", "22 mm", "21 mm")):
+        edited.edit(["parameters", "radius", "value"], size, now=2.0 + 0.1 * step)
+    assert edited.undo()
+    assert edited.text == fine
+    for step, size in enumerate(("20 mm", "25 mm")):
+        edited.edit(["parameters", "radius", "value"], size, now=4.0 + 0.1 * step)
+    assert edited.undo()
+    assert edited.text == CYLINDER
 
 
 def test_saving_needs_a_name_of_a_design_file(tmp_path):

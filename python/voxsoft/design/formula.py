@@ -5,9 +5,15 @@ The grammar (whitespace is free)::
     formula = "=" sum
     sum     = product { ("+" | "-") product }
     product = factor { ("*" | "/") factor }
-    factor  = "-" factor | number | name | ("min" | "max") "(" sum { "," sum } ")" | "(" sum ")"
+    factor  = "-" factor | number [unit] | name | call | "(" sum ")"
+    call    = ("min" | "max") "(" sum { "," sum } ")"
+    unit    = power { ("*" | "/") power }
+    power   = (name of a unit) ["^" ["-"] digit]
 
-A formula is evaluated while it is read; nothing in it can call, index or loop.
+The name of a parameter is never read as a unit; straight after a number it is refused, as it may
+have been meant as either. A formula is evaluated while it is read; nothing in it can call, index
+or loop. The studio's page reads formulas by the same grammar (``studio/src/controls/formula.ts``),
+and ``tests/unit/formulas.json`` holds both to the same cases.
 """
 
 from __future__ import annotations
@@ -18,17 +24,19 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Final, NoReturn
 
-from voxsoft.errors import FormulaError
-from voxsoft.units import Dimension, Quantity, describe_dimension
+from voxsoft.errors import FormulaError, UnitError, VoxSoftError
+from voxsoft.units import COMMON_UNITS, Dimension, Quantity, describe_dimension, parse_any
 
 LONGEST_FORMULA: Final = 500
 DEEPEST_NESTING: Final = 40
 
 _TOKEN: Final = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?)"
-    r"|(?P<name>[A-Za-z_]\w*)|(?P<sign>[-+*/(),]))",
+    r"|(?P<name>[A-Za-z_µμ°%][\wµμ]*)|(?P<sign>[-+*/(),^]))",
     re.ASCII,
 )
+_SUPERSCRIPT: Final = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+_DIGITS: Final = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
 _FUNCTIONS: Final[dict[str, Callable[..., float]]] = {"min": min, "max": max}
 _NUMBER: Final = Dimension()
 
@@ -147,13 +155,62 @@ class _Reader:
         elif token in _FUNCTIONS and self._token == "(":
             result = self._call(token)
         elif token[:1].isdigit() or token[:1] == ".":
-            result = self._finite(float(token), _NUMBER)
-        elif token[:1].isalpha() or token[:1] == "_":
+            result = self._quantity(token)
+        elif _is_name(token):
             result = self._parameter(token)
         else:
             self._fail(f'a value is due where "{token}" stands' if token else "is not complete")
         self._depth -= 1
         return result
+
+    def _quantity(self, digits: str) -> Quantity:
+        """Read a number and the unit behind it, if there is one."""
+        token = self._token
+        if not _is_name(token) or self._calls:
+            return self._finite(float(digits), _NUMBER)
+        if self._is_parameter(token):
+            self._fail(f'"{token}" is not expected here', f'write "{digits}*{token}"')
+        unit = self._power()
+        while self._token in {"*", "/"} and self._goes_on_as_unit:
+            unit += self._take() + self._power()
+        try:
+            return parse_any(f"{digits} {unit}")
+        except UnitError as error:
+            self._fail(error.what, error.hint)
+
+    def _power(self) -> str:
+        """Read a unit's name and its exponent."""
+        name = self._take()
+        if self._token != "^":
+            return name
+        self._position += 1
+        sign = self._take() if self._token == "-" else ""
+        exponent = self._take()
+        if not (exponent.isdigit() and 1 <= int(exponent) <= 9):
+            self._fail("an exponent from 1 to 9 is due after ^")
+        return f"{name}^{sign}{exponent}"
+
+    @property
+    def _calls(self) -> bool:
+        """Whether a function stands here, which a unit may share its name with."""
+        return self._token in _FUNCTIONS and self._after == "("
+
+    @property
+    def _goes_on_as_unit(self) -> bool:
+        """Whether what follows a sign belongs to the unit before it: only units of daily use do."""
+        return self._after in COMMON_UNITS and not self._is_parameter(self._after)
+
+    @property
+    def _after(self) -> str:
+        at = self._position + 1
+        return self._tokens[at] if at < len(self._tokens) else ""
+
+    def _is_parameter(self, name: str) -> bool:
+        try:
+            self._parameter(name)
+        except VoxSoftError:
+            return False
+        return True
 
     def _call(self, name: str) -> Quantity:
         self._expect("(")
@@ -170,7 +227,7 @@ class _Reader:
         dimensions = {t.dimension for t in terms if t.value != 0 or t.dimension != _NUMBER}
         if len(dimensions) > 1:
             named = " and ".join(sorted(map(describe_dimension, dimensions)))
-            hint = "name the number as a parameter with a unit" if _NUMBER in dimensions else ""
+            hint = "give the number a unit, as in 5 mm" if _NUMBER in dimensions else ""
             self._fail(f"{named} cannot be {verb}", hint)
         return dimensions.pop() if dimensions else _NUMBER
 
@@ -185,7 +242,9 @@ class _Reader:
 
 @lru_cache(maxsize=1024)  # a study evaluates the same formulas for every trial
 def _tokens_of(text: str) -> tuple[str, ...]:
-    body = text.lstrip()[1:].rstrip()
+    body = _SUPERSCRIPT.sub(
+        lambda found: f"^{found.group().translate(_DIGITS)}", text.lstrip()[1:].rstrip()
+    )
     tokens, position = [], 0
     while position < len(body):
         match = _TOKEN.match(body, position)
@@ -195,3 +254,7 @@ def _tokens_of(text: str) -> tuple[str, ...]:
         tokens.append(match.group().strip())
         position = match.end()
     return tuple(tokens)
+
+
+def _is_name(token: str) -> bool:
+    return token[:1].isalpha() or token[:1] in {"_", "°", "%"}

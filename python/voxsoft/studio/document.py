@@ -57,6 +57,7 @@ class DesignDocument:
     source: PlainDocument | None = None
     diagnostics: list[events.Diagnostic] = field(default_factory=list)
     saved: str | None = None
+    _former: dict[str, float] | None = None
     _undo: list[str] = field(default_factory=list)
     _redo: list[str] = field(default_factory=list)
     _last_place: object = None
@@ -117,6 +118,10 @@ class DesignDocument:
                 len(self._undo) > 1 and sum(map(len, self._undo)) > LARGEST_HISTORY
             ):
                 del self._undo[0]
+        elif self._undo[-1] == text:
+            # A slider that was dragged back: there is nothing to undo, and nothing to go on from.
+            self._undo.pop()
+            place = None
         self._last_place, self._last_time = place, now
         self._redo.clear()
         self._become(text)
@@ -164,6 +169,8 @@ class DesignDocument:
             target.name,
             self.text,
         )
+        if self.valid:
+            self._former = self._values()
         return target
 
     def event(self) -> events.Document:
@@ -204,20 +211,37 @@ class DesignDocument:
             document = read_document(self.text, self.name)
             self.source = document
             self.design = Design.from_document(with_whole_paths(document, self.folder))
+            if self._former is None:
+                self._former = self._values()
         except VoxSoftError as error:
             self.diagnostics = diagnostics_of(error, self.text)
+
+    def _values(self) -> dict[str, float]:
+        parameters = {} if self.design is None else self.design.parameters
+        return {name: parameter.value for name, parameter in parameters.items()}
 
     def _parameters(self) -> list[events.Parameter]:
         if self.design is None:
             return []
         written: Any = (self.source or {}).get("parameters", {})
+        former = self._former or {}
         return [
-            _parameter(name, parameter, written.get(name) if isinstance(written, dict) else None)
+            _parameter(
+                name,
+                parameter,
+                written.get(name) if isinstance(written, dict) else None,
+                former.get(name),
+            )
             for name, parameter in self.design.parameters.items()
         ]
 
 
-def _parameter(name: str, parameter: Any, written: object) -> events.Parameter:  # noqa: ANN401
+def _parameter(
+    name: str,
+    parameter: Any,  # noqa: ANN401
+    written: object,
+    former: float | None,
+) -> events.Parameter:
     text = written.get("value") if isinstance(written, dict) else written
     shown = text if isinstance(text, str) else format_quantity(parameter.value, parameter.kind)
     unit = _unit_of(shown, parameter.kind) or _unit_of(
@@ -234,6 +258,7 @@ def _parameter(name: str, parameter: Any, written: object) -> events.Parameter: 
         display_unit=unit,
         factor=parse(f"1 {unit}", parameter.kind) if unit else 1.0,
         formula=is_formula(shown),
+        former=former,
         description=parameter.description,
     )
 

@@ -88,7 +88,8 @@ class Hello(Event):
 class Parameter(Entry):
     """A parameter of the document; numbers are SI, `text` is the value as it is written.
 
-    `display_unit` and `factor`: value / factor is the number to show with that unit.
+    `display_unit` and `factor`: value / factor is the number to show with that unit. `former` is
+    the value when the document was opened or saved last.
     """
 
     name: str
@@ -101,6 +102,7 @@ class Parameter(Entry):
     display_unit: str = ""
     factor: float = 1.0
     formula: bool = False
+    former: float | None = None
     description: str = ""
 
 

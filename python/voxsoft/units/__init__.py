@@ -45,6 +45,7 @@ from voxsoft.units.factors import (
 )
 from voxsoft.units.kinds import KINDS, Dimension, Kind, Number, Quantity, describe_dimension
 from voxsoft.units.text import (
+    COMMON_UNITS,
     format_percent,
     format_quantity,
     parse,
@@ -82,6 +83,7 @@ from voxsoft.units.types import (
 )
 
 __all__ = [
+    "COMMON_UNITS",
     "FILE_CONTEXT",
     "KINDS",
     "Acceleration",

@@ -32,9 +32,9 @@ _LENGTH, _MASS, _TIME, _ANGLE = (KINDS[k].dimension for k in ("length", "mass", 
 _PRESSURE, _FORCE = KINDS["pressure"].dimension, KINDS["force"].dimension
 _ENERGY, _VOLUME, _RATE = (KINDS[k].dimension for k in ("energy", "volume", "rate"))
 
-# The units that soft-robotics designs are written in. Everything else is asked of pint,
-# whose registry takes most of a second to load.
-_COMMON: Final[dict[str, Dimension]] = {
+#: The units that soft-robotics designs are written in. Everything else is asked of pint,
+#: whose registry takes most of a second to load.
+COMMON_UNITS: Final[dict[str, Dimension]] = {
     **dict.fromkeys(("um", "mm", "cm", "m", "inch"), _LENGTH),
     **dict.fromkeys(("mg", "g", "kg"), _MASS),
     **dict.fromkeys(("ms", "s"), _TIME),
@@ -250,8 +250,8 @@ def _named_unit(name: str, text: str, where: str) -> tuple[Decimal, Dimension]:
 @cache
 def _look_up(name: str) -> tuple[Decimal, Dimension] | str:
     """Factor and dimension of one unit name, or the reason why there are none."""
-    if name in _COMMON:
-        return Decimal(repr(getattr(factors, name))), _COMMON[name]
+    if name in COMMON_UNITS:
+        return Decimal(repr(getattr(factors, name))), COMMON_UNITS[name]
     if name == "%":
         return Decimal("0.01"), Dimension()
     return _ask_pint("degree" if name == "°" else name)

@@ -1,5 +1,8 @@
 import { type PointerEvent as ReactPointerEvent, useEffect, useId, useRef, useState } from "react";
+import { PLAIN } from "./dimension";
+import { type Amounts, writtenFormula } from "./formula";
 import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "./units";
+import { unitOf } from "./unitTable";
 
 export interface NumberFieldProps {
   label: string;
@@ -10,8 +13,10 @@ export interface NumberFieldProps {
   min?: number | null | undefined;
   max?: number | null | undefined;
   step?: number | null | undefined;
-  /** What a double click on the label gives back. */
+  /** The former value; where it differs, a mark behind the label shows it and gives it back. */
   fallback?: number;
+  /** Takes what was typed as a formula, where the place may hold one. */
+  formulas?: { readonly parameters: Amounts; take(formula: string): void };
   /** Adds a slider where `min` and `max` are known. */
   slider?: boolean;
   /** Puts the label on a line of its own, for long ones. */
@@ -23,14 +28,16 @@ export interface NumberFieldProps {
   onChange(value: number, settled: boolean): void;
 }
 
-/** A number with its unit: type "5 mm" or "0.5 cm", arrow keys, drag the label, or slide. */
+/** A number with its unit: type "5 mm" or "2*0.5 cm", arrow keys, drag the label, or slide. */
 export function NumberField(props: NumberFieldProps) {
   const { label, min, max } = props;
   const { value, change, settle } = useWish(props.value, props.onChange);
   const id = useId();
   const unit = shownUnit(props.unit ?? "1");
   const factor = factorOf(unit);
-  const shown = `${formatNumber(value / factor, 6)}${unit === "1" ? "" : ` ${unitText(unit)}`}`;
+  const say = (x: number) =>
+    `${formatNumber(x / factor, 6)}${unit === "1" ? "" : ` ${unitText(unit)}`}`;
+  const shown = say(value);
   const [draft, setDraft] = useState<string | null>(null);
   const [problem, setProblem] = useState<string | null>(null);
   const drag = useRef<{ x: number; start: number } | null>(null);
@@ -44,14 +51,17 @@ export function NumberField(props: NumberFieldProps) {
   const round = (x: number) => Number((Math.round(x / step) * step).toPrecision(12));
 
   const commit = (text: string) => {
-    const read = parseQuantity(text.replaceAll("−", "-"), unit);
+    const due = unitOf(unit)?.dimension ?? PLAIN;
+    const written = props.formulas && writtenFormula(text, due, props.formulas.parameters);
+    const read = written ?? parseQuantity(text, unit);
     if ("problem" in read) {
       setProblem(read.problem);
       return;
     }
     setDraft(null);
     setProblem(null);
-    if (read.value !== value) change(read.value, true);
+    if ("formula" in read) props.formulas?.take(read.formula);
+    else if (read.value !== value) change(read.value, true);
   };
 
   const nudge = (count: number) => {
@@ -77,18 +87,32 @@ export function NumberField(props: NumberFieldProps) {
     },
   };
 
-  const changed = props.fallback !== undefined && props.fallback !== value;
+  const former = props.fallback !== undefined && props.fallback !== value ? props.fallback : null;
+  const giveBack = () => !props.disabled && former !== null && change(former, true);
   const note = problem ?? props.problem;
   return (
     <div className={props.stacked ? "field stacked" : "field"} title={props.title}>
-      <label
-        className={`field-label scrub${changed ? " changed" : ""}`}
-        htmlFor={id}
-        onDoubleClick={() => props.fallback !== undefined && change(props.fallback, true)}
-        {...scrub}
-      >
-        {label}
-      </label>
+      <span className="field-head">
+        <label
+          className="field-label scrub"
+          htmlFor={id}
+          title={former === null ? props.title : `was ${say(former)}; double-click gives it back`}
+          onDoubleClick={giveBack}
+          {...scrub}
+        >
+          {label}
+        </label>
+        {former !== null && (
+          <button
+            type="button"
+            className="former"
+            aria-label={`${label}: back to ${say(former)}`}
+            title={`was ${say(former)}; click to give it back`}
+            disabled={props.disabled}
+            onClick={giveBack}
+          />
+        )}
+      </span>
       <div className="field-value">
         {props.slider && min != null && max != null && max > min && (
           <input

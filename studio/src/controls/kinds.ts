@@ -1,5 +1,8 @@
 // Kinds of quantity as the design's schema and the studies name them ("length", "modulus", ...).
-import { formatNumber, formatQuantity, parseQuantity } from "./units";
+import { type Dimension, PLAIN } from "./dimension";
+import { type Amounts, NO_PARAMETERS, writtenFormula } from "./formula";
+import { factorOf, formatNumber, formatQuantity, isOneNumber, parseQuantity } from "./units";
+import { unitOf } from "./unitTable";
 
 interface Kind {
   /** The SI unit. */
@@ -47,34 +50,40 @@ export function formatKind(value: number | null | undefined, kind: string, digit
 
 export type Written = { readonly value: string | number } | { readonly problem: string };
 
+/** The dimension of a kind. */
+export function dimensionOf(kind: string): Dimension {
+  return unitOf(siUnit(kind))?.dimension ?? PLAIN;
+}
+
 /**
  * Read what was typed into a field of a design and give what belongs in the file: text with its
- * unit, a plain number where there is none, or a formula as it is.
- *
- * Units that this page does not know go on to VoxSoft, which knows more of them.
+ * unit, a plain number where there is none, or a formula. Arithmetic of numbers is worked out;
+ * what names a parameter becomes a formula. What this page does not know, such as a rare unit,
+ * goes on to VoxSoft.
  */
-export function readWritten(typed: string, kind: string, words: readonly string[] = []): Written {
+export function readWritten(
+  typed: string,
+  kind: string,
+  words: readonly string[] = [],
+  parameters: Amounts = NO_PARAMETERS,
+): Written {
   const text = typed.trim().replaceAll("−", "-");
-  if (text.startsWith("=")) {
-    return text.slice(1).trim() === ""
-      ? { problem: "a formula is due after the =" }
-      : { value: `= ${text.slice(1).trim()}` };
-  }
   if (words.includes(text)) return { value: text };
+  const written = writtenFormula(text, dimensionOf(kind), parameters);
+  if (written) return "formula" in written ? { value: written.formula } : written;
   const unit = writtenUnit(kind);
-  if (unit === "") {
-    const number = Number(text.replace(",", "."));
-    if (text !== "" && !Number.isNaN(number)) return { value: number };
-    return { problem: `“${text}” is no number; a formula begins with =` };
-  }
-  if (/^[+-]?inf(inity)?$/i.test(text)) return { value: text };
-  const read = parseQuantity(text, unit);
+  if (unit !== "" && /^[+-]?inf(inity)?$/i.test(text)) return { value: text };
+  const plain = text.replace(",", ".");
+  const read = parseQuantity(text, unit || "1");
   if ("problem" in read) {
-    return read.problem.startsWith("unknown unit") ? { value: text } : read;
+    if (!read.unsure) return read;
+    return { value: isOneNumber(plain) ? plain : `= ${text}` };
   }
-  if (read.value === 0) return { value: 0 };
-  const bare = Number(text.replace(",", "."));
-  return { value: Number.isNaN(bare) ? text.replace(",", ".") : `${bare} ${unit}` };
+  const bare = Number(plain);
+  if (unit === "" || read.value === 0 || !Number.isNaN(bare) || !isOneNumber(plain)) {
+    return { value: writeValue(read.value, factorOf(unit), unit) };
+  }
+  return { value: plain };
 }
 
 /** A number for a design file in a given unit, without the noise of binary fractions. */

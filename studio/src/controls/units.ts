@@ -1,60 +1,7 @@
 // Numbers with units, as a user types and reads them. Values are SI everywhere else.
-
-interface Unit {
-  readonly quantity: string;
-  readonly factor: number;
-}
-
-const UNITS: Readonly<Record<string, Unit>> = {
-  m: { quantity: "length", factor: 1 },
-  cm: { quantity: "length", factor: 1e-2 },
-  mm: { quantity: "length", factor: 1e-3 },
-  um: { quantity: "length", factor: 1e-6 },
-  in: { quantity: "length", factor: 0.0254 },
-  Pa: { quantity: "pressure", factor: 1 },
-  kPa: { quantity: "pressure", factor: 1e3 },
-  MPa: { quantity: "pressure", factor: 1e6 },
-  bar: { quantity: "pressure", factor: 1e5 },
-  mbar: { quantity: "pressure", factor: 100 },
-  psi: { quantity: "pressure", factor: 6894.757293168361 },
-  N: { quantity: "force", factor: 1 },
-  mN: { quantity: "force", factor: 1e-3 },
-  kN: { quantity: "force", factor: 1e3 },
-  kg: { quantity: "mass", factor: 1 },
-  g: { quantity: "mass", factor: 1e-3 },
-  mg: { quantity: "mass", factor: 1e-6 },
-  "kg/m^3": { quantity: "density", factor: 1 },
-  "g/cm^3": { quantity: "density", factor: 1e3 },
-  s: { quantity: "time", factor: 1 },
-  ms: { quantity: "time", factor: 1e-3 },
-  min: { quantity: "time", factor: 60 },
-  h: { quantity: "time", factor: 3600 },
-  rad: { quantity: "angle", factor: 1 },
-  deg: { quantity: "angle", factor: Math.PI / 180 },
-  "°": { quantity: "angle", factor: Math.PI / 180 },
-  "m^2": { quantity: "area", factor: 1 },
-  "cm^2": { quantity: "area", factor: 1e-4 },
-  "mm^2": { quantity: "area", factor: 1e-6 },
-  "m^3": { quantity: "volume", factor: 1 },
-  l: { quantity: "volume", factor: 1e-3 },
-  ml: { quantity: "volume", factor: 1e-6 },
-  "cm^3": { quantity: "volume", factor: 1e-6 },
-  "mm^3": { quantity: "volume", factor: 1e-9 },
-  "N/m": { quantity: "stiffness", factor: 1 },
-  "N/mm": { quantity: "stiffness", factor: 1e3 },
-  J: { quantity: "energy", factor: 1 },
-  mJ: { quantity: "energy", factor: 1e-3 },
-  uJ: { quantity: "energy", factor: 1e-6 },
-  "J/m^3": { quantity: "energy density", factor: 1 },
-  "kJ/m^3": { quantity: "energy density", factor: 1e3 },
-  "m/s": { quantity: "speed", factor: 1 },
-  "mm/s": { quantity: "speed", factor: 1e-3 },
-  "m/s^2": { quantity: "acceleration", factor: 1 },
-  "1/s": { quantity: "rate", factor: 1 },
-  Hz: { quantity: "rate", factor: 1 },
-  "1": { quantity: "number", factor: 1 },
-  "%": { quantity: "number", factor: 1e-2 },
-};
+import { describeDimension, PLAIN, sameDimension } from "./dimension";
+import { type Evaluated, evaluate, type Problem } from "./formula";
+import { canonical, unitOf } from "./unitTable";
 
 // What soft-robotics people read: millimeters, kilopascals.
 const SHOWN: Readonly<Record<string, string>> = {
@@ -69,24 +16,7 @@ const SHOWN: Readonly<Record<string, string>> = {
   J: "mJ",
 };
 
-const SPELLINGS: Readonly<Record<string, string>> = {
-  "": "1",
-  "-": "1",
-  µm: "um",
-  μm: "um",
-  mL: "ml",
-  L: "l",
-  degree: "deg",
-  degrees: "deg",
-  sec: "s",
-};
-
-const PATTERN = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)$/i;
-
-function canonical(text: string): string {
-  const plain = text.trim().replaceAll("**", "^").replaceAll("²", "^2").replaceAll("³", "^3");
-  return SPELLINGS[plain] ?? plain;
-}
+const QUANTITY = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)$/i;
 
 /** The unit in which a quantity given in an SI unit is shown by default. */
 export function shownUnit(si: string): string {
@@ -96,32 +26,53 @@ export function shownUnit(si: string): string {
 
 /** How many SI units one `unit` is; an unknown unit counts as itself. */
 export function factorOf(unit: string): number {
-  return UNITS[canonical(unit)]?.factor ?? 1;
+  return unitOf(unit)?.factor ?? 1;
 }
 
-export type Parsed = { readonly value: number } | { readonly problem: string };
+export type Parsed = { readonly value: number } | Problem;
 
 /**
- * Read "5 mm", "0.5 cm", "1e3" or, with a unit `m` and `mm` shown, a bare "5".
- * A bare number counts in the unit that the field shows. Gives an SI value, or what is wrong.
+ * Read "5 mm", "0.5 cm", "2*5 mm + 1 cm" or, with a unit `m` and `mm` shown, a bare "5" or "2*5".
+ * What has no unit at all counts in the unit that the field shows. Gives an SI value, or what is wrong.
  */
 export function parseQuantity(text: string, shown: string): Parsed {
-  if (/\d,\d{3}(?!\d)/.test(text)) {
+  const typed = text.trim().replaceAll("−", "-");
+  if (/\d,\d{3}(?!\d)/.test(typed) && !typed.includes("(")) {
     return { problem: "a comma before three digits can mean two things: leave it out" };
   }
-  const match = PATTERN.exec(text.trim().replace(",", "."));
-  if (!match) return { problem: `“${text.trim()}” is no number` };
-  const value = Number(match[1]);
-  const typed = canonical(match[2] ?? "");
-  const own = canonical(shown);
-  if ((match[2] ?? "").trim() === "") return finite(value * factorOf(own), text);
-  const unit = UNITS[typed];
-  if (!unit) return { problem: `unknown unit “${match[2]?.trim()}”` };
-  const expected = UNITS[own];
-  if (expected && expected.quantity !== unit.quantity) {
-    return { problem: `${typed} is a ${unit.quantity}; a ${expected.quantity} is due` };
+  if (!/\d/.test(typed)) return { problem: `“${typed}” is no number` };
+  const read = amountOf(typed.includes("(") ? typed : typed.replaceAll(",", "."));
+  if ("problem" in read) return read;
+  const own = unitOf(shown) ?? { factor: 1, dimension: PLAIN };
+  if (!/[A-Za-zµμ°%]/.test(typed.replace(EXPONENTS_AND_CALLS, ""))) {
+    return finite(read.value * own.factor, typed);
   }
-  return finite(value * unit.factor, text);
+  const zero = read.value === 0 && sameDimension(read.dimension, PLAIN);
+  if (!zero && !sameDimension(read.dimension, own.dimension)) {
+    const [came, due] = [read.dimension, own.dimension].map(describeDimension);
+    return { problem: `“${typed}” is ${came}; ${due} is due` };
+  }
+  return read;
+}
+
+/** Whether a text is one number with its unit, known or not, so that nothing is to be worked out. */
+export function isOneNumber(text: string): boolean {
+  const unit = QUANTITY.exec(text)?.[2];
+  return (
+    unit !== undefined && (unitOf(unit) !== null || /^(?!.*\/\s*[\d.])[^-+*()\s]+$/.test(unit))
+  );
+}
+
+/** Calls of functions, and the letter inside of 1e3: letters that are neither unit nor parameter. */
+const EXPONENTS_AND_CALLS = /(?:min|max)(?=\s*\()|(?<=[\d.])e(?=[+-]?\d)/gi;
+
+/** A number with one unit, or what a formula comes to. */
+function amountOf(typed: string): Evaluated {
+  const [, number, written = ""] = QUANTITY.exec(typed) ?? [];
+  const unit = number === undefined ? null : unitOf(written);
+  if (unit === null) return evaluate(typed);
+  const read = finite(Number((Number(number) * unit.factor).toPrecision(16)), typed);
+  return "problem" in read ? read : { ...read, dimension: unit.dimension };
 }
 
 function finite(value: number, text: string): Parsed {

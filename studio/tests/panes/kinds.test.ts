@@ -1,5 +1,8 @@
 import { describe, expect, it } from "vitest";
+import type { Amounts } from "../../src/controls/formula";
 import { formatKind, readWritten, writeValue } from "../../src/controls/kinds";
+
+const PARAMETERS: Amounts = { wall: { value: 0.005, dimension: [1, 0, 0, 0] } };
 
 describe("readWritten", () => {
   it("completes a bare number with the unit of its kind", () => {
@@ -11,9 +14,38 @@ describe("readWritten", () => {
     expect(readWritten("0.5 cm", "length")).toEqual({ value: "0.5 cm" });
     expect(readWritten("1 psi", "pressure")).toEqual({ value: "1 psi" });
   });
-  it("passes units that only VoxSoft knows, and formulas", () => {
-    expect(readWritten("2 GPa", "modulus")).toEqual({ value: "2 GPa" });
-    expect(readWritten("=radius-wall", "length")).toEqual({ value: "= radius-wall" });
+  it("passes what only VoxSoft knows", () => {
+    expect(readWritten("2 kip/ft^2", "modulus")).toEqual({ value: "2 kip/ft^2" });
+    expect(readWritten("2 ft", "length")).toEqual({ value: "2 ft" });
+    expect(readWritten("2*3 ft", "length")).toEqual({ value: "= 2*3 ft" });
+    const byName = { wall: null };
+    expect(readWritten("2*wall", "length", [], byName)).toEqual({ value: "= 2*wall" });
+  });
+  it("works arithmetic out", () => {
+    expect(readWritten("2*5 mm", "length")).toEqual({ value: "10 mm" });
+    expect(readWritten("5 mm + 0.5 cm", "length")).toEqual({ value: "10 mm" });
+    expect(readWritten("2*5", "length")).toEqual({ value: "10 mm" });
+    expect(readWritten("3*7", "number")).toEqual({ value: 21 });
+    expect(readWritten("20 %", "number")).toEqual({ value: 0.2 });
+    expect(readWritten("5 mm − 5 mm", "length")).toEqual({ value: 0 });
+    expect(readWritten("90 deg/2", "angle")).toEqual({ value: "45 deg" });
+  });
+  it("takes what names a parameter for a formula, with its = or without", () => {
+    for (const typed of ["2*wall + 1 mm", "=2*wall + 1 mm", " = 2*wall + 1 mm"]) {
+      expect(readWritten(typed, "length", [], PARAMETERS)).toEqual({ value: "= 2*wall + 1 mm" });
+    }
+    expect(readWritten("= 5 mm", "length", [], PARAMETERS)).toEqual({ value: "= 5 mm" });
+    expect(readWritten("=0", "length", [], PARAMETERS)).toEqual({ value: "= 0" });
+  });
+  it.each([
+    ["2*wal", '"wal" is not a parameter'],
+    ["=wall*wall", "the formula gives an area; a length is due"],
+    ["wall + 2", "give the number a unit"],
+    ["wall/0", "divides by zero"],
+    ["2*5 kPa", "a pressure; a length is due"],
+  ])("says what is wrong with %s", (typed, words) => {
+    const read = readWritten(typed, "length", [], PARAMETERS);
+    expect("problem" in read && read.problem).toContain(words);
   });
   it("refuses a unit of another quantity, and what is no number", () => {
     expect(readWritten("5 kPa", "length")).toHaveProperty("problem");

@@ -34,6 +34,7 @@ function parameter(name: string, given: Partial<Parameter> = {}): Parameter {
     max: null,
     step: null,
     display_unit: "mm",
+    former: null,
     factor: 1e-3,
     formula: false,
     description: "",

@@ -71,6 +71,11 @@ describe("renamed", () => {
     'shape = "wall"',
     'name = "wall"',
   ].join("\n");
+  it("leaves the unit behind a number alone, where a parameter is called like it", () => {
+    const after = renamed('height = "= m + 5 m - 2 * m"', "parameters", "m", "height");
+    expect(after).toBe('height = "= height + 5 m - 2 * height"');
+  });
+
   it("renames a parameter in its definition and in formulas only", () => {
     const after = renamed(text, "parameters", "wall", "skin");
     expect(after).toContain('skin = { value = "5 mm" }');

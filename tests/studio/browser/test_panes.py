@@ -7,6 +7,8 @@ import pytest
 # Longer than any of these short jobs takes on two busy cores, in milliseconds.
 JOB = 120_000
 
+LENGTH = "[data-testid=parameter-length] input[aria-label=length]"
+
 MEASURED = "s (mm),sag (mm)\n10,-0.3\n25,-1.7\n40,-4.0\n"
 
 
@@ -61,6 +63,62 @@ class TestDesign:
         assert "a length is due" in design.find("parameter-length").inner_text()
         size.press("Escape")
         assert document_text(design) == before
+
+    def test_arithmetic_is_worked_out_and_a_formula_is_kept(self, design):
+        row = design.find("parameter-length")
+        size = row.get_by_role("textbox", name="length", exact=True)
+        size.fill("2*15 mm + 1.5 cm")
+        size.press("Enter")
+        has_text(design, 'value = "45 mm"')
+        design.find("shapes-body").get_by_role("button", name="body", exact=False).first.click()
+        height = design.find("shapes-body").get_by_label("Size z", exact=True)
+        height.fill("length/5 + 1 mm")
+        height.press("Enter")
+        has_text(design, '"= length/5 + 1 mm"')
+        design.find("pane-body").get_by_text("45 mm × 10 mm × 10 mm").wait_for()
+        height.fill("length*length")
+        height.press("Enter")
+        note = design.find("shapes-body").locator(".field-note")
+        assert note.inner_text() == "the formula gives an area; a length is due"
+        height.press("Escape")
+        note.wait_for(state="detached")
+        size.fill("= 2*20 mm")
+        size.press("Enter")
+        has_text(design, 'value = "= 2*20 mm"')
+        row.get_by_text("40 mm").wait_for()
+        size.fill("45")
+        size.press("Enter")
+        row.get_by_role("slider").wait_for()
+        assert design.errors == []
+
+    def test_a_changed_value_shows_the_former_one_and_gives_it_back(self, design):
+        row = design.find("parameter-length")
+        size = row.get_by_role("textbox", name="length", exact=True)
+        assert row.get_by_role("button", name="length: back to").count() == 0
+        size.fill("55 mm")
+        size.press("Enter")
+        back = row.get_by_role("button", name="length: back to 40 mm")
+        back.wait_for()
+        row.locator("label").dblclick()
+        has_text(design, 'value = "40 mm"')
+        back.wait_for(state="detached")
+        size.fill("50 mm")
+        size.press("Enter")
+        back.click()
+        has_text(design, 'value = "40 mm"')
+
+    def test_a_locked_parameter_is_not_changed(self, design):
+        row = design.find("parameter-length")
+        size = row.get_by_role("textbox", name="length", exact=True)
+        row.hover()
+        row.get_by_role("button", name="More about length").click()
+        design.page.get_by_role("menuitem", name="Lock", exact=True).click()
+        design.until(f"document.querySelector({LENGTH!r}).disabled")
+        assert row.get_by_role("slider").is_disabled()
+        row.get_by_role("button", name="which is locked").click()
+        design.page.get_by_role("menuitem", name="Unlock").click()
+        design.until(f"!document.querySelector({LENGTH!r}).disabled")
+        assert size.is_enabled()
 
     def test_a_load_can_be_added_changed_and_removed(self, design):
         design.page.get_by_label("Add a load").select_option("force")

@@ -100,7 +100,7 @@ export function fittingKeys(
 
 export function Goals() {
   const metrics = useStudio((state) => state.hello?.metrics);
-  const { source } = useForm();
+  const { source, amounts } = useForm();
   const probes = Object.keys((source.probes as object | undefined) ?? {});
   const metricOf = (name: string) => metrics?.find((one) => one.name === name);
   return (
@@ -156,7 +156,7 @@ export function Goals() {
               edit([...path, key], null);
               return null;
             }
-            const read = readWritten(text, metric?.kind ?? "number");
+            const read = readWritten(text, metric?.kind ?? "number", [], amounts);
             if ("problem" in read) return read.problem;
             edit([...path, key], read.value);
             return null;

@@ -1,5 +1,5 @@
 // One place of a design as a control, chosen by the schema; tables and lists nest.
-import type { ReactNode } from "react";
+import { type ReactNode, useState } from "react";
 import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { formatNumber } from "../../controls/units";
@@ -192,9 +192,13 @@ interface LeafProps extends SchemaFieldProps {
 }
 
 function QuantityField(
-  props: LeafProps & { control: Extract<Control, { is: "quantity" | "text" }>; bare?: boolean },
+  props: LeafProps & {
+    control: Extract<Control, { is: "quantity" | "text" }>;
+    bare?: boolean;
+    onRefusal?: (problem: string | null) => void;
+  },
 ) {
-  const { root, design } = useForm();
+  const { root, design, amounts } = useForm();
   const { control, path, value } = props;
   const usual = resolve(root, props.schema).default;
   const kind = control.is === "quantity" ? control.kind : null;
@@ -205,6 +209,7 @@ function QuantityField(
     <TextField
       label={props.label}
       bare={props.bare ?? false}
+      onRefusal={props.onRefusal}
       value={text}
       right={kind !== null}
       title={props.help}
@@ -218,7 +223,7 @@ function QuantityField(
           edit(path, typed);
           return null;
         }
-        const read = readWritten(typed, control.kind, control.words);
+        const read = readWritten(typed, control.kind, control.words, amounts);
         if ("problem" in read) return read.problem;
         edit(path, read.value);
         return null;
@@ -243,7 +248,9 @@ function nudge(path: Path, value: unknown, count: number): void {
 
 function TupleField(props: LeafProps & { items: readonly Schema[] }) {
   const { root, diagnostics } = useForm();
+  const [refusals, setRefusals] = useState<Readonly<Record<number, string | null>>>({});
   const values = Array.isArray(props.value) ? props.value : [];
+  const note = Object.values(refusals).find((one) => one) ?? props.problem;
   const axes = props.items.length === 2 ? ["from", "to"] : ["x", "y", "z"];
   return (
     <div className="field tuple" title={props.help}>
@@ -270,11 +277,12 @@ function TupleField(props: LeafProps & { items: readonly Schema[] }) {
               label={name}
               control={control}
               problem={problemText(problemsAt(diagnostics, path))}
+              onRefusal={(problem) => setRefusals((all) => ({ ...all, [i]: problem }))}
             />
           );
         })}
       </div>
-      {props.problem && <span className="field-note">{props.problem}</span>}
+      {note && <span className="field-note">{note}</span>}
     </div>
   );
 }

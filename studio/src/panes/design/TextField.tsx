@@ -12,7 +12,10 @@ export interface TextFieldProps {
   changed?: boolean;
   /** Numbers stand at the right, names and sentences at the left. */
   right?: boolean;
+  disabled?: boolean;
+  /** The input alone; whoever holds it shows what `onRefusal` says. */
   bare?: boolean;
+  onRefusal?: ((problem: string | null) => void) | undefined;
   /** Gives what is wrong with the text, or null after taking it. */
   onCommit(text: string): string | null;
   onDefault?: (() => void) | undefined;
@@ -24,7 +27,11 @@ export interface TextFieldProps {
 export function TextField(props: TextFieldProps) {
   const id = useId();
   const [draft, setDraft] = useState<string | null>(null);
-  const [refusal, setRefusal] = useState<string | null>(null);
+  const [refusal, refuse] = useState<string | null>(null);
+  const setRefusal = (next: string | null) => {
+    refuse(next);
+    if (next !== refusal) props.onRefusal?.(next);
+  };
   const note = refusal ?? props.problem;
 
   const commit = () => {
@@ -48,6 +55,7 @@ export function TextField(props: TextFieldProps) {
         aria-invalid={note ? true : undefined}
         autoComplete="off"
         spellCheck={false}
+        disabled={props.disabled}
         list={props.offers ? `${id}-offers` : undefined}
         title={note ?? props.title}
         value={draft ?? props.value}

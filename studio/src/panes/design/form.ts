@@ -1,5 +1,6 @@
 // What every field of the form needs to know of the document.
 import { createContext, useContext } from "react";
+import type { Amounts } from "../../controls/formula";
 import type { Diagnostic } from "../../protocol";
 import type { Schema } from "./schema";
 import type { Names } from "./starters";
@@ -12,6 +13,8 @@ export interface Form {
   readonly design: Readonly<Record<string, unknown>> | null;
   readonly diagnostics: readonly Diagnostic[];
   readonly names: Names;
+  /** What formulas may speak of. */
+  readonly amounts: Amounts;
   readonly materialTitles: Readonly<Record<string, string>>;
 }
 

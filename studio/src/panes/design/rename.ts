@@ -43,7 +43,11 @@ function mention(code: string, section: Named, from: string, to: string): string
     const quote = whole[0];
     if (section === "parameters") {
       if (!text.trimStart().startsWith("=")) return whole;
-      const word = new RegExp(`(?<![\\w-])${escaped(from)}(?![\\w-])`, "g");
+      // What follows a number is its unit, also where a parameter has the same name.
+      const word = new RegExp(
+        `(?<![\\w-])(?<!(?<![\\w-])[\\d.]+\\s*)${escaped(from)}(?![\\w-])`,
+        "g",
+      );
       return `${quote}${text.replace(word, to)}${quote}`;
     }
     return text === from ? `${quote}${to}${quote}` : whole;

@@ -1,5 +1,8 @@
 // The form of the document that is open.
 import { useMemo } from "react";
+import type { Amounts } from "../../controls/formula";
+import { dimensionOf } from "../../controls/kinds";
+import type { DocumentEvent } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import type { Form } from "./form";
 import type { Schema } from "./schema";
@@ -23,9 +26,21 @@ export function useFormOfDocument(): Form | null {
         shapes: keys("shapes"),
         materials: [...keys("materials"), ...hello.materials.map((card) => card.name)],
       },
+      amounts: amountsOf(keys("parameters"), document),
       materialTitles: Object.fromEntries(
         hello.materials.map((card) => [card.name, `${card.name} (${card.model})`]),
       ),
     };
   }, [hello, document]);
+}
+
+/** Parameters with their values; without them while the text is not good, as they may have changed. */
+function amountsOf(names: readonly string[], document: DocumentEvent): Amounts {
+  const known = new Map(document.valid ? document.parameters.map((one) => [one.name, one]) : []);
+  return Object.fromEntries(
+    names.map((name) => {
+      const found = known.get(name);
+      return [name, found ? { value: found.value, dimension: dimensionOf(found.kind) } : null];
+    }),
+  );
 }
