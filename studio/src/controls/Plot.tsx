@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
+import { decadeName, decades, tickSpace } from "./axes";
 import { formatNumber } from "./units";
 import "uplot/dist/uPlot.min.css";
 
@@ -90,6 +91,13 @@ function toData(props: PlotProps): uPlot.AlignedData {
   return columns as unknown as uPlot.AlignedData;
 }
 
+// Without a filter uPlot would leave out most of the labels again.
+const LOGARITHMIC: uPlot.Axis = {
+  splits: (plot, _axis, low, high) => decades(low, high, plot.bbox.height / devicePixelRatio),
+  values: (_plot, ticks) => ticks.map(decadeName),
+  filter: (_plot, ticks) => ticks,
+};
+
 function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Options {
   const style = getComputedStyle(document.documentElement);
   const css = (name: string) => style.getPropertyValue(name).trim();
@@ -110,7 +118,10 @@ function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Op
     ...sizeOf(element),
     padding: [20, 12, 0, 0],
     scales: { x: { time: false }, y: { distr: y.log ? 3 : 1 } },
-    axes: [axis(x.label, 28), axis(y.label, 48)],
+    axes: [
+      { ...axis(x.label, 28), space: (_plot, _axis, _low, _high, pixels) => tickSpace(pixels) },
+      { ...axis(y.label, 48), ...(y.log ? LOGARITHMIC : {}) },
+    ],
     cursor: {
       points: { size: 6 },
       ...(group ? { sync: { key: group } } : {}),

@@ -7,7 +7,7 @@ const ENERGY = [
   { label: "elastic", color: "--series-1" },
   { label: "kinetic", color: "--series-2" },
 ];
-const RESIDUAL = [{ label: "residual over load", color: "--series-3" }];
+const RESIDUAL = [{ label: "out of balance", color: "--series-3" }];
 
 /** How the body comes to rest: energies, and what is left of the forces over the load. */
 export default function EnergyPane() {
@@ -22,7 +22,7 @@ export default function EnergyPane() {
     );
   }
   const [times = [], residual = [], elastic = [], kinetic = []] = history.columns;
-  const positive = residual.map((x) => (x > 0 ? x : Number.NaN));
+  const percent = residual.map((x) => (x > 0 ? 100 * x : Number.NaN));
   const milli = (column: number[]) => column.map((x) => x * 1000);
   const common = { x: { label: "time [s]" }, group: "time", mark: time, onSeek: seekTo };
   return (
@@ -39,9 +39,9 @@ export default function EnergyPane() {
         {...common}
         label="Residual over time"
         testId="plot-residual"
-        y={{ label: "residual", log: true }}
+        y={{ label: "residual [% of load]", log: true }}
         series={RESIDUAL}
-        data={[times, positive]}
+        data={[times, percent]}
       />
     </div>
   );

@@ -59,7 +59,11 @@ export function stepFrames(count: number): void {
 /** Show time slower by a step of 1, or faster by one of −1. */
 export function changePace(steps: number): void {
   const stat = useStudio.getState().stat;
-  if (stat) send({ t: "pace", factor: nextPace(stat.pace, steps) });
+  if (!stat) return;
+  const pace = nextPace(stat.pace, steps);
+  send({ t: "pace", factor: pace });
+  // Two quick presses are two steps, though the first was not answered yet.
+  useStudio.setState({ stat: { ...stat, pace, pace_chosen: pace } });
 }
 
 export function setTheme(theme: ThemeChoice): void {
@@ -262,12 +266,22 @@ export function keyName(
   ].join("");
 }
 
-/** Whether keys belong to the element that has the focus, and not to the page. */
-export function isTyping(target: EventTarget | null): boolean {
+// The button that has the focus from a click. Browsers show the focus of such a button once a key
+// is pressed, so :focus-visible does not tell it from one that was reached by keyboard.
+let clicked: Element | null = null;
+
+/** Whether a key belongs to the element that has the focus, and not to the page. */
+export function ownsKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.isContentEditable || target.closest(".cm-editor")) return true;
-  if (target instanceof HTMLInputElement)
-    return target.type !== "checkbox" && target.type !== "button";
+  if (target instanceof HTMLButtonElement) {
+    // After a click Space is the page's, as if the button had never had the focus.
+    return key === "Enter" || (key === " " && target !== clicked);
+  }
+  if (target instanceof HTMLInputElement) {
+    if (target.type === "range") return key !== " ";
+    return target.type !== "checkbox" || key === " ";
+  }
   return target instanceof HTMLTextAreaElement || target instanceof HTMLSelectElement;
 }
 
@@ -275,17 +289,35 @@ export function isTyping(target: EventTarget | null): boolean {
 export function listenForKeys(): () => void {
   const onKey = (event: KeyboardEvent) => {
     const name = keyName(event);
-    const typing = isTyping(event.target);
+    const owned = ownsKey(event.target, event.key);
     const global = name === "Ctrl+K" || name === "Ctrl+S" || name === "Ctrl+Shift+P";
-    if (typing && !global) return;
+    if (owned && !global) return;
     if (usePage.getState().sheet !== null && !global) return;
-    if (event.target instanceof HTMLButtonElement && (event.key === " " || event.key === "Enter"))
-      return;
     const action = actions().find((one) => one.keys?.includes(name));
     if (!action) return;
     event.preventDefault();
     action.run();
   };
+  const onPointerDown = (event: PointerEvent) => {
+    clicked = event.target instanceof Element ? event.target.closest("button") : null;
+  };
+  const onFocusOut = (event: FocusEvent) => {
+    if (event.target === clicked) clicked = null;
+  };
+  // Firefox presses a button when Space comes up, whatever was made of its going down.
+  const onKeyUp = (event: KeyboardEvent) => {
+    if (event.key === " " && event.target instanceof HTMLButtonElement) {
+      if (!ownsKey(event.target, " ")) event.preventDefault();
+    }
+  };
   addEventListener("keydown", onKey);
-  return () => removeEventListener("keydown", onKey);
+  addEventListener("keyup", onKeyUp);
+  addEventListener("pointerdown", onPointerDown, true);
+  addEventListener("focusout", onFocusOut, true);
+  return () => {
+    removeEventListener("keydown", onKey);
+    removeEventListener("keyup", onKeyUp);
+    removeEventListener("pointerdown", onPointerDown, true);
+    removeEventListener("focusout", onFocusOut, true);
+  };
 }

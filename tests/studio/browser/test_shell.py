@@ -47,6 +47,35 @@ def test_keys_typed_into_a_field_start_nothing(tab):
     assert "a stiffness is due" in tab.find("pane-run").inner_text()
 
 
+def test_space_plays_after_a_click_and_presses_what_was_reached_by_keyboard(tab):
+    for clicked in ("mode-design", "ghost"):
+        tab.find(clicked).click()
+        tab.page.keyboard.press("Space")
+        tab.until("voxsoft.state === 'playing'")
+        tab.page.keyboard.press("Space")
+        tab.until("voxsoft.state === 'paused'")
+    ghost = tab.find("ghost")
+    assert ghost.get_attribute("aria-pressed") == "true"
+    # By keyboard: away from the button and back to it.
+    tab.page.keyboard.press("Tab")
+    tab.page.keyboard.press("Shift+Tab")
+    assert tab.page.evaluate("document.activeElement.dataset.testid") == "ghost"
+    tab.page.keyboard.press("Space")
+    tab.until("document.querySelector('[data-testid=ghost]').ariaPressed === 'false'")
+    tab.page.keyboard.press("Enter")
+    tab.until("document.querySelector('[data-testid=ghost]').ariaPressed === 'true'")
+    assert tab.page.evaluate("voxsoft.state") == "paused"
+
+
+def test_space_plays_while_a_slider_has_the_focus(tab):
+    slider = tab.find("pane-run").locator("input[type=range]").first
+    slider.focus()
+    before = slider.input_value()
+    tab.page.keyboard.press("Space")
+    tab.until("voxsoft.state === 'playing'")
+    assert slider.input_value() == before
+
+
 def test_the_theme_follows_the_system_and_can_be_turned(served, open_tab):
     tab = open_tab(served.address, scheme="light")
     assert tab.page.evaluate("document.documentElement.dataset.theme") == "light"
