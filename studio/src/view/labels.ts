@@ -11,6 +11,10 @@ export interface Label {
   onClick?(): void;
 }
 
+const LINE = 21;
+// So many lines a label moves down to be read; a crowd beyond that shows its dots.
+const MOST_MOVED = 3;
+
 export class Labels {
   readonly element = document.createElement("div");
   private shown = new Map<string, { label: Label; element: HTMLElement }>();
@@ -38,7 +42,8 @@ export class Labels {
         this.element.append(element);
       }
       if (element.textContent !== label.text) element.textContent = label.text;
-      if (label.title) element.title = label.title;
+      // Its first line names a label that shows only its dot.
+      if (label.title) element.title = `${label.text}\n${label.title}`;
       if (label.color) element.style.setProperty("--mark", label.color);
       element.onclick = label.onClick ?? null;
       this.shown.set(label.key, { label, element });
@@ -57,13 +62,23 @@ export class Labels {
       element.hidden = !visible;
       if (!visible) continue;
       const x = ((at.x + 1) / 2) * width;
-      let y = ((1 - at.y) / 2) * height;
+      const y = ((1 - at.y) / 2) * height;
       const w = 7 * label.text.length + 24;
-      // Labels that would lie over each other move down by a line.
-      while (taken.some((one) => Math.abs(one.y - y) < 20 && Math.abs(one.x - x) < (one.w + w) / 2))
-        y += 21;
-      taken.push({ x, y, w });
-      element.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      const free = (moved: number) =>
+        !taken.some(
+          (one) =>
+            Math.abs(one.y - y - LINE * moved) < LINE - 1 && Math.abs(one.x - x) < (one.w + w) / 2,
+        );
+      // Labels that would lie over each other move down, and a line leads back to their point.
+      let moved = 0;
+      while (moved <= MOST_MOVED && !free(moved)) moved++;
+      const crowded = moved > MOST_MOVED && label.kind === "probe";
+      if (crowded) moved = 0;
+      else taken.push({ x, y: y + LINE * moved, w });
+      element.classList.toggle("crowded", crowded);
+      element.classList.toggle("moved", moved > 0);
+      element.style.setProperty("--lead", `${LINE * moved}px`);
+      element.style.transform = `translate(${x.toFixed(1)}px, ${(y + LINE * moved).toFixed(1)}px)`;
     }
   }
 }

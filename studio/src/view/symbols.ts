@@ -12,7 +12,7 @@ import {
   PointsMaterial,
   Vector3,
 } from "three";
-import { formatNumber, formatQuantity } from "../controls/units";
+import { formatNumber, formatQuantity, unitText } from "../controls/units";
 import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
 import { type BodyMesh, CAVITY_COLORS } from "./body";
@@ -25,7 +25,7 @@ const PROBE_COLOR = "#56b4e9";
 /** The value of a load as text, at present. */
 export function loadText(load: BodyLoad, stat: StatEvent | null): string {
   const value = stat?.loads[load.index] ?? load.value;
-  return `${formatNumber(value / load.factor, 3)} ${load.unit}`.trim();
+  return `${formatNumber(value / load.factor, 3)} ${unitText(load.unit)}`.trim();
 }
 
 export class Symbols {

@@ -1,10 +1,13 @@
 """The view and the run pane, driven as a user drives them."""
 
 import io
+from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def picture(tab):
@@ -229,3 +232,26 @@ def test_the_tape_measures_between_two_points(tab):
     label.wait_for()
     # A pixel of the page is about 0.06 mm of the body here.
     assert float(label.inner_text().removesuffix(" mm")) == pytest.approx(30, abs=0.3)
+
+
+def test_words_that_make_room_for_others_lead_back_to_their_points(tmp_path, serving, open_tab):
+    # Nine stations along a beam that is short on the screen: their words cannot all be shown.
+    server = serving(tmp_path, (EXAMPLES / "beam.toml").read_text(), "beam.toml")
+    try:
+        tab = open_tab(server.address, size=(1280, 720), mode="runs")
+        tab.until("document.querySelectorAll('.view-label.probe').length === 9")
+        tab.until("document.querySelectorAll('.view-label.probe.moved').length > 0")
+        boxes = tab.page.evaluate(
+            """[...document.querySelectorAll('.view-label:not(.crowded)')]
+               .map((one) => one.getBoundingClientRect())
+               .map((box) => [box.left, box.top, box.right, box.bottom])"""
+        )
+        for i, (left, top, right, bottom) in enumerate(boxes):
+            for other_left, other_top, other_right, other_bottom in boxes[:i]:
+                apart = right <= other_left or other_right <= left
+                assert apart or bottom <= other_top or other_bottom <= top
+        dots = tab.page.locator(".view-label.probe.crowded")
+        for i in range(dots.count()):
+            assert dots.nth(i).get_attribute("title").startswith("station-")
+    finally:
+        server.stop()
