@@ -85,3 +85,13 @@ def counted(mark, design):
         file.write(f"{x:.3g} {y:g}\n")
     time.sleep(0.02)
     return bowl(design)
+
+
+def patient(mark, design):
+    """Leaves a line when it begins, and ends once somebody has made the file beside."""
+    with mark.open("a") as file:
+        file.write("begun\n")
+    end = time.monotonic() + 60
+    while not mark.with_suffix(".go").exists() and time.monotonic() < end:
+        time.sleep(0.01)
+    return bowl(design)

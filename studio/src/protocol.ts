@@ -257,7 +257,7 @@ export interface JobStartCommand {
   spec: RunSpec | StudySpec | CalibrateSpec;
 }
 
-/** Hold a job; what is being solved is finished first. */
+/** Hold a job: what has begun is finished, and nothing more begins. */
 export interface JobPauseCommand {
   t: "job_pause";
   seq: number;
@@ -612,7 +612,7 @@ export interface JobEvent {
   id: string;
   kind: "calibrate" | "run" | "study";
   name: string;
-  state: "done" | "failed" | "interrupted" | "paused" | "running" | "stopped" | "stopping";
+  state: "done" | "failed" | "interrupted" | "paused" | "pausing" | "running" | "stopped" | "stopping";
   done: number;
   total: number;
   elapsed: number;

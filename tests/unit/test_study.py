@@ -1,5 +1,6 @@
 """Studies on families that cost nothing: what is asked, stored, shared, ranked and refused."""
 
+import concurrent.futures
 import signal
 import subprocess
 import sys
@@ -229,6 +230,18 @@ def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(make, threads):
         study.grid(executor=threads, progress=press)
     assert len(study.result().trials) == 12
     assert len(study.grid(executor=threads).trials) == 110
+
+
+def test_ctrl_c_stores_what_had_finished_and_was_not_looked_at(make, threads, monkeypatch):
+    def interrupted(futures, *_):
+        concurrent.futures.wait(futures)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("voxsoft.study.run.wait", interrupted)
+    study = make()
+    with pytest.raises(KeyboardInterrupt, match="4 of"):
+        study.grid(executor=threads, workers=2)  # hands out twice as many as run at once
+    assert len(study.result().trials) == 4
 
 
 def test_another_definition_in_the_same_folder_is_refused(make, threads):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -14,12 +14,10 @@ from voxsoft.calibration.table import read_measurement
 from voxsoft.files.cards import card_text
 from voxsoft.studio import events
 from voxsoft.studio.commands import CalibrateSpec
+from voxsoft.studio.progress import Progress
 from voxsoft.studio.specimen import stations, write_specimen
 from voxsoft.studio.task import Task
 from voxsoft.units import format_quantity
-
-if TYPE_CHECKING:
-    from voxsoft.studio.worker import Progress
 
 #: The card that a calibration leaves in its folder.
 CARD: Final = "card"

@@ -241,7 +241,7 @@ class JobStart(Command):
 
 
 class JobPause(Command):
-    """Hold a job; what is being solved is finished first."""
+    """Hold a job: what has begun is finished, and nothing more begins."""
 
     id: ShortText
 

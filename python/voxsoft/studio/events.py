@@ -13,7 +13,9 @@ from voxsoft.studio.message import Entry, Json, Message, Triple
 
 Severity = Literal["error", "warning", "note"]
 JobKind = Literal["run", "study", "calibrate"]
-JobState = Literal["running", "paused", "stopping", "stopped", "done", "failed", "interrupted"]
+JobState = Literal[
+    "running", "pausing", "paused", "stopping", "stopped", "done", "failed", "interrupted"
+]
 SimulationState = Literal[
     "empty", "meshing", "playing", "paused", "at-rest", "diverged", "solving", "past"
 ]

@@ -196,7 +196,7 @@ class Jobs:
 
     def _said(self, job: Job, event: events.Event) -> None:
         if isinstance(event, events.Job):
-            stopping = job.state.state == "stopping" and event.state in ("running", "paused")
+            stopping = job.state.state == "stopping" and event.state not in FINISHED
             job.state = msgspec.structs.replace(event, state="stopping") if stopping else event
             event = job.state
         elif isinstance(event, events.Trial):

@@ -6,18 +6,16 @@ import io
 import math
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from voxsoft import files
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, simulate
 from voxsoft.studio.commands import RunSpec
+from voxsoft.studio.progress import Progress
 from voxsoft.studio.rest import digits_lost
 from voxsoft.studio.task import Task
 from voxsoft.units import format_percent
-
-if TYPE_CHECKING:
-    from voxsoft.studio.worker import Progress
 
 #: The picture of a run in the list of runs.
 THUMBNAIL: Final = "thumbnail.png"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from voxsoft import files
 from voxsoft.design import Constraint, Design, Objective
@@ -15,15 +15,13 @@ from voxsoft.metrics import METRICS
 from voxsoft.simulation import check_targets, simulate
 from voxsoft.studio import events
 from voxsoft.studio.commands import SpaceRange, StudySpec
+from voxsoft.studio.progress import Progress
 from voxsoft.studio.running import draw
 from voxsoft.studio.task import Task
 from voxsoft.study import Study, StudyResult, TrialEvent
 from voxsoft.study.space import Choices, Range
 from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
-
-if TYPE_CHECKING:
-    from voxsoft.studio.worker import Progress
 
 
 def run_study(task: Task, progress: Progress) -> str:
@@ -44,18 +42,26 @@ def run_study(task: Task, progress: Progress) -> str:
         best = "" if event.best is None else _said(study, event.best)
         progress.at(event.done, event.total, best=best)
 
+    gate = progress.gate()
     try:
         if spec.sampler == "grid":
-            study.grid(workers=spec.workers, progress=tell)
+            study.grid(workers=spec.workers, progress=tell, gate=gate)
         else:
             study.optimize(
-                spec.sampler, spec.budget, batch=spec.batch, workers=spec.workers, progress=tell
+                spec.sampler,
+                spec.budget,
+                batch=spec.batch,
+                workers=spec.workers,
+                progress=tell,
+                gate=gate,
             )
     finally:
         with suppress(VoxSoftError):
             result = study.result()
             progress.tell(trials_event(task.id, result))
+            progress.doing("writing tables and figures")
             files.write_study(result, progress.folder)
+            progress.doing("drawing the best design")
             _draw_best(study, result, progress.folder)
     found = study.result()
     good = sum(trial.feasible for trial in found.trials)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from voxsoft.study.event import ProgressCallback, TrialEvent
+    from voxsoft.study.gate import Gate
     from voxsoft.study.outcome import Outcome, evaluate_design
     from voxsoft.study.result import StudyResult
     from voxsoft.study.space import Choices, Range
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Choices",
+    "Gate",
     "Outcome",
     "ProgressCallback",
     "Range",
@@ -31,6 +33,7 @@ __all__ = [
 
 _HOME_OF: Final = {
     "Choices": "space",
+    "Gate": "gate",
     "Outcome": "outcome",
     "ProgressCallback": "event",
     "Range": "space",

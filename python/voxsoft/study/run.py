@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
 from dataclasses import dataclass, field
 from math import isfinite
-from typing import Any
+from typing import Any, Final
 
 import optuna
 from optuna.trial import TrialState
@@ -15,10 +16,14 @@ from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import StudyError, VoxSoftError
 from voxsoft.study.event import ProgressCallback, TrialEvent
+from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, Outcome
 from voxsoft.study.proposals import Proposal
 from voxsoft.study.trial import OUTCOME_KEY, Trial, outcome_of, read_trial, record_of
 from voxsoft.study.workers import Workers
+
+#: Seconds between two looks at a gate that is closed.
+_LOOK: Final = 0.05
 
 Build = Callable[[Mapping[str, Any]], Design]
 
@@ -50,6 +55,8 @@ class StudyRun:
         Called after each trial.
     total
         Number of trials in the end, for `progress`.
+    gate
+        While it is closed no trial begins; those that have are stored as they end.
     """
 
     study: optuna.Study
@@ -60,6 +67,7 @@ class StudyRun:
     workers: Workers
     progress: ProgressCallback | None
     total: int
+    gate: Gate | None = None
     _running: dict[Future[Outcome], _Job] = field(default_factory=dict)
     _twins: dict[str, list[_Job]] = field(default_factory=dict)
     _solved: dict[str, tuple[int, Outcome]] = field(default_factory=dict)
@@ -82,6 +90,7 @@ class StudyRun:
             for batch in batches:
                 for proposal in batch:
                     interrupts.stop_if_interrupted()
+                    self._wait_for_gate(interrupts)
                     self._begin(proposal)
                     # A few more than run at once wait at the workers, so that none is idle.
                     while len(self._running) >= 2 * self.workers.slots:
@@ -89,6 +98,14 @@ class StudyRun:
                 while self._running:
                     interrupts.stop_if_interrupted()
                     self._collect()
+
+    def _wait_for_gate(self, interrupts: Interrupts) -> None:
+        while self.gate is not None and self.gate.closed:
+            interrupts.stop_if_interrupted()
+            if self._running:
+                self._collect(_LOOK)
+            else:
+                time.sleep(_LOOK)
 
     def _begin(self, proposal: Proposal) -> None:
         try:
@@ -113,18 +130,30 @@ class StudyRun:
             future = self.workers.submit(self.evaluate, job.design)
         self._running[future] = job
 
-    def _collect(self) -> None:
-        """Store what has finished; wait for at least one trial."""
+    def _collect(self, patience: float | None = None) -> None:
+        """Store what has finished; wait for at least one trial, or for some seconds."""
         lost = []
-        finished, _ = wait(self._running, return_when=FIRST_COMPLETED)
+        try:
+            finished, _ = wait(self._running, patience, FIRST_COMPLETED)
+        except KeyboardInterrupt:
+            self._keep_finished()
+            raise
         for future in sorted(finished, key=lambda done: self._running[done].number):
             job = self._running.pop(future)
             if isinstance(future.exception(), BrokenExecutor):
                 lost.append(job)
             else:
-                self._finish(job, _outcome(future, self.objectives))
+                self._take(job, future)
         if lost:
             self._recover(lost)
+
+    def _keep_finished(self) -> None:
+        """Store what has finished before the study stops; nobody is told of it any more."""
+        self.progress = None
+        for future in [each for each in self._running if each.done()]:
+            job = self._running.pop(future)
+            if not isinstance(future.exception(), BrokenExecutor):
+                self._take(job, future)
 
     def _recover(self, lost: list[_Job]) -> None:
         """Go on after a worker died: it takes all trials of its pool with it.
@@ -136,7 +165,7 @@ class StudyRun:
             if isinstance(future.exception(), BrokenExecutor):
                 lost.append(job)
             else:
-                self._finish(job, _outcome(future, self.objectives))
+                self._take(job, future)
         self.workers.recover()
         for job in sorted(lost, key=lambda job: job.number):
             future = self.workers.submit(self.evaluate, job.design)
@@ -145,7 +174,12 @@ class StudyRun:
                 message = "the worker process died twice while it evaluated this design"
                 self._finish(job, Outcome("failed", message))
             else:
-                self._finish(job, _outcome(future, self.objectives))
+                self._take(job, future)
+
+    def _take(self, job: _Job, future: Future[Outcome]) -> None:
+        self._finish(job, _outcome(future, self.objectives))
+        if self.gate is not None:
+            self.gate.stored()
 
     def _finish(self, job: _Job, outcome: Outcome) -> None:
         self._store(job.number, outcome, job.hash, None)

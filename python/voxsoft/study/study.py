@@ -20,6 +20,7 @@ from voxsoft.errors import StudyError
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.study.definition import definition
 from voxsoft.study.event import ProgressCallback
+from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, evaluate_design
 from voxsoft.study.proposals import (
     Proposals,
@@ -135,6 +136,7 @@ class Study:
         scheduler: str | None = None,
         workers: int | None = None,
         progress: ProgressCallback | None = None,
+        gate: Gate | None = None,
     ) -> StudyResult:
         """Evaluate every combination of steps and choices that the study does not hold yet.
 
@@ -150,6 +152,8 @@ class Study:
             Number of processes; default: one for each core.
         progress
             Called with a :class:`~voxsoft.study.TrialEvent` after each trial.
+        gate
+            Holds back trials while it is closed, also by another thread.
 
         Returns
         -------
@@ -172,6 +176,7 @@ class Study:
             scheduler,
             workers,
             progress,
+            gate,
         )
 
     def optimize(
@@ -184,6 +189,7 @@ class Study:
         scheduler: str | None = None,
         workers: int | None = None,
         progress: ProgressCallback | None = None,
+        gate: Gate | None = None,
     ) -> StudyResult:
         """Let a sampler choose trials until the study holds `budget` of them.
 
@@ -202,7 +208,7 @@ class Study:
             and not on the number of workers. Default: a generation for ``"genetic"``, 1 for
             ``"gradient"`` (more are further starts), else 8;
             a cluster of more workers than that needs a larger one to be busy.
-        executor, scheduler, workers, progress
+        executor, scheduler, workers, progress, gate
             As for :meth:`grid`.
 
         Returns
@@ -223,7 +229,11 @@ class Study:
             raise StudyError("budget" if budget < 1 else "batch", "at least 1 is due")
         if sampler == "grid":
             return self.grid(
-                executor=executor, scheduler=scheduler, workers=workers, progress=progress
+                executor=executor,
+                scheduler=scheduler,
+                workers=workers,
+                progress=progress,
+                gate=gate,
             )
         if sampler in SINGLE_OBJECTIVE and len(self.objectives) > 1:
             what = f'"{sampler}" takes one objective, and there are {len(self.objectives)}'
@@ -248,6 +258,7 @@ class Study:
             scheduler,
             workers,
             progress,
+            gate,
             evaluate,
         )
 
@@ -279,10 +290,11 @@ class Study:
         scheduler: str | None,
         workers: int | None,
         progress: ProgressCallback | None,
+        gate: Gate | None,
         evaluate: Evaluate | None = None,
     ) -> StudyResult:
         with self._storage.open(write=True) as study:
-            evaluators = make_workers(executor, scheduler, workers)
+            evaluators = make_workers(executor, scheduler, workers, gate)
             finished = False
             try:
                 StudyRun(
@@ -294,6 +306,7 @@ class Study:
                     evaluators,
                     progress,
                     total,
+                    gate,
                 ).evaluate_all(proposals(study))
                 finished = True
             except KeyboardInterrupt:

@@ -13,6 +13,7 @@ from typing import Any, Final, Protocol, TypeVar
 
 from voxsoft._memory import memory_limit
 from voxsoft.errors import MissingPackageError, StudyError
+from voxsoft.study.gate import Gate, SharedGate, keep_gate, through_gate
 
 #: Seconds to wait for a Dask scheduler.
 DASK_TIMEOUT: Final = 10.0
@@ -44,7 +45,12 @@ class Workers(Protocol):
         ...
 
 
-def make_workers(executor: Executor | None, scheduler: str | None, count: int | None) -> Workers:
+def make_workers(
+    executor: Executor | None,
+    scheduler: str | None,
+    count: int | None,
+    gate: Gate | None = None,
+) -> Workers:
     """Choose who evaluates.
 
     Parameters
@@ -56,6 +62,8 @@ def make_workers(executor: Executor | None, scheduler: str | None, count: int | 
     count
         Processes on this machine; default: one for each core this process may use. With an
         executor: how many trials to hand it at a time (default the same).
+    gate
+        What tasks of processes of this machine wait for.
 
     Raises
     ------
@@ -80,7 +88,7 @@ def make_workers(executor: Executor | None, scheduler: str | None, count: int | 
             f"use one for each core, {_usable_cores()} here; at most "
             f"{max(1, memory_limit() // _WORKER_BYTES)} fit",
         )
-    return LocalProcesses(slots) if executor is None else ForeignExecutor(executor, slots)
+    return LocalProcesses(slots, gate) if executor is None else ForeignExecutor(executor, slots)
 
 
 class LocalProcesses:
@@ -90,13 +98,13 @@ class LocalProcesses:
     process that has run threads, as the solver does, can hang.
     """
 
-    def __init__(self, count: int) -> None:
-        self.slots = count
+    def __init__(self, count: int, gate: Gate | None = None) -> None:
+        self.slots, self._gate = count, gate
         self._start()
 
     def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
         """Start a task, or queue it."""
-        return self._pool.submit(task, *arguments)
+        return self._pool.submit(through_gate, task, *arguments)
 
     def recover(self) -> None:
         """Replace the pool: a pool that lost a worker takes no more tasks."""
@@ -121,7 +129,10 @@ class LocalProcesses:
             self.slots,
             mp_context=context,
             initializer=_prepare_worker,
-            initargs=(max(1, _usable_cores() // self.slots),),
+            initargs=(
+                max(1, _usable_cores() // self.slots),
+                None if self._gate is None else self._gate.for_pool(context),
+            ),
         )
         try:
             self._pool.submit(os.getpid).result()
@@ -203,8 +214,9 @@ def _usable_cores() -> int:
     return os.cpu_count() or 1
 
 
-def _prepare_worker(threads: int) -> None:
+def _prepare_worker(threads: int, gate: SharedGate | None) -> None:
     """Share the cores among workers, leave Ctrl-C to the main process, and end with it."""
+    keep_gate(gate)
     os.environ.setdefault("RAYON_NUM_THREADS", str(threads))
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()

@@ -9,6 +9,7 @@ import "./jobs.css";
 
 const WORDS: Readonly<Record<JobEvent["state"], string>> = {
   running: "running",
+  pausing: "pausing",
   paused: "paused",
   stopping: "stopping",
   stopped: "stopped",
@@ -19,6 +20,7 @@ const WORDS: Readonly<Record<JobEvent["state"], string>> = {
 
 const TONES: Readonly<Record<JobEvent["state"], string>> = {
   running: "good",
+  pausing: "warn",
   paused: "warn",
   stopping: "warn",
   stopped: "warn",
@@ -29,7 +31,8 @@ const TONES: Readonly<Record<JobEvent["state"], string>> = {
 
 export function JobCard(props: { job: JobEvent; unit: string }) {
   const { job } = props;
-  const live = job.state === "running" || job.state === "paused" || job.state === "stopping";
+  const held = job.state === "pausing" || job.state === "paused";
+  const live = job.state === "running" || held || job.state === "stopping";
   const ended = job.state === "stopped" || job.state === "interrupted" || job.state === "failed";
   // Only a study has a journal from which it goes on; other work gives the same again.
   const again = ended && job.kind !== "study" ? "Start again" : "Go on";
@@ -44,7 +47,7 @@ export function JobCard(props: { job: JobEvent; unit: string }) {
               <Icon name="pause" />
             </Button>
           )}
-          {(ended || job.state === "paused") && (
+          {(ended || held) && (
             <Button icon label={again} onClick={() => send({ t: "job_resume", id: job.id })}>
               <Icon name="play" />
             </Button>

@@ -1,0 +1,107 @@
+"""A gate holds the trials of a study that have not begun, and costs none that have."""
+
+import multiprocessing
+import os
+import signal
+import sys
+import threading
+import time
+from functools import partial
+
+import pytest
+from study_families import FALL, block, patient
+
+from voxsoft.study import Gate, Study
+
+SPACE = {"x": (0.0, 0.2, 0.1), "y": (1, 6)}
+#: A few looks of the workers at a closed gate, seconds.
+LOOKS = 0.3
+
+
+def until(condition):
+    end = time.monotonic() + 60
+    while not condition():
+        assert time.monotonic() < end, "never came"
+        time.sleep(0.01)
+
+
+class Running:
+    """A study of 18 designs on two workers, on a thread of its own."""
+
+    def __init__(self, folder):
+        self.mark = folder / "mark"
+        self.gate = Gate()
+        self.study = Study(
+            block, SPACE, FALL, folder=folder / "study", evaluate=partial(patient, self.mark)
+        )
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def _run(self):
+        self.result = self.study.grid(workers=2, gate=self.gate)
+
+    def start(self):
+        self._thread.start()
+        return self
+
+    def begun(self):
+        return len(self.mark.read_text().splitlines()) if self.mark.exists() else 0
+
+    def stored(self):
+        return len(self.study.result().trials)
+
+    def release(self):
+        self.mark.with_suffix(".go").touch()
+
+    def end(self):
+        self._thread.join(60)
+        assert not self._thread.is_alive()
+        return self.result
+
+
+@pytest.fixture
+def running(tmp_path):
+    return Running(tmp_path)
+
+
+def test_trials_that_have_begun_end_and_no_other_begins(running):
+    running.start()
+    until(lambda: running.begun() == 2)
+    running.gate.close()
+    assert running.gate.begun == 2
+    assert running.stored() == 0
+    running.release()
+    until(lambda: running.gate.begun == 0)
+    until(lambda: running.stored() == 2)
+    time.sleep(LOOKS)
+    assert (running.begun(), running.stored()) == (2, 2)
+    running.gate.open()
+    assert running.end().counts["ok"] == 18
+    assert running.begun() == 18
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to kill a worker with")
+def test_workers_that_are_killed_at_a_closed_gate_cost_nothing(running):
+    running.start()
+    until(lambda: running.begun() == 2)
+    running.gate.close()
+    running.release()
+    until(lambda: running.stored() == 2)
+    for child in multiprocessing.active_children():
+        os.kill(child.pid, signal.SIGKILL)
+    time.sleep(LOOKS)
+    assert running.begun() == 2
+    running.gate.open()
+    assert running.end().counts["ok"] == 18
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to kill a worker with")
+def test_a_worker_killed_amid_a_trial_is_not_counted_for_ever(running):
+    running.start()
+    until(lambda: running.begun() == 2)
+    running.gate.close()
+    for child in multiprocessing.active_children():
+        os.kill(child.pid, signal.SIGKILL)
+    until(lambda: running.gate.begun == 0)
+    running.release()
+    running.gate.open()
+    assert running.end().counts["ok"] == 18

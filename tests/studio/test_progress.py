@@ -1,0 +1,99 @@
+"""A pause is said at once, with what is still being finished, and takes no time from the job."""
+
+import multiprocessing
+import threading
+import time
+
+import pytest
+
+from voxsoft.studio.commands import CalibrateSpec, MeasuredData, StudySpec
+from voxsoft.studio.progress import Progress
+from voxsoft.studio.task import Task
+
+
+class Told:
+    """What a job said."""
+
+    def __init__(self, spec):
+        self.said = []
+        task = Task(id="a", name="a", design="", base="", spec=spec)
+        self.progress = Progress(task, "runs/a", self.said.append)
+
+    @property
+    def last(self):
+        return (self.said[-1].state, self.said[-1].stage)
+
+    def until(self, *last):
+        end = time.monotonic() + 30
+        while self.last != last:
+            assert time.monotonic() < end, f"still {self.last}"
+            time.sleep(0.01)
+
+
+@pytest.fixture
+def study():
+    return Told(StudySpec())
+
+
+@pytest.fixture
+def calibration():
+    return Told(CalibrateSpec(data=[MeasuredData(name="tip.csv")]))
+
+
+def test_a_study_tells_how_many_designs_are_being_finished(study):
+    progress, gate = study.progress, study.progress.gate()
+    workers = gate.for_pool(multiprocessing.get_context("spawn"))
+    progress.at(3, 8)
+    workers.begun.value = 2
+    progress.pause()
+    assert gate.closed
+    study.until("pausing", "2 designs are being finished")
+    workers.begun.value = 1
+    progress.at(4, 8)  # the one that ended is stored: nothing waits here
+    study.until("pausing", "1 design is being finished")
+    workers.begun.value = 0
+    study.until("paused", "")
+    assert study.said[-1].done == 4
+    progress.resume()
+    assert not gate.closed
+    assert study.last == ("running", "")
+
+
+def test_a_study_paused_before_it_has_begun_begins_paused(study):
+    study.progress.pause()
+    assert study.progress.gate().closed
+    study.until("paused", "")
+
+
+def test_other_work_is_held_where_it_next_says_how_far_it_is(calibration):
+    progress = calibration.progress
+    progress.at(1, 50, stage="search")
+    progress.pause()
+    assert calibration.last == ("pausing", "the present generation is being finished")
+    work = threading.Thread(target=progress.at, args=(2, 50), kwargs={"stage": "search"})
+    work.start()
+    calibration.until("paused", "search")
+    assert work.is_alive()
+    progress.resume()
+    work.join(30)
+    assert not work.is_alive()
+    assert calibration.last == ("running", "search")
+
+
+def test_pauses_do_not_count_as_work(calibration, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("voxsoft.studio.progress.time.monotonic", lambda: now[0])
+    told = Told(CalibrateSpec(data=[MeasuredData(name="tip.csv")]))
+    progress = told.progress
+    progress.pause()
+    now[0] += 2  # what was begun is being finished
+    work = threading.Thread(target=progress.at, args=(1, 3))
+    work.start()
+    while told.said[-1].state != "paused":
+        pass
+    now[0] += 1000
+    assert progress.elapsed == 2
+    progress.resume()
+    work.join(30)
+    now[0] += 5
+    assert progress.elapsed == 7
