@@ -1,8 +1,13 @@
 import { useEffect, useRef } from "react";
 import uPlot from "uplot";
+import { ladder } from "../view/quality";
 import { decadeName, decades, tickSpace } from "./axes";
 import { formatNumber } from "./units";
 import "uplot/dist/uPlot.min.css";
+
+// Milliseconds between two drawings of data that keep coming.
+const BETWEEN = 60;
+const BETWEEN_WHERE_SLOW = 400;
 
 export interface Series {
   readonly label: string;
@@ -56,9 +61,26 @@ export function Plot(props: PlotProps) {
     // The options read the latest properties; only a change of shape needs a new plot.
   }, [shape]);
 
+  const timer = useRef<ReturnType<typeof setTimeout> | null>(null);
+  const drawnAt = useRef(Number.NEGATIVE_INFINITY);
   useEffect(() => {
-    plot.current?.setData(toData(props));
+    if (timer.current !== null) return; // what is drawn then is the latest
+    const draw = () => {
+      timer.current = null;
+      drawnAt.current = performance.now();
+      plot.current?.setData(toData(latest.current));
+    };
+    const due = drawnAt.current + (ladder.slow ? BETWEEN_WHERE_SLOW : BETWEEN) - performance.now();
+    if (due <= 0) draw();
+    else timer.current = setTimeout(draw, due);
   }, [props]);
+  useEffect(
+    () => () => {
+      if (timer.current !== null) clearTimeout(timer.current);
+      timer.current = null;
+    },
+    [],
+  );
 
   return (
     <div className="plot" role="img" aria-label={props.label} data-testid={props.testId} ref={box}>

@@ -1,6 +1,7 @@
 // The one engine of the page, and the way of commands to it and of events from it.
 import type { Draft, Engine } from "../engine/engine";
 import type { Frame, Smooth, Topology } from "../engine/frames";
+import { calmed } from "./calm";
 import { apply, toast, useStudio } from "./studio";
 
 /** What draws bodies; the viewport registers itself here. */
@@ -31,9 +32,11 @@ export function onReady(callback: () => void): () => void {
 export function connect(chosen: Engine): void {
   engine?.stop();
   engine = chosen;
+  const applyStat = calmed(apply);
   chosen.start({
     event(event) {
-      apply(event);
+      if (event.t === "stat") applyStat(event);
+      else apply(event);
       if (event.t === "hello") for (const callback of ready) callback();
     },
     topology(topology) {

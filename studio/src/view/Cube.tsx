@@ -17,6 +17,7 @@ export function Cube(props: { view: Viewport }) {
   const box = useRef<HTMLDivElement>(null);
   useEffect(() => {
     const matrix = new Matrix4();
+    let shown = "";
     return props.view.onDrawn(() => {
       if (!box.current) return;
       matrix.makeRotationFromQuaternion(props.view.rig.orientation).transpose();
@@ -40,7 +41,9 @@ export function Cube(props: { view: Viewport }) {
         0,
         1,
       ];
-      box.current.style.transform = `matrix3d(${css.map((x) => (x ?? 0).toFixed(5)).join(",")})`;
+      const turned = `matrix3d(${css.map((x) => (x ?? 0).toFixed(5)).join(",")})`;
+      if (turned !== shown) box.current.style.transform = turned;
+      shown = turned;
     });
   }, [props.view]);
   return (

@@ -35,6 +35,8 @@ export class CameraRig {
   private height = 1;
   private reach = 0.1;
   flat = false;
+  /** Grows whenever the camera is placed anew. */
+  places = 0;
 
   constructor() {
     [this.pose.azimuth, this.pose.elevation] = STANDARD_VIEWS.corner;
@@ -155,6 +157,7 @@ export class CameraRig {
   }
 
   private place(): void {
+    this.places += 1;
     const { target, distance } = this.pose;
     const eye = target.clone().addScaledVector(this.toEye, distance);
     const aspect = this.width / this.height;

@@ -78,7 +78,8 @@ export class Labels {
       element.classList.toggle("crowded", crowded);
       element.classList.toggle("moved", moved > 0);
       element.style.setProperty("--lead", `${LINE * moved}px`);
-      element.style.transform = `translate(${x.toFixed(1)}px, ${(y + LINE * moved).toFixed(1)}px)`;
+      // Whole pixels: letters stay sharp, and a word that trembles stays where it is.
+      element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y + LINE * moved)}px)`;
     }
   }
 }

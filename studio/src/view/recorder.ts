@@ -78,7 +78,7 @@ function drawLegend(context: CanvasRenderingContext2D, scale: number): void {
 
 /** Record until the function that is given back is called. */
 export function recordWebm(view: Viewport): () => void {
-  const stream = view.renderer.domElement.captureStream(30);
+  const stream = view.still(undefined, (canvas) => canvas.captureStream(30));
   const type = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"].find((one) =>
     MediaRecorder.isTypeSupported(one),
   );
@@ -103,8 +103,8 @@ export function recordWebm(view: Viewport): () => void {
 export async function recordGif(view: Viewport): Promise<() => void> {
   const { GIFEncoder, quantize, applyPalette } = await import("gifenc");
   const source = view.renderer.domElement;
-  const width = Math.min(GIF_WIDTH, source.width);
-  const height = Math.round((source.height * width) / source.width);
+  const width = Math.min(GIF_WIDTH, Math.round(source.clientWidth * devicePixelRatio));
+  const height = Math.round((source.clientHeight * width) / source.clientWidth);
   const small = document.createElement("canvas");
   small.width = width;
   small.height = height;

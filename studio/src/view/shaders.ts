@@ -167,6 +167,15 @@ void main() {
 }
 `;
 
+export const COPY_FRAGMENT = /* glsl */ `
+precision highp float;
+uniform sampler2D uPicture;
+out vec4 color;
+void main() {
+  color = vec4(texelFetch(uPicture, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
+}
+`;
+
 export const GRID_VERTEX = /* glsl */ `
 out vec2 vAt;
 void main() {

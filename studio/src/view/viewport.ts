@@ -3,12 +3,11 @@
 import {
   Box3,
   ColorManagement,
-  LinearSRGBColorSpace,
   Raycaster,
   Scene,
   Vector2,
   Vector3,
-  WebGLRenderer,
+  type WebGLRenderer,
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
@@ -19,12 +18,15 @@ import { setView, useShown, useView, type View } from "../store/view";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { Grabs } from "./grab";
-import { Ground, roundLength, Sky } from "./ground";
+import { roundLength } from "./ground";
 import { type Label, Labels } from "./labels";
+import { Painter } from "./painter";
 import { type Hit, pick } from "./pick";
 import { listen } from "./pointer";
+import { ladder, WHOLE } from "./quality";
 import { Section } from "./section";
 import { SmoothMesh } from "./smooth";
+import { Stopwatch } from "./stopwatch";
 import { Symbols } from "./symbols";
 import { Tape } from "./tape";
 import { themeColor } from "./theme";
@@ -33,7 +35,10 @@ import { themeColor } from "./theme";
 ColorManagement.enabled = false;
 
 const TELL_EVERY = 120;
+const TELL_EVERY_WHERE_SLOW = 400;
 const HOVER_EVERY = 100;
+/** A picture in which nothing changed for so long stands still, ms. */
+const SETTLED = 400;
 
 // Another document, not another revision of the same one, is a reason to fit the view.
 function nameOf(document: DocumentEvent | null): string | null {
@@ -45,10 +50,9 @@ export class Viewport {
   readonly rig = new CameraRig();
   readonly grabs = new Grabs();
   readonly tape = new Tape();
-  readonly renderer: WebGLRenderer;
+  private readonly painter = new Painter();
+  private readonly stopwatch: Stopwatch;
   private readonly scene = new Scene();
-  private readonly sky = new Sky();
-  private readonly ground = new Ground();
   private readonly section = new Section();
   private readonly symbols = new Symbols();
   private readonly labels = new Labels();
@@ -66,6 +70,10 @@ export class Viewport {
   private tellTimer: ReturnType<typeof setTimeout> | null = null;
   private lastHover = 0;
   private hoverAt: { x: number; y: number } | null = null;
+  private hoverTimer: ReturnType<typeof setTimeout> | null = null;
+  private placedBefore = 0;
+  private lastMoved = Number.NEGATIVE_INFINITY;
+  private settleTimer: ReturnType<typeof setTimeout> | null = null;
   private times: number[] = [];
   private latency: number | null = null;
   private lastSeq = 0;
@@ -76,24 +84,14 @@ export class Viewport {
 
   constructor() {
     this.element.className = "viewport";
-    this.renderer = new WebGLRenderer({
-      antialias: true,
-      stencil: true,
-    });
-    this.renderer.outputColorSpace = LinearSRGBColorSpace;
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
-    this.renderer.info.autoReset = true;
+    this.stopwatch = new Stopwatch(
+      this.renderer.getContext() as WebGL2RenderingContext,
+      (milliseconds) => ladder.took(milliseconds),
+    );
     this.renderer.domElement.setAttribute("aria-label", "The body");
     this.renderer.domElement.tabIndex = 0;
     this.element.append(this.renderer.domElement, this.labels.element);
-    this.scene.add(
-      this.sky.mesh,
-      this.ground.mesh,
-      this.section.group,
-      this.symbols.group,
-      this.grabs.group,
-      this.tape.group,
-    );
+    this.scene.add(this.section.group, this.symbols.group, this.grabs.group, this.tape.group);
     new ResizeObserver(() => this.resize()).observe(this.element);
     new MutationObserver(() => this.recolor()).observe(document.documentElement, {
       attributeFilter: ["data-theme"],
@@ -104,7 +102,8 @@ export class Viewport {
       if (now.body !== before.body) this.bodyChanged();
       if (now.stat !== before.stat) {
         if (now.stat?.grabs.length === 0 && before.stat?.grabs.length) this.grabs.forgetPinned();
-        this.request();
+        // While time runs the next frame is on its way and will show what else is new.
+        if (now.stat?.state !== "playing" || before.stat?.state !== "playing") this.request();
       }
       const name = nameOf(now.document);
       if (name !== null && name !== this.documentName) {
@@ -112,7 +111,10 @@ export class Viewport {
         this.fitNext = true;
       }
     });
-    document.addEventListener("visibilitychange", () => this.tellView());
+    document.addEventListener("visibilitychange", () => {
+      this.tellView();
+      this.request();
+    });
     onReady(() => {
       this.gate.clear();
       this.tellView();
@@ -150,7 +152,7 @@ export class Viewport {
     this.positions = null;
     this.grabs.clear();
     this.tape.clear();
-    this.ground.lay(box);
+    this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
     if (this.fitNext) this.rig.fit(box, true);
     this.fitNext = false;
@@ -186,6 +188,7 @@ export class Viewport {
     if (now.field !== before.field || mode(now) !== mode(before)) this.tellView();
     if (!now.tape && before.tape) this.tape.clear();
     this.rig.flat = now.orthographic;
+    this.lastMoved = performance.now();
     this.request();
   }
 
@@ -220,15 +223,14 @@ export class Viewport {
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width < 2 || height < 2) return;
-    this.renderer.setSize(width, height);
+    this.painter.resize(width, height);
     this.rig.resize(width, height);
     this.request();
   }
 
   private recolor(): void {
     this.ink = themeColor("--ink");
-    this.sky.recolor();
-    this.ground.recolor();
+    this.painter.backdrop.recolor();
     this.section.recolor();
     this.request();
   }
@@ -237,11 +239,15 @@ export class Viewport {
 
   /** Draw at the next chance; while the tab is hidden or the view is away nothing is drawn. */
   request(): void {
-    if (this.asked !== null || !this.attached) return;
+    if (this.asked !== null || !this.attached || document.visibilityState === "hidden") return;
     this.asked = requestAnimationFrame((now) => {
       this.asked = null;
       this.draw(now);
     });
+  }
+
+  get renderer(): WebGLRenderer {
+    return this.painter.renderer;
   }
 
   onDrawn(listener: () => void): () => void {
@@ -250,15 +256,21 @@ export class Viewport {
   }
 
   private draw(now: number): void {
-    this.takeFrame(now);
+    const frame = this.takeFrame(now);
     if (this.rig.advance(now)) this.request();
+    if (frame || this.rig.places !== this.placedBefore) this.lastMoved = now;
+    this.placedBefore = this.rig.places;
     this.grabs.flush();
     const view = useView.getState();
     const mesh = this.shownMesh();
+    const quality = this.moving(now) ? ladder.quality : WHOLE;
+    this.painter.prepare(quality);
     this.style(view, mesh);
     const labels = this.words(view, mesh);
-    this.ground.face(this.rig.toEye.z);
-    this.renderer.render(this.scene, this.rig.camera);
+    this.painter.backdrop.ground.face(this.rig.toEye.z);
+    this.painter.paint(this.scene, this.rig.camera, quality.smooth);
+    if (quality !== WHOLE) this.settle();
+    if (this.moving(now)) this.stopwatch.start();
     // Words must not catch clicks that are meant for the body.
     this.labels.element.classList.toggle("passive", view.tape || this.grabs.holding);
     this.labels.set(labels);
@@ -268,13 +280,27 @@ export class Viewport {
     for (const listener of this.drawnListeners) listener();
   }
 
-  private takeFrame(now: number): void {
+  // A coarse picture is drawn whole once nothing moves any more; one drawn too early asks again.
+  private settle(): void {
+    this.settleTimer ??= setTimeout(() => {
+      this.settleTimer = null;
+      if (useStudio.getState().stat?.state !== "playing") this.request();
+    }, SETTLED);
+  }
+
+  // What is recorded is whole, however long it takes.
+  private moving(now: number): boolean {
+    if (useShown.getState().recording) return false;
+    return useStudio.getState().stat?.state === "playing" || now - this.lastMoved < SETTLED;
+  }
+
+  private takeFrame(now: number): boolean {
     const frame = this.gate.take((number) => currentEngine()?.acknowledge(number));
-    if (!frame) return;
+    if (!frame) return false;
     const wanted = useView.getState().appearance === "tets";
     const meshes = wanted ? [this.tets, this.surface] : [this.surface, this.tets];
     const mesh = meshes.find((one) => one?.suits(frame));
-    if (!mesh) return; // a frame of a body that is gone
+    if (!mesh) return false; // a frame of a body that is gone
     mesh.setFrame(frame);
     this.latest = frame;
     this.extremes = null;
@@ -283,6 +309,7 @@ export class Viewport {
       this.lastSeq = frame.seq;
       this.latency = sinceSent(frame.seq) ?? this.latency;
     }
+    return true;
   }
 
   /** The mesh that is drawn: the tetrahedra where they are wanted and at hand. */
@@ -308,7 +335,7 @@ export class Viewport {
       box,
       view.appearance !== "wireframe" && !view.cavities && !mesh?.topology.tets,
     );
-    this.ground.mesh.visible = view.grid && mesh !== null;
+    this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
     this.symbols.group.visible = view.symbols;
   }
 
@@ -363,14 +390,15 @@ export class Viewport {
   }
 
   private tell(now: number, view: View): void {
+    const every = ladder.slow ? TELL_EVERY_WHERE_SLOW : TELL_EVERY;
     this.times = this.times.filter((time) => now - time < 1000);
-    if (this.tellTimer === null && (this.times.length > 0 || now - this.lastTold < TELL_EVERY)) {
+    if (this.tellTimer === null && (this.times.length > 0 || now - this.lastTold < every)) {
       this.tellTimer = setTimeout(() => {
         this.tellTimer = null;
         this.tell(performance.now(), useView.getState());
-      }, TELL_EVERY);
+      }, every);
     }
-    if (now - this.lastTold < TELL_EVERY) return;
+    if (now - this.lastTold < every) return;
     this.lastTold = now;
     const [low, high] = this.range(view);
     const pixels = this.rig.pixelsPerMeter;
@@ -431,7 +459,13 @@ export class Viewport {
   hoverOver(at: { x: number; y: number } | null): void {
     this.hoverAt = at;
     if (at === null && useShown.getState().hover) useShown.setState({ hover: null });
-    else if (at) this.request();
+    else if (at && this.hoverTimer === null) {
+      // Looked up at leisure; nothing has to be drawn for it.
+      this.hoverTimer = setTimeout(() => {
+        this.hoverTimer = null;
+        this.hover(performance.now(), useView.getState());
+      }, HOVER_EVERY);
+    }
   }
 
   private hover(now: number, view: View): void {
@@ -515,24 +549,15 @@ export class Viewport {
     return [rect.left + ((at.x + 1) / 2) * rect.width, rect.top + ((1 - at.y) / 2) * rect.height];
   }
 
-  /** Draw now, at `scale` times the size of the page, and hand the canvas over. */
-  still<T>(scale: number, use: (canvas: HTMLCanvasElement) => T): T {
-    const ratio = this.renderer.getPixelRatio();
-    this.renderer.setPixelRatio(scale);
-    this.resizeNow();
-    this.renderer.render(this.scene, this.rig.camera);
+  /** Draw now and whole, at `scale` times the size of the page or as fine as the screen. */
+  still<T>(scale: number | undefined, use: (canvas: HTMLCanvasElement) => T): T {
+    this.painter.prepare(WHOLE, scale);
+    this.surface?.setPixels(this.renderer.domElement.height / 2);
+    this.painter.paint(this.scene, this.rig.camera, WHOLE.smooth);
     try {
       return use(this.renderer.domElement);
     } finally {
-      this.renderer.setPixelRatio(ratio);
-      this.resizeNow();
-      this.request();
+      this.request(); // at the size of the page again
     }
-  }
-
-  private resizeNow(): void {
-    const { clientWidth: width, clientHeight: height } = this.element;
-    this.renderer.setSize(width, height);
-    this.surface?.setPixels(this.renderer.domElement.height / 2);
   }
 }
