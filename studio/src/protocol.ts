@@ -362,6 +362,14 @@ export interface Sampler {
   single_objective: boolean;
 }
 
+/** A constant of a material that is fitted unless others are named, and its range, SI. */
+export interface FitRange {
+  name: string;
+  kind: string;
+  low: number;
+  high: number;
+}
+
 /** What an objective or constraint may measure. */
 export interface Metric {
   name: string;
@@ -379,7 +387,11 @@ export interface Field {
   signed: boolean;
 }
 
-/** First event: what this server can do. `design_schema` is the JSON Schema of a design. */
+/**
+ * First event: what this server can do. `design_schema` is the JSON Schema of a design.
+ *
+ * `fit_ranges` holds by model of a material what a calibration fits.
+ */
 export interface HelloEvent {
   t: "hello";
   version: string;
@@ -389,6 +401,7 @@ export interface HelloEvent {
   materials: MaterialCard[];
   samplers: Sampler[];
   calibration_methods: string[];
+  fit_ranges: Record<string, FitRange[]>;
   methods: string[];
   metrics: Metric[];
   fields: Field[];
@@ -450,7 +463,6 @@ export interface Cavity {
   volume: number;
   area: number;
   center: Triple;
-  leaks: number;
 }
 
 /** A chamber that is open: its volume in m³, the place of the opening. */

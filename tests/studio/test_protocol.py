@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from voxsoft.studio import commands, events
+from voxsoft.studio.catalog import hello
 from voxsoft.studio.protocol import ProtocolError, decode, encode
 from voxsoft.studio.typescript import typescript
 
@@ -67,3 +68,13 @@ def test_commands_survive_the_way_through_json(command):
 def test_numbers_that_are_not_finite_become_null():
     row = events.Plot(topology=1, names=["t"], units=["s"], rows=[[float("nan"), 1.0]])
     assert '"rows":[[null,1.0]]' in encode(row)
+
+
+def test_the_page_is_told_what_a_calibration_fits_by_itself(tmp_path):
+    ranges = hello(tmp_path).fit_ranges
+    assert {one.name: (one.low, one.high) for one in ranges["lattice"]} == {
+        "edge": (1e3, 1e6),
+        "bulk": (2e3, 1e6),
+    }
+    assert [one.name for one in ranges["ogden"]] == ["young"]
+    assert ranges["rigid"] == ranges["lattice-compliance"] == []

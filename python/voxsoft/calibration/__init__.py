@@ -17,7 +17,7 @@ from voxsoft.calibration.measurement import Measurement
 from voxsoft.calibration.misfit import Comparison
 from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
 from voxsoft.calibration.run import CalibrationEvent, ProgressCallback, calibrate
-from voxsoft.calibration.space import DEFAULT_BOUNDS
+from voxsoft.calibration.space import DEFAULT_BOUNDS, usual_ranges
 from voxsoft.calibration.table import read_measurement
 
 __all__ = [
@@ -35,4 +35,5 @@ __all__ = [
     "Stage",
     "calibrate",
     "read_measurement",
+    "usual_ranges",
 ]

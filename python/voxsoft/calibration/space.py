@@ -32,6 +32,20 @@ DEFAULT_BOUNDS: Final[Mapping[str, Bounds]] = {
 HYPERELASTIC_BOUNDS: Final[Mapping[str, Bounds]] = {"young": ("5 kPa", "2 MPa")}
 
 
+def usual_ranges(model: type[Material]) -> Mapping[str, Bounds]:
+    """The constants that are fitted unless others are named, with their ranges.
+
+    Examples
+    --------
+    >>> from voxsoft.materials import Ogden, Rigid
+    >>> usual_ranges(Ogden), usual_ranges(Rigid)
+    ({'young': ('5 kPa', '2 MPa')}, {})
+    """
+    if issubclass(model, Hyperelastic):
+        return HYPERELASTIC_BOUNDS
+    return DEFAULT_BOUNDS if issubclass(model, Lattice) else {}
+
+
 @dataclass(frozen=True)
 class Space:
     """Ranges of the constants that are searched; the others stay as the design has them.
@@ -75,7 +89,7 @@ class Space:
                 f'is "{material.model}"; a calibration fits moduli',
                 'give the parts { model = "lattice", edge = "20 kPa", bulk = "20 kPa" }',
             )
-        own = HYPERELASTIC_BOUNDS if isinstance(material, Hyperelastic) else DEFAULT_BOUNDS
+        own = usual_ranges(type(material))
         asked = own if parameters is None else parameters
         if not asked:
             raise MaterialError("parameters", "none is named", f"name {' or '.join(own)}")

@@ -5,15 +5,17 @@ from __future__ import annotations
 import os
 from functools import cache
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, get_args
 
 from voxsoft import metrics
 from voxsoft._core import __version__
+from voxsoft.calibration import usual_ranges
 from voxsoft.design import Design, families
-from voxsoft.materials import card_names, load_card
+from voxsoft.materials import Material, card_names, load_card
 from voxsoft.search.samplers import SAMPLERS, SINGLE_OBJECTIVE
 from voxsoft.studio import events
 from voxsoft.studio.protocol import PROTOCOL
+from voxsoft.units import UnitOf
 
 #: Fields that color the body, by the number that frames carry.
 FIELDS: Final = (
@@ -45,6 +47,7 @@ def hello(runs_folder: Path) -> events.Hello:
             for name, title in SAMPLERS.items()
         ],
         calibration_methods=["genetic", "gradient", "cma-es", "tpe", "random", "nsga-ii", "gp"],
+        fit_ranges=_fit_ranges(),
         methods=["auto", "xpbd", "statics"],
         metrics=[
             events.Metric(
@@ -59,6 +62,20 @@ def hello(runs_folder: Path) -> events.Hello:
         runs_folder=str(runs_folder),
         cores=os.cpu_count() or 1,
     )
+
+
+@cache
+def _fit_ranges() -> dict[str, list[events.FitRange]]:
+    modulus = UnitOf("modulus")
+    return {
+        model.model_fields["model"].default: [
+            events.FitRange(
+                name=name, kind="modulus", low=modulus.read(low), high=modulus.read(high)
+            )
+            for name, (low, high) in usual_ranges(model).items()
+        ]
+        for model in get_args(Material)
+    }
 
 
 @cache

@@ -70,8 +70,20 @@ class Metric(Entry):
     needs_cavity: bool
 
 
+class FitRange(Entry):
+    """A constant of a material that is fitted unless others are named, and its range, SI."""
+
+    name: str
+    kind: str
+    low: float
+    high: float
+
+
 class Hello(Event):
-    """First event: what this server can do. `design_schema` is the JSON Schema of a design."""
+    """First event: what this server can do. `design_schema` is the JSON Schema of a design.
+
+    `fit_ranges` holds by model of a material what a calibration fits.
+    """
 
     version: str
     protocol: int
@@ -80,6 +92,7 @@ class Hello(Event):
     materials: list[MaterialCard]
     samplers: list[Sampler]
     calibration_methods: list[str]
+    fit_ranges: dict[str, list[FitRange]]
     methods: list[str]
     metrics: list[Metric]
     fields: list[Field]
@@ -143,7 +156,6 @@ class Cavity(Entry):
     volume: float
     area: float
     center: Triple
-    leaks: int = 0
 
 
 class Leak(Entry):

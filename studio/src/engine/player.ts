@@ -106,6 +106,7 @@ export class Player {
       materials: [],
       samplers: [],
       calibration_methods: [],
+      fit_ranges: {},
       methods: ["xpbd"],
       metrics: [],
       fields: notes.fields,

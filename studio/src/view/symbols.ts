@@ -144,7 +144,7 @@ export class Symbols {
         labels.push({
           key: `cavity-${i}`,
           kind: "cavity",
-          text: `cavity ${i + 1} · ${formatQuantity(cavity.volume, "m^3", 3)}${cavity.leaks ? " · leaks" : ""}`,
+          text: `cavity ${i + 1} · ${formatQuantity(cavity.volume, "m^3", 3)}`,
           color: CAVITY_COLORS[i % CAVITY_COLORS.length] as string,
           at: fixed(cavity.center),
         });

@@ -1,13 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { CalibrateDraft } from "../../src/panes/calibrate/draft";
 import { bestPlane, fitPlane } from "../../src/panes/calibrate/plane";
-import {
-  calibrateSpec,
-  constantsOf,
-  modelOf,
-  obstacle,
-  withUnits,
-} from "../../src/panes/calibrate/setup";
+import { calibrateSpec, modelOf, obstacle, withUnits } from "../../src/panes/calibrate/setup";
 import type { MeasuredEvent } from "../../src/protocol";
 
 const DRAFT: CalibrateDraft = {
@@ -45,7 +39,10 @@ it("finds the model of the first part, whether card, own material or inline", ()
 });
 
 describe("a calibration", () => {
-  const lattice = constantsOf("lattice");
+  const lattice = [
+    { name: "edge", kind: "modulus", low: 1e3, high: 1e6 },
+    { name: "bulk", kind: "modulus", low: 2e3, high: 1e6 },
+  ];
   it("leaves the usual ranges to VoxSoft until one is changed", () => {
     expect(calibrateSpec(DRAFT, lattice)).not.toHaveProperty("bounds");
     const draft = {
@@ -63,6 +60,7 @@ describe("a calibration", () => {
     const bad = [{ severity: "error", where: "column s", what: "needs a unit", hint: "" }] as const;
     expect(obstacle(DRAFT, { "beam.csv": read([...bad]) }, lattice)).toMatch(/needs a unit/);
     expect(obstacle(DRAFT, { "beam.csv": read([]) }, lattice)).toBeNull();
+    expect(obstacle(DRAFT, { "beam.csv": read([]) }, [])).toMatch(/lattice or a hyperelastic/);
     const off = { on: false, low: null, high: null };
     const none = { ...DRAFT, bounds: { edge: off, bulk: off } };
     expect(obstacle(none, { "beam.csv": read([]) }, lattice)).toMatch(/at least one constant/);

@@ -69,10 +69,7 @@ export default function BodyPane() {
               <i className={`swatch cavity-${index % 6}`} />
               Cavity {index + 1}
             </span>
-            <span>
-              {formatQuantity(cavity.volume, "m^3")}
-              {cavity.leaks > 0 && <b className="bad"> leaks</b>}
-            </span>
+            <span>{formatQuantity(cavity.volume, "m^3")}</span>
           </div>
         ))}
         {body.leaks.map((leak) => (

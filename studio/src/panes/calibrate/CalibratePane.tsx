@@ -2,20 +2,20 @@
 
 import { useEffect } from "react";
 import { Button, Empty, Section, Select, Toggle } from "../../controls/Choice";
-import { formatKind } from "../../controls/kinds";
+import { writtenUnit } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
-import { parseQuantity } from "../../controls/units";
+import { RangeRow } from "../../controls/RangeRow";
+import type { FitRange } from "../../protocol";
 import { onReady, send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
-import { TextField } from "../design/TextField";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { JobChooser, useNewJob } from "../study/StudyPane";
 import { useCalibration } from "./current";
 import { askAgain, type Bound, useCalibrateDraft } from "./draft";
 import { Result } from "./Result";
-import { boundsOf, type Constant, calibrateSpec, constantsOf, modelOf, obstacle } from "./setup";
+import { boundsOf, calibrateSpec, modelOf, obstacle } from "./setup";
 import { Tables } from "./Tables";
 import "../design/design.css";
 import "../study/study.css";
@@ -46,7 +46,7 @@ export default function CalibratePane() {
     );
   }
   const material = modelOf(form.source, hello.materials);
-  const constants = constantsOf(material?.model ?? "");
+  const constants = hello.fit_ranges[material?.model ?? ""] ?? [];
   const probes = Object.keys((form.source.probes as object | undefined) ?? {}).length;
   const trouble = !document.valid
     ? "Mend the errors of the design first."
@@ -155,42 +155,21 @@ export default function CalibratePane() {
   );
 }
 
-function Fit(props: { constant: Constant }) {
-  const { name, kind, usual } = props.constant;
+function Fit(props: { constant: FitRange }) {
+  const { name, kind } = props.constant;
   const draft = useCalibrateDraft();
   const bound: Bound = draft.bounds[name] ?? { on: true, low: null, high: null };
-  const { low, high } = boundsOf(draft, name, usual);
-  const change = (next: Partial<Bound>) =>
-    useCalibrateDraft.setState({ bounds: { ...draft.bounds, [name]: { ...bound, ...next } } });
-  const set = (key: "low" | "high") => (text: string) => {
-    const read = parseQuantity(text, "kPa");
-    if ("problem" in read) return read.problem;
-    change({ [key]: read.value });
-    return null;
-  };
   return (
-    <div className="vary is-on">
-      <Toggle label={name} checked={bound.on} onChange={(on) => change({ on })} />
-      {!bound.on && <span className="vary-count muted">as the design has it</span>}
-      {bound.on && (
-        <div className="vary-range">
-          <TextField
-            bare
-            right
-            label={`${name} from`}
-            value={formatKind(low, kind, 8)}
-            onCommit={set("low")}
-          />
-          <span className="muted">to</span>
-          <TextField
-            bare
-            right
-            label={`${name} to`}
-            value={formatKind(high, kind, 8)}
-            onCommit={set("high")}
-          />
-        </div>
-      )}
-    </div>
+    <RangeRow
+      name={name}
+      kind={kind}
+      unit={writtenUnit(kind) || "1"}
+      on={bound.on}
+      note={bound.on ? "" : "as the design has it"}
+      {...boundsOf(draft, props.constant)}
+      onChange={(change) =>
+        useCalibrateDraft.setState({ bounds: { ...draft.bounds, [name]: { ...bound, ...change } } })
+      }
+    />
   );
 }

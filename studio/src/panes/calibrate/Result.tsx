@@ -1,12 +1,12 @@
 import { useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { formatKind } from "../../controls/kinds";
+import { TextField } from "../../controls/TextField";
 import type { CalibratedEvent } from "../../protocol";
 import { send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { edit } from "../design/edits";
 import type { Schema } from "../design/schema";
-import { TextField } from "../design/TextField";
 import { withUnits } from "./setup";
 
 /** What came out: the constants, whether the data fix them, and what can be done with them. */
@@ -29,7 +29,7 @@ export function Result(props: { result: CalibratedEvent; root: Schema }) {
             <span className={`badge ${badgeOf(one.identifiable)[0]}`}>
               {badgeOf(one.identifiable)[1]}
             </span>
-            <p className="muted">{one.sentence}</p>
+            {one.identifiable !== null && <p className="muted">{one.sentence}</p>}
           </div>
         ))}
         <p>

@@ -1,23 +1,8 @@
 // From what was chosen in the pane to the calibration that is asked of VoxSoft.
 import { siUnit } from "../../controls/kinds";
-import type { CalibrateSpec, MaterialCard, MeasuredEvent } from "../../protocol";
+import type { CalibrateSpec, FitRange, MaterialCard, MeasuredEvent } from "../../protocol";
 import { controlOf, resolve, type Schema } from "../design/schema";
 import type { CalibrateDraft } from "./draft";
-
-/** A constant of a material that can be fitted, with the range that VoxSoft takes by itself. */
-export interface Constant {
-  readonly name: string;
-  readonly kind: string;
-  /** SI; null where it is fitted only when asked for. */
-  readonly usual: readonly [number, number] | null;
-}
-
-// As voxsoft.calibration.DEFAULT_BOUNDS and HYPERELASTIC_BOUNDS have them.
-const LATTICE: readonly Constant[] = [
-  { name: "edge", kind: "modulus", usual: [1e3, 1e6] },
-  { name: "bulk", kind: "modulus", usual: [2e3, 1e6] },
-];
-const RUBBER: readonly Constant[] = [{ name: "young", kind: "modulus", usual: [5e3, 2e6] }];
 
 /** The model of the material that the first part is made of. */
 export function modelOf(
@@ -36,15 +21,11 @@ export function modelOf(
   return card ? { model: card.model, name: card.name } : null;
 }
 
-export function constantsOf(model: string): readonly Constant[] {
-  return model.startsWith("lattice") ? LATTICE : RUBBER;
-}
-
 /** Why a calibration cannot start, in words with a remedy; null where it can. */
 export function obstacle(
   draft: CalibrateDraft,
   measured: Readonly<Record<string, MeasuredEvent>>,
-  constants: readonly Constant[],
+  constants: readonly FitRange[],
 ): string | null {
   if (draft.files.length === 0) return "Drop a table of measured points first.";
   for (const file of draft.files) {
@@ -54,34 +35,34 @@ export function obstacle(
     if (problem) return `${file.name}: ${problem.what}.`;
   }
   const fitted = constants.filter((one) => draft.bounds[one.name]?.on ?? true);
+  if (constants.length === 0) {
+    return "Only a lattice or a hyperelastic material can be fitted; give one to the first part.";
+  }
   if (fitted.length === 0) return "Choose at least one constant to fit.";
-  for (const { name, usual } of fitted) {
-    const { low, high } = boundsOf(draft, name, usual);
-    if (!(low > 0 && low < high)) return `${name}: the range must be positive and not empty.`;
+  for (const constant of fitted) {
+    const { low, high } = boundsOf(draft, constant);
+    if (!(low > 0 && low < high))
+      return `${constant.name}: the range must be positive and not empty.`;
   }
   return null;
 }
 
-export function boundsOf(
-  draft: CalibrateDraft,
-  name: string,
-  usual: Constant["usual"],
-): { low: number; high: number } {
-  const bound = draft.bounds[name];
-  return { low: bound?.low ?? usual?.[0] ?? 0, high: bound?.high ?? usual?.[1] ?? 0 };
+export function boundsOf(draft: CalibrateDraft, usual: FitRange): { low: number; high: number } {
+  const bound = draft.bounds[usual.name];
+  return { low: bound?.low ?? usual.low, high: bound?.high ?? usual.high };
 }
 
 /** The calibration to ask for. */
 export function calibrateSpec(
   draft: CalibrateDraft,
-  constants: readonly Constant[],
+  constants: readonly FitRange[],
 ): CalibrateSpec {
   const changed = constants.some(({ name }) => draft.bounds[name] !== undefined);
   const bounds: Record<string, [number, number]> = {};
-  for (const { name, usual } of constants) {
-    if (!(draft.bounds[name]?.on ?? true)) continue;
-    const { low, high } = boundsOf(draft, name, usual);
-    bounds[name] = [low, high];
+  for (const constant of constants) {
+    if (!(draft.bounds[constant.name]?.on ?? true)) continue;
+    const { low, high } = boundsOf(draft, constant);
+    bounds[constant.name] = [low, high];
   }
   return {
     kind: "calibrate",

@@ -2,6 +2,7 @@
 import { type ReactNode, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
+import { TextField } from "../../controls/TextField";
 import { useStudio } from "../../store/studio";
 import { edit, problemsAt, replaceText } from "./edits";
 import { useForm } from "./form";
@@ -10,7 +11,6 @@ import { NAME, type Named, renamed } from "./rename";
 import { swapped, TableFields } from "./SchemaField";
 import { controlOf, resolve, type Schema, summary } from "./schema";
 import { freeName, starter } from "./starters";
-import { TextField } from "./TextField";
 
 export type Table = Readonly<Record<string, unknown>>;
 

@@ -1,13 +1,13 @@
 // What a study strives for and what it must keep: metrics at probes.
 import { Select } from "../../controls/Choice";
 import { readWritten } from "../../controls/kinds";
+import { TextField } from "../../controls/TextField";
 import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { EntryMap, type Table } from "./Entries";
 import { edit } from "./edits";
 import { useForm } from "./form";
 import { labelOf } from "./schema";
-import { TextField } from "./TextField";
 
 const AXES = [
   { value: "", label: "magnitude" },

@@ -1,12 +1,12 @@
 import { Button } from "../../controls/Choice";
 import { readWritten, siUnit } from "../../controls/kinds";
+import { TextField } from "../../controls/TextField";
 import { formatQuantity } from "../../controls/units";
 import type { Parameter } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { edit, replaceText } from "./edits";
 import { useForm } from "./form";
 import { NAME, renamed } from "./rename";
-import { TextField } from "./TextField";
 
 /** What is behind the menu of a parameter: its name, its range and step, and what it means. */
 export function ParameterDetails(props: { parameter: Parameter; onDone(): void }) {

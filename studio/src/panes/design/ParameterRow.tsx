@@ -2,6 +2,7 @@ import { useEffect, useRef, useState } from "react";
 import { Button } from "../../controls/Choice";
 import { readWritten, siUnit, writeValue } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
+import { TextField } from "../../controls/TextField";
 import { formatQuantity, parseQuantity } from "../../controls/units";
 import type { Parameter } from "../../protocol";
 import { showPane } from "../../shell/actions";
@@ -14,7 +15,6 @@ import { Glyph } from "./Glyph";
 import { lock, useLocked } from "./locks";
 import { Menu, type MenuPlace } from "./Menu";
 import { ParameterDetails } from "./ParameterDetails";
-import { TextField } from "./TextField";
 
 /** Where the value of a parameter is written: a table has it inside. */
 function valuePath(source: Readonly<Record<string, unknown>>, name: string): (string | number)[] {

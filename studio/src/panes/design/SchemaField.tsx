@@ -2,6 +2,7 @@
 import { type ReactNode, useState } from "react";
 import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
+import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
 import { edit, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
@@ -18,7 +19,6 @@ import {
   summary,
 } from "./schema";
 import { changeVariant, starter, variantStarter } from "./starters";
-import { TextField } from "./TextField";
 
 export interface SchemaFieldProps {
   path: Path;

@@ -1,16 +1,16 @@
 // Set a study up, start it, and see how far it is.
 import { useEffect, useRef } from "react";
-import { Button, Empty, Section, Select, Toggle } from "../../controls/Choice";
-import { formatKind, siUnit } from "../../controls/kinds";
+import { Button, Empty, Section, Select } from "../../controls/Choice";
+import { formatKind } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
-import { parseQuantity } from "../../controls/units";
+import { RangeRow } from "../../controls/RangeRow";
+import { TextField } from "../../controls/TextField";
 import type { JobEvent } from "../../protocol";
 import { usePage } from "../../store/page";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { FormContext } from "../design/form";
 import { Goals } from "../design/Goals";
-import { TextField } from "../design/TextField";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { jobsOf, useJob, useStudy } from "./current";
@@ -189,76 +189,24 @@ function Vary(props: { choice: Choice; grid: boolean }) {
   const { parameter, on, sweep, problem } = props.choice;
   const { name, kind } = parameter;
   const count = countOf(sweep);
-  const set = (key: "low" | "high") => (text: string) => {
-    const read = parseQuantity(text, parameter.display_unit || "1");
-    if ("problem" in read) return read.problem;
-    changeRange(name, { [key]: read.value });
-    return null;
-  };
-  const setStep = (text: string) => {
-    if (text.trim() === "" || text.trim() === "–") {
-      changeRange(name, { step: null });
-      return null;
-    }
-    const read = parseQuantity(text, parameter.display_unit || "1");
-    if ("problem" in read) return read.problem;
-    changeRange(name, { step: read.value });
-    return null;
-  };
+  const values = count === null ? "any value" : count === 1 ? "1 value" : `${count} values`;
   return (
-    <div className={`vary${on ? " is-on" : ""}`} data-testid={`vary-${name}`}>
-      <Toggle
-        label={name}
-        title={parameter.description}
-        checked={on}
-        onChange={(next) => toggleSweep(name, next)}
-      />
-      {on ? (
-        <span className="vary-count muted">
-          {count === null ? "any value" : count === 1 ? "1 value" : `${count} values`}
-        </span>
-      ) : (
-        <span className="vary-count muted">{formatKind(parameter.value, kind)}</span>
-      )}
-      {on && (
-        <div className="vary-range">
-          <TextField
-            bare
-            right
-            label={`${name} from`}
-            value={formatKind(sweep.low, kind, 8)}
-            problem={problem ?? undefined}
-            onCommit={set("low")}
-          />
-          <span className="muted">to</span>
-          <TextField
-            bare
-            right
-            label={`${name} to`}
-            value={formatKind(sweep.high, kind, 8)}
-            problem={problem ?? undefined}
-            onCommit={set("high")}
-          />
-          <span className="muted">by</span>
-          <TextField
-            bare
-            right
-            label={`${name} step`}
-            title="Empty it for any value in between."
-            value={sweep.step === null ? "–" : formatKind(sweep.step, kind, 8)}
-            onCommit={setStep}
-          />
-        </div>
-      )}
-      {on && sweep.step === null && siUnit(kind) !== "1" && !props.grid && (
-        <Toggle
-          label="in decades"
-          title="For moduli and other quantities that span powers of ten."
-          checked={sweep.log}
-          onChange={(log) => changeRange(name, { log })}
-        />
-      )}
-      {on && problem && <p className="field-note bad">{problem}</p>}
-    </div>
+    <RangeRow
+      name={name}
+      kind={kind}
+      unit={parameter.display_unit || "1"}
+      title={parameter.description}
+      on={on}
+      note={on ? values : formatKind(parameter.value, kind)}
+      low={sweep.low}
+      high={sweep.high}
+      step={sweep.step}
+      {...(sweep.step === null && !props.grid ? { log: sweep.log } : {})}
+      problem={problem ?? undefined}
+      onChange={({ on: wanted, ...change }) => {
+        if (wanted === undefined) changeRange(name, change);
+        else toggleSweep(name, wanted);
+      }}
+    />
   );
 }
