@@ -2,7 +2,10 @@
 
 import asyncio
 import json
+import signal
 import struct
+import subprocess
+import sys
 import threading
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -119,16 +122,65 @@ class Studio:
         self._thread.join(20)
         assert not self._thread.is_alive()
 
-    @asynccontextmanager
-    async def page(self, hello=True, **options):
-        url = f"ws://127.0.0.1:{self.port}/ws?token={self.token}"
-        settings = {"origin": self.origin, "max_size": None, **options}
-        async with websockets.connect(url, **settings) as socket:
-            page = Page(socket)
-            if hello:
-                await page.send("hello", protocol=PROTOCOL)
-                await page.until("document", ack=False)
-            yield page
+    def page(self, hello=True, **options):
+        return visited(self.port, self.token, hello=hello, **options)
+
+
+@asynccontextmanager
+async def visited(port, token, hello=True, **options):
+    """A tab of the studio at a port."""
+    url = f"ws://127.0.0.1:{port}/ws?token={token}"
+    settings = {"origin": f"http://127.0.0.1:{port}", "max_size": None, **options}
+    async with websockets.connect(url, **settings) as socket:
+        page = Page(socket)
+        if hello:
+            await page.send("hello", protocol=PROTOCOL)
+            await page.until("document", ack=False)
+        yield page
+
+
+SERVE = """
+import sys
+from pathlib import Path
+from voxsoft.studio.server import StudioServer
+server = StudioServer(Path(sys.argv[1]), runs=Path(sys.argv[2]), port=0, token="token")
+server.run(lambda address: print(server.port, flush=True))
+"""
+
+
+class OwnProcess:
+    """A server in a process of its own, which a test may kill or interrupt."""
+
+    def __init__(self, source, runs):
+        command = [sys.executable, "-c", SERVE, str(source), str(runs)]
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        )
+        self.port = int(self.process.stdout.readline())
+
+    def page(self, **options):
+        return visited(self.port, "token", **options)
+
+    def end(self, how, seconds=60):
+        """Send a signal and wait; returns the exit code and what was written to stderr."""
+        self.process.send_signal(how)
+        _, said = self.process.communicate(timeout=seconds)
+        return self.process.returncode, said
+
+
+@pytest.fixture
+def in_own_process(tmp_path):
+    """Start studios in processes of their own, with runs in a folder of the test."""
+    started = []
+
+    def start(source, runs=None):
+        started.append(OwnProcess(source, runs or tmp_path / "runs"))
+        return started[-1]
+
+    yield start
+    for studio in started:
+        if studio.process.poll() is None:
+            studio.end(signal.SIGKILL)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
-from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.document import MOST_DOCUMENTS, DesignDocument
 from voxsoft.studio.edits import with_value
 from voxsoft.studio.positions import span_of
 
@@ -151,6 +151,31 @@ def test_a_slider_that_was_dragged_back_leaves_nothing_to_undo():
         edited.edit(["parameters", "radius", "value"], size, now=4.0 + 0.1 * step)
     assert edited.undo()
     assert edited.text == CYLINDER
+
+
+def test_documents_with_unsaved_changes_are_led_back_to_the_newest_first():
+    first, clean, second, third = (document(f"{CYLINDER}# {i}") for i in range(4))
+    clean.saved = clean.text
+    for later, earlier in ((clean, first), (second, clean), (third, second)):
+        later.follow(earlier)
+    assert third.rev > second.rev > clean.rev > first.rev
+    assert (third.before, second.before, first.before) == (second, first, None)
+    assert first.after is second
+    assert third.event().can_undo
+    first.replace(CYLINDER)
+    assert first.after is None
+
+
+def test_only_so_many_documents_are_kept_open():
+    newest = document("a = 0")
+    for number in range(MOST_DOCUMENTS + 5):
+        following = document(f"a = {number + 1}")
+        following.follow(newest)
+        newest = following
+    kept = 0
+    while newest.before is not None:
+        newest, kept = newest.before, kept + 1
+    assert kept == MOST_DOCUMENTS
 
 
 def test_saving_needs_a_name_of_a_design_file(tmp_path):

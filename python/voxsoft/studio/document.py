@@ -24,6 +24,8 @@ ONE_CHANGE: Final = 1.0
 LONGEST_HISTORY: Final = 500
 #: How much text the history may hold [characters].
 LARGEST_HISTORY: Final = 50_000_000
+#: How many documents before it undo can lead back to.
+MOST_DOCUMENTS: Final = 20
 
 
 @dataclass
@@ -46,6 +48,9 @@ class DesignDocument:
         That of the last text that was good, or None if there was none.
     diagnostics
         What is wrong with the text as it stands.
+    before, after
+        Documents that were open before this one, with changes that were not saved, and after it:
+        undo and redo lead there at the ends of this one's own changes.
     """
 
     text: str
@@ -57,6 +62,8 @@ class DesignDocument:
     source: PlainDocument | None = None
     diagnostics: list[events.Diagnostic] = field(default_factory=list)
     saved: str | None = None
+    before: DesignDocument | None = field(default=None, repr=False)
+    after: DesignDocument | None = field(default=None, repr=False)
     _former: dict[str, float] | None = None
     _undo: list[str] = field(default_factory=list)
     _redo: list[str] = field(default_factory=list)
@@ -124,6 +131,7 @@ class DesignDocument:
             place = None
         self._last_place, self._last_time = place, now
         self._redo.clear()
+        self.after = None
         self._become(text)
         return True
 
@@ -145,9 +153,18 @@ class DesignDocument:
         """Make the change again that was taken back last; returns whether there was one."""
         return self._swap(self._redo, self._undo)
 
-    def remember(self, text: str) -> None:
-        """Let undo lead to a text that was there before this document."""
-        self._undo.append(text)
+    def follow(self, other: DesignDocument) -> None:
+        """Take the place of another document, to which undo leads if it holds unsaved changes."""
+        self.rev = other.rev + 1
+        unsaved = other.dirty and other.text != self.text
+        self.before = other if unsaved else other.before
+        if self.before is not None:
+            self.before.after = self
+        oldest: DesignDocument | None = self
+        for _ in range(MOST_DOCUMENTS):
+            oldest = None if oldest is None else oldest.before
+        if oldest is not None:
+            oldest.before = None
 
     def save(self, path: Path | None = None) -> Path:
         """Write the text to its file, or to another, which is its file from then on.
@@ -187,8 +204,8 @@ class DesignDocument:
             design=None if design is None else design.model_dump(by_alias=True, exclude_none=True),
             source=self.source,
             diagnostics=self.diagnostics,
-            can_undo=bool(self._undo),
-            can_redo=bool(self._redo),
+            can_undo=bool(self._undo) or self.before is not None,
+            can_redo=bool(self._redo) or self.after is not None,
         )
 
     def _swap(self, taken: list[str], given: list[str]) -> bool:

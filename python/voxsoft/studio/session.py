@@ -9,12 +9,10 @@ import re
 import shutil
 import threading
 import uuid
-from contextlib import suppress
 from functools import singledispatchmethod
 from pathlib import Path
 from typing import Any, Final
 
-from voxsoft.design import families
 from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.cards import load_card_file, save_card
 from voxsoft.files.run_folder import make_folder
@@ -26,22 +24,25 @@ from voxsoft.studio.catalog import hello
 from voxsoft.studio.compared import compared
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.drafts import Draft, Drafts
-from voxsoft.studio.edits import with_value
 from voxsoft.studio.engine import Engine
 from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.mesher import Mesher
+from voxsoft.studio.opening import (
+    document_at,
+    template_document,
+    trial_document,
+    uploaded_document,
+)
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
-from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
 from voxsoft.studio.task import DESIGN, Table, Task
-from voxsoft.studio.uploads import design_of_array, design_of_mesh, safe_name, unpack_folder
-from voxsoft.units import format_quantity
+from voxsoft.studio.uploads import safe_name, unpack_folder
 
 #: Folder of the studio's own files below the runs.
 OWN_FOLDER: Final = ".studio"
@@ -51,7 +52,6 @@ _KIND_NAMES: Final[dict[type, str]] = {
     commands.StudySpec: "study",
     commands.CalibrateSpec: "calibration",
 }
-_HEAVY: Final = (".stl", ".obj", ".ply")
 
 
 class Session:
@@ -173,12 +173,18 @@ class Session:
     @_obey.register
     def _(self, command: commands.Undo, tab: Tab) -> None:
         self._author = tab
-        self._changed(self.document.undo())
+        if self.document.undo():
+            self._announce()
+        elif self.document.before is not None:
+            self._turn_to(self.document.before)
 
     @_obey.register
     def _(self, command: commands.Redo, tab: Tab) -> None:
         self._author = tab
-        self._changed(self.document.redo())
+        if self.document.redo():
+            self._announce()
+        elif self.document.after is not None:
+            self._turn_to(self.document.after)
 
     @_obey.register
     def _(self, command: commands.Save, tab: Tab) -> None:
@@ -193,78 +199,58 @@ class Session:
         self._author = tab
         match command.what:
             case "template":
-                text = families.family_text(command.name)
-                self._open(DesignDocument(text, f"{command.name}.toml", folder=self.runs.parent))
+                self._open(template_document(command.name, self._home))
             case "file":
-                self._open(self._document_of(Path(command.name)))
+                self._open(document_at(Path(command.name), self._home))
             case "upload":
                 self._open_upload(command.name)
             case "run":
                 self._open_run(self.list.folder_of(command.name))
             case "trial":
-                self._open_trial(command.name)
+                run, _, number = command.name.rpartition("/")
+                document, at_rest = trial_document(self.list.folder_of(run), number, self._home)
+                self._open(document, loaded=at_rest)
+
+    @property
+    def _home(self) -> Path:
+        """Where documents that have no file would be saved."""
+        return self.runs.parent
 
     def _open(self, document: DesignDocument, *, loaded: bool = False) -> None:
-        """Show another document, at rest where asked; undo brings back the one before."""
-        before = self.document
-        document.rev = before.rev + 1
-        if before.dirty and before.text != document.text:
-            document.remember(before.text)
-        self.document = document
+        """Show another document, at rest where asked; undo leads back to the one before."""
+        document.follow(self.document)
         self._loaded_rev = document.rev if loaded else None
+        self._show(document)
+
+    def _turn_to(self, document: DesignDocument) -> None:
+        """Show a document again that was open before."""
+        document.rev = self.document.rev + 1
+        self._show(document)
+
+    def _show(self, document: DesignDocument) -> None:
+        self.document = document
         self.engine.forget()
         self._announce()
 
     def _open_upload(self, name: str) -> None:
         file = self.own / "uploads" / safe_name(name)
-        suffix = file.suffix
         if not file.is_file():
             raise FileError(name, "was not uploaded", "drop the file on the page again")
-        if suffix == ".toml":
-            opened = DesignDocument.of_file(file)
-            opened.path, opened.saved = None, None
-            opened.folder = self.runs.parent
-            self._open(opened)
-        elif suffix in _HEAVY:
-            text = design_of_mesh(file)
-            self._open(DesignDocument(text, f"{file.stem}.toml", folder=self.runs.parent))
-        elif suffix == ".npy":
-            text = design_of_array(file)
-            self._open(DesignDocument(text, f"{file.stem}.toml", folder=self.runs.parent))
-        elif suffix == ".zip":
+        if file.suffix == ".zip":
             folder = unpack_folder(file, self._free_folder(file.stem))
-            self._open(self._document_of(folder))
+            self._open(document_at(folder, self._home))
         else:
-            raise FileError(name, "holds measurements", "open it in the Calibrate pane")
+            self._open(uploaded_document(file, self._home))
 
     def _open_run(self, folder: Path) -> None:
         kind = kind_of(folder)
         try:
-            self._open(self._document_of(folder), loaded=kind == "run")
+            self._open(document_at(folder, self._home), loaded=kind == "run")
         except FileError as error:
             if kind != "calibrate":
                 raise
             # One that `voxsoft calibrate` wrote: there is still its result to be shown.
             self.tabs.tell(events.Log(level="info", text=str(error)))
-
-    def _open_trial(self, name: str) -> None:
-        """Open the design of one trial: that of its study, with the trial's parameters."""
-        run, _, number = name.rpartition("/")
-        folder = self.list.folder_of(run)
-        trial = stored_trial(folder, number)
-        document = self._document_of(folder)
-        design = document.design
-        if design is None:
-            raise FileError(name, "belongs to a design that cannot be read")
-        text = document.text
-        for parameter, value in trial.parameters.items():
-            kind = design.parameters[parameter].kind
-            shown = format_quantity(value, kind) if isinstance(value, float) else value
-            table = (document.source or {}).get("parameters", {}).get(parameter)
-            inner = ["value"] if isinstance(table, dict) else []
-            text = with_value(text, ["parameters", parameter, *inner], shown)
-        opened = DesignDocument(text, f"{run}-{number}.toml", folder=document.folder)
-        self._open(opened, loaded=trial.status == "ok")
 
     # Jobs
 
@@ -392,9 +378,11 @@ class Session:
 
     def _keep_draft(self, *, now: bool = False) -> None:
         """Keep what is not saved, within a second; what was kept before goes once it is saved."""
-        document = self.document
+        document: DesignDocument | None = self.document
+        while document is not None and not document.dirty:
+            document = document.before
         draft = None
-        if document.dirty:
+        if document is not None:
             draft = Draft(document.text, document.name, str(document.path or ""))
         try:
             self._drafts.keep(draft, now=now)
@@ -475,31 +463,24 @@ class Session:
     def _first_document(self, source: Path | None) -> DesignDocument:
         """What to begin with: the source, with what was not saved of it; the draft; a template."""
         draft = self._drafts.read()
-        if source is None and draft is None:
-            text = families.family_text("cylinder")
-            return DesignDocument(text, "cylinder.toml", folder=self.runs.parent, saved=text)
-        known = draft.file if draft is not None else None
-        if source is None and known is None:
-            assert draft is not None
-            return DesignDocument(draft.text, draft.name, folder=self.runs.parent)
-        document = self._document_of(source or known or Path())
-        same = known is not None and known == document.path
-        if draft is not None and same and document.replace(draft.text):
-            self._notes.append("Changes that were not saved are back; undo goes to the file.")
+        if draft is None:
+            if source is not None:
+                return document_at(source, self._home)
+            document = template_document("cylinder", self._home)
+            document.saved = document.text
+            return document
+        file = draft.file
+        if source is None and file is None:
+            return DesignDocument(draft.text, draft.name, folder=self._home)
+        document = document_at(source or file or Path(), self._home)
+        if file is not None and file == document.path:
+            if document.replace(draft.text):
+                self._notes.append("Changes that were not saved are back; undo goes to the file.")
+        else:
+            unsaved = DesignDocument(draft.text, draft.name, folder=self._home)
+            if file is not None:
+                unsaved = DesignDocument.of_file(file)
+                unsaved.replace(draft.text)
+            document.follow(unsaved)
+            self._notes.append(f"Changes of {draft.name} were not saved; undo leads to them.")
         return document
-
-    def _document_of(self, path: Path) -> DesignDocument:
-        """Open a design file, or the design of a run folder as a new document."""
-        if not path.is_dir():
-            return DesignDocument.of_file(path)
-        file, name = path / DESIGN, f"{path.name}.toml"
-        with suppress(VoxSoftError):  # a folder that the studio did not write
-            task = Task.read(path)
-            return DesignDocument(task.design, name, folder=Path(task.base))
-        if not file.is_file() and (path / "study.json").is_file():
-            return DesignDocument(design_text_of(path), name, folder=self.runs.parent)
-        if not file.is_file():
-            raise FileError(str(path), "is no run folder: it holds no design.toml")
-        opened = DesignDocument.of_file(file)
-        opened.path, opened.saved, opened.name = None, None, name
-        return opened

@@ -2,6 +2,7 @@ import { useEffect } from "react";
 import { PANES } from "../panes/registry";
 import { openSheet } from "../store/page";
 import { useStudio } from "../store/studio";
+import { finishTyping } from "../store/typing";
 import { listenForKeys, provideDock } from "./actions";
 import { Dock, resetLayout, showPane } from "./Dock";
 import { DropZone } from "./DropZone";
@@ -19,12 +20,17 @@ export function App() {
   useEffect(() => {
     if (wantsTour()) openSheet("tour");
     const warn = (event: BeforeUnloadEvent) => {
+      finishTyping();
       const { document, link } = useStudio.getState();
       // The server keeps a draft of each edit; without a connection nobody does.
       if (document?.dirty && link.state !== "open") event.preventDefault();
     };
     addEventListener("beforeunload", warn);
-    return () => removeEventListener("beforeunload", warn);
+    addEventListener("pagehide", finishTyping);
+    return () => {
+      removeEventListener("beforeunload", warn);
+      removeEventListener("pagehide", finishTyping);
+    };
   }, []);
   return (
     <div className="app">

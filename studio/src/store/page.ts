@@ -1,6 +1,7 @@
 // What belongs to this page alone: mode, theme, open sheets. Kept between visits; the mode
 // stands in the address, so that a reload or a copied address shows the same.
 import { create } from "zustand";
+import { finishTyping } from "./typing";
 
 export const MODES = ["design", "simulate", "calibrate", "optimize", "runs"] as const;
 export type Mode = (typeof MODES)[number];
@@ -64,6 +65,7 @@ export const usePage = create<Page>(() => ({
 }));
 
 export function setMode(mode: Mode): void {
+  finishTyping();
   usePage.setState({ mode });
 }
 

@@ -3,6 +3,7 @@ import type { Draft, Engine } from "../engine/engine";
 import type { Frame, Smooth, Topology } from "../engine/frames";
 import { calmed } from "./calm";
 import { apply, toast, useStudio } from "./studio";
+import { flushText } from "./typing";
 
 /** What draws bodies; the viewport registers itself here. */
 export interface Stage {
@@ -66,8 +67,19 @@ export function present(next: Stage): void {
   if (lastFrame) next.frame(lastFrame);
 }
 
+/** Commands that speak of the document, which must hold what was typed by then. */
+const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
+  "edit",
+  "undo",
+  "redo",
+  "open",
+  "save",
+  "job_start",
+]);
+
 /** Send a command; gives its number, or 0 with a message where there is no connection. */
 export function send(draft: Draft): number {
+  if (ON_DOCUMENT.has(draft.t)) flushText();
   const seq = engine?.send(draft) ?? 0;
   if (seq > 0) {
     sentAt.set(seq, performance.now());

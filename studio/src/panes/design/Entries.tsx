@@ -3,7 +3,7 @@ import { type ReactNode, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
-import { useStudio } from "../../store/studio";
+import { textNow } from "../../store/typing";
 import { edit, problemsAt, replaceText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
@@ -247,8 +247,7 @@ export function NameField(props: { section: Named; name: string; taken: readonly
       onCommit={(name) => {
         if (!NAME.test(name)) return "letters, digits, _ and - only";
         if (props.taken.includes(name)) return `“${name}” is taken`;
-        const text = useStudio.getState().document?.text ?? "";
-        replaceText(renamed(text, props.section, props.name, name));
+        replaceText(renamed(textNow(), props.section, props.name, name));
         return null;
       }}
     />

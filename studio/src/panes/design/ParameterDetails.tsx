@@ -3,7 +3,7 @@ import { readWritten, siUnit } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatQuantity } from "../../controls/units";
 import type { Parameter } from "../../protocol";
-import { useStudio } from "../../store/studio";
+import { textNow } from "../../store/typing";
 import { edit, replaceText } from "./edits";
 import { useForm } from "./form";
 import { NAME, renamed } from "./rename";
@@ -41,8 +41,7 @@ export function ParameterDetails(props: { parameter: Parameter; onDone(): void }
         onCommit={(name) => {
           if (!NAME.test(name)) return "letters, digits, _ and - only";
           if (name in ((source.parameters as object | undefined) ?? {})) return "is taken";
-          const text = useStudio.getState().document?.text ?? "";
-          replaceText(renamed(text, "parameters", parameter.name, name));
+          replaceText(renamed(textNow(), "parameters", parameter.name, name));
           return null;
         }}
       />

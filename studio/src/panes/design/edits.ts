@@ -2,25 +2,15 @@
 import type { Diagnostic, OpenCommand } from "../../protocol";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
+import { flushText } from "../../store/typing";
 
 export type Path = readonly (string | number)[];
 
 /** Shortest time between two changes while a slider moves, ms. */
 const SPACING = 60;
 
-let flushText: () => void = () => {};
-
-/** The text editor says here how to hand over what was typed and not yet sent. */
-export function beforeEdits(flush: () => void): () => void {
-  flushText = flush;
-  return () => {
-    flushText = () => {};
-  };
-}
-
 /** Set one value of the document; null removes it. */
 export function edit(path: Path, value: unknown): void {
-  flushText();
   const rev = useStudio.getState().document?.rev ?? 0;
   send({ t: "edit", rev, path: [...path], value });
 }
@@ -34,7 +24,6 @@ export function replaceText(text: string): void {
 
 /** Open another document; undo brings the one before back, so nothing is asked. */
 export function openHere(what: OpenCommand["what"], name: string): void {
-  flushText();
   send({ t: "open", what, name });
 }
 

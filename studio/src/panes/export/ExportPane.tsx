@@ -2,11 +2,13 @@ import { useState } from "react";
 import { Button, Select } from "../../controls/Choice";
 import type { ErrorEvent, ExportedEvent } from "../../protocol";
 import { toast, useStudio } from "../../store/studio";
+import { flushText } from "../../store/typing";
 import { Glyph } from "../design/Glyph";
 import { FORMATS, type Format, type Options, obstacle, request, UNITS, type Unit } from "./formats";
 import "./export.css";
 
 async function fetchFile(format: Format, options: Options): Promise<void> {
+  flushText();
   const reply = await fetch("/export", {
     method: "POST",
     headers: { "Content-Type": "application/json" },

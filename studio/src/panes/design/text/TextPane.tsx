@@ -4,7 +4,7 @@ import { useEffect, useRef, useState } from "react";
 import { Empty } from "../../../controls/Choice";
 import { send } from "../../../store/session";
 import { useStudio } from "../../../store/studio";
-import { beforeEdits } from "../edits";
+import { provideTyping } from "../../../store/typing";
 import { makeEditor, showDiagnostics, showText } from "./editor";
 import "./text.css";
 
@@ -59,20 +59,19 @@ function Text() {
         timer.current = setTimeout(flush, REST);
       },
       apply: flush,
-      undo() {
-        flush();
-        sent.current = null;
-        send({ t: "undo" });
-      },
-      redo() {
-        flush();
-        sent.current = null;
-        send({ t: "redo" });
-      },
+      undo: () => send({ t: "undo" }),
+      redo: () => send({ t: "redo" }),
     });
     view.current = made;
     showDiagnostics(made, useStudio.getState().document?.diagnostics ?? []);
-    const forget = beforeEdits(flush);
+    const forget = provideTyping({
+      flush() {
+        flush();
+        // Something else is asked now, and its answer is to be shown.
+        sent.current = null;
+      },
+      text: () => pending.current,
+    });
     return () => {
       flush();
       forget();

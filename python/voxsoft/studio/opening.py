@@ -1,0 +1,97 @@
+"""Documents from what a user opens: files, run folders, trials, and files dropped on the page."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import Final
+
+from voxsoft.design import families
+from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.studio.document import DesignDocument
+from voxsoft.studio.edits import with_value
+from voxsoft.studio.studying import design_text_of, stored_trial
+from voxsoft.studio.task import DESIGN, Task
+from voxsoft.studio.uploads import design_of_array, design_of_mesh
+from voxsoft.units import format_quantity
+
+_MESHES: Final = (".stl", ".obj", ".ply")
+
+
+def template_document(name: str, home: Path) -> DesignDocument:
+    """A shipped family of designs, as a new document that would be saved in the folder `home`.
+
+    Raises
+    ------
+    VoxSoftError
+        There is no such family.
+    """
+    return DesignDocument(families.family_text(name), f"{name}.toml", folder=home)
+
+
+def document_at(path: Path, home: Path) -> DesignDocument:
+    """A design file, or the design of a run folder as a new document.
+
+    Raises
+    ------
+    FileError
+        It cannot be read, or the folder holds no design.
+    """
+    if not path.is_dir():
+        return DesignDocument.of_file(path)
+    file, name = path / DESIGN, f"{path.name}.toml"
+    with suppress(VoxSoftError):  # a folder that the studio did not write
+        task = Task.read(path)
+        return DesignDocument(task.design, name, folder=Path(task.base))
+    if not file.is_file() and (path / "study.json").is_file():
+        return DesignDocument(design_text_of(path), name, folder=home)
+    if not file.is_file():
+        raise FileError(str(path), "is no run folder: it holds no design.toml")
+    opened = DesignDocument.of_file(file)
+    opened.path, opened.saved, opened.name = None, None, name
+    return opened
+
+
+def uploaded_document(file: Path, home: Path) -> DesignDocument:
+    """A file that was dropped on the page, as a new document.
+
+    Raises
+    ------
+    VoxSoftError
+        It is not what its name says, or holds no shape.
+    """
+    if file.suffix == ".toml":
+        opened = DesignDocument.of_file(file)
+        opened.path, opened.saved, opened.folder = None, None, home
+        return opened
+    if file.suffix in _MESHES:
+        text = design_of_mesh(file)
+    elif file.suffix == ".npy":
+        text = design_of_array(file)
+    else:
+        raise FileError(file.name, "holds measurements", "open it in the Calibrate pane")
+    return DesignDocument(text, f"{file.stem}.toml", folder=home)
+
+
+def trial_document(folder: Path, number: str, home: Path) -> tuple[DesignDocument, bool]:
+    """The design of a study with the parameters of one trial, and whether that came to rest.
+
+    Raises
+    ------
+    VoxSoftError
+        There is no such trial, or the design of the study cannot be read.
+    """
+    trial = stored_trial(folder, number)
+    document = document_at(folder, home)
+    design = document.design
+    if design is None:
+        raise FileError(f"{folder.name}/{number}", "belongs to a design that cannot be read")
+    text = document.text
+    for parameter, value in trial.parameters.items():
+        kind = design.parameters[parameter].kind
+        shown = format_quantity(value, kind) if isinstance(value, float) else value
+        table = (document.source or {}).get("parameters", {}).get(parameter)
+        inner = ["value"] if isinstance(table, dict) else []
+        text = with_value(text, ["parameters", parameter, *inner], shown)
+    name = f"{folder.name}-{number}.toml"
+    return DesignDocument(text, name, folder=document.folder), trial.status == "ok"

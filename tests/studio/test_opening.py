@@ -1,0 +1,93 @@
+"""One document after another: what was not saved stays, also over a restart."""
+
+import signal
+
+from own_loop import run
+
+from voxsoft.design import families
+
+CYLINDER = families.family_text("cylinder")
+RADIUS = ["parameters", "radius", "value"]
+
+
+def arm_and_leg(folder):
+    files = folder / "arm.toml", folder / "leg.toml"
+    for file in files:
+        file.write_text(CYLINDER.replace('"cylinder"', f'"{file.stem}"', 1))
+    return files
+
+
+def test_undo_leads_back_to_the_document_before_with_its_own_file(make_studio, tmp_path):
+    arm, leg = arm_and_leg(tmp_path)
+    studio = make_studio(arm)
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.send("edit", rev=1, path=RADIUS, value="20 mm")
+            await page.until("document", lambda d: d.dirty)
+            await page.send("open", what="file", name=str(leg))
+            opened = await page.until("document", lambda d: d.name == "leg.toml")
+            assert opened.can_undo
+            await page.send("undo")
+            back = await page.until("document", lambda d: d.name == "arm.toml")
+            assert '"20 mm"' in back.text
+            assert (back.dirty, back.can_undo, back.can_redo) == (True, True, True)
+            await page.send("save")
+            await page.until("saved")
+            await page.send("redo")
+            again = await page.until("document", lambda d: d.name == "leg.toml")
+            assert again.path == str(leg)
+
+    run(scenario())
+    assert '"20 mm"' in arm.read_text()
+    assert leg.read_text() == CYLINDER.replace('"cylinder"', '"leg"', 1)
+
+
+def test_unsaved_changes_of_another_file_are_led_to_by_undo_after_a_restart(make_studio, tmp_path):
+    arm, leg = arm_and_leg(tmp_path)
+    first = make_studio(arm)
+
+    async def change():
+        async with first.page() as page:
+            await page.send("edit", rev=1, path=RADIUS, value="20 mm")
+            await page.until("document", lambda d: d.dirty)
+
+    run(change())
+    first.stop()
+    make_studio(leg).stop()  # a look at another file must not cost the draft
+    second = make_studio(leg)
+
+    async def look():
+        async with second.page() as page:
+            await page.until("log", lambda log: "undo leads to them" in log.text)
+            assert next(e for e in page.log if e["t"] == "document")["name"] == "leg.toml"
+            await page.send("undo")
+            back = await page.until("document", lambda d: d.name == "arm.toml")
+            assert back.path == str(arm)
+            assert '"20 mm"' in back.text
+
+    run(look())
+
+
+def test_a_server_that_is_killed_has_kept_what_was_typed(make_studio, in_own_process, tmp_path):
+    arm, _ = arm_and_leg(tmp_path)
+    first = in_own_process(arm)
+
+    async def change():
+        async with first.page() as page:
+            await page.send("text", rev=1, text=CYLINDER.replace("25 mm", "22 mm", 1))
+            await page.until("document", lambda d: d.dirty)
+
+    run(change())
+    draft = tmp_path / "runs" / ".studio" / "draft.json"
+    while not draft.exists():
+        assert first.process.poll() is None
+    first.end(signal.SIGKILL)
+    second = make_studio(arm)
+
+    async def look():
+        async with second.page() as page:
+            await page.until("log", lambda log: "not saved are back" in log.text)
+            assert "22 mm" in next(e for e in page.log if e["t"] == "document")["text"]
+
+    run(look())
