@@ -239,7 +239,7 @@ def test_a_damaged_specimen_is_said(studio):
     folder.mkdir(parents=True)
     (folder / "design.toml").write_text(families.family_text("beam"))
     (folder / "shapes.csv").write_text("")
-    assert "no candidate came to rest" in asked(studio, "fit").json()["what"]
+    assert "holds no shape of its specimen" in asked(studio, "fit").json()["what"]
     for content in (b"", b"PK", b"\x93NUMPY"):
         (folder / "specimen.npz").write_bytes(content)
         assert "is damaged" in asked(studio, "fit").json()["what"]

@@ -73,7 +73,7 @@ def read_specimen(folder: Path, vertices: int) -> Floats:
     """
     file = folder / SPECIMEN
     if not file.is_file():
-        raise FileError(folder.name, "holds no simulated shape: no candidate came to rest yet")
+        raise FileError(folder.name, "holds no shape of its specimen yet")
     try:
         with np.load(file, allow_pickle=False) as content:
             positions: Floats = np.asarray(content["positions"], dtype=np.float64)

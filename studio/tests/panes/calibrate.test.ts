@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { CalibrateDraft } from "../../src/panes/calibrate/draft";
+import { marksOf } from "../../src/panes/calibrate/marksOf";
 import { bestPlane, fitPlane } from "../../src/panes/calibrate/plane";
 import { calibrateSpec, modelOf, obstacle, withUnits } from "../../src/panes/calibrate/setup";
 import type { MeasuredEvent } from "../../src/protocol";
@@ -118,4 +119,18 @@ it("looks at a shape from where it is widest, at one scale for both axes", () =>
   expect(fitted.scale).toBe(50);
   expect([fitted.toX(0), fitted.toX(2)]).toEqual([0, 100]);
   expect(fitted.toY(1)).toBeLessThan(fitted.toY(0));
+});
+
+it("says the error at each measured point in mm and in percent", () => {
+  const marks = marksOf([
+    {
+      name: "tip.csv",
+      measured: [[0.03, 0, -0.015]],
+      simulated: [[0.03, 0, -0.0125]],
+      error: [0.0025],
+      percent: [3.3333],
+    },
+  ]);
+  expect(marks.map((mark) => mark.text)).toEqual(["2.5 mm, 3.33 %"]);
+  expect(marks[0]?.title).toBe("tip.csv, station 1: off by 2.5 mm, 3.33 % of the sag");
 });

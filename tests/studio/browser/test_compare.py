@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from voxsoft import files, load
-from voxsoft.simulation import simulate
+from voxsoft.simulation import Setup, simulate
+from voxsoft.studio.stills import design_in
 from voxsoft.study import Study
 
 
@@ -172,3 +173,55 @@ class TestCompare:
         told.get_by_role("button", name="Try again").click()
         told.get_by_text("is not in the list of runs any more").wait_for()
         assert colors(settled(tab, LEFT)) > 200
+
+
+MEASURED = "s (mm),dz (mm)\n30,-10\n60,-30\n90,-52\n"
+
+
+class TestCalibrate:
+    def test_the_specimen_bends_beside_what_was_measured_while_it_is_fitted(
+        self, own_server, open_tab, tmp_path
+    ):
+        tab = open_tab(own_server.address, mode="calibrate")
+        tab.page.get_by_role("button", name="Open the cantilever beam").click()
+        tab.find("document-name").get_by_text("beam").wait_for()
+        file = tmp_path / "beam.csv"
+        file.write_text(MEASURED)
+        tab.find("measurement-file").set_input_files(file)
+        tab.find("measured").get_by_text("3 stations").wait_for()
+        for name, value in (("Generations", "500"), ("Population", "300")):
+            tab.page.get_by_role("textbox", name=name).fill(value)
+            tab.page.get_by_role("textbox", name=name).press("Enter")
+        tab.page.get_by_role("tab", name="Measured and simulated").click()
+        tab.find("calibrate-start").click()
+        words = tab.find("overlay-space").locator(".view-label")
+        words.nth(2).wait_for()
+        tab.find("color-bar").wait_for()  # the body is there
+        job = tab.find("job-calibrate")
+        assert job.get_attribute("data-state") == "running"
+        job.get_by_role("button", name="Pause").click()
+        tab.page.locator("[data-testid=job-calibrate][data-state=paused]").wait_for(timeout=60_000)
+        assert colors(settled(tab)) > 200
+        told = said_errors(tab)
+        assert told == words.all_inner_texts()
+        # The body lies where the best candidate lies: its largest displacement is that of the tip.
+        folder = own_server.runs / "beam-calibration"
+        with np.load(folder / "specimen.npz") as specimen:
+            rest = Setup.of(design_in(folder)).mesh.vertices
+            largest = 1e3 * np.linalg.norm(specimen["positions"] - rest, axis=1).max()
+        bar = "document.querySelector('[data-testid=color-bar]').innerText"
+        tab.until(f"{bar}.includes('{float(f'{largest:.3g}'):g} mm')")
+        job.get_by_role("button", name="Stop").click()
+        tab.page.locator("[data-testid=job-calibrate][data-state=stopped]").wait_for(timeout=60_000)
+        tab.shot("calibrate-space")
+        assert words.count() == 3
+        tab.find("overlay-plane").click()
+        tab.page.locator("[data-testid=overlay-chart] .overlay-measured").nth(2).wait_for()
+        assert tab.errors == []
+
+
+def said_errors(tab):
+    """The errors as the table beside tells them."""
+    rows = tab.find("errors-table").locator("tbody tr").all()
+    cells = [row.locator("td").all_inner_texts()[-2:] for row in rows]
+    return [f"{error}, {percent}" for error, percent in cells]

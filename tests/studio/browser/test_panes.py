@@ -368,6 +368,7 @@ class TestCalibrate:
         tab.find("calibrated").get_by_text("Mean error").wait_for()
         assert tab.find("errors-table").locator("tbody tr").count() == 3
         tab.page.get_by_role("tab", name="Measured and simulated").click()
+        tab.find("overlay-plane").click()
         points = tab.page.locator("[data-testid=overlay-chart] .overlay-measured")
         points.nth(2).wait_for()
         assert points.count() == 3
@@ -392,7 +393,7 @@ class TestCalibrate:
             tab.find("calibrated").get_by_text("Mean error").wait_for()
             tab.find("errors-table").locator("tbody tr").nth(2).wait_for()
             tab.page.get_by_role("tab", name="Measured and simulated").click()
-            tab.page.locator("[data-testid=overlay-chart] .overlay-measured").nth(2).wait_for()
+            tab.page.locator("[data-testid=overlay-space] .view-label").nth(2).wait_for()
         tab.shot("calibration-of-the-past")
 
 

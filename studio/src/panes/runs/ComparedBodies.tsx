@@ -19,6 +19,7 @@ export function ComparedBodies(props: { a: Side; b: Side }) {
   const [fit, setFit] = useState<() => void>(() => () => {});
   const ready = useCallback((next: () => void) => setFit(() => next), []);
   const known = useStudio((state) => state.hello?.fields) ?? NOTHING;
+  const rows = useStudio((state) => state.runs?.rows);
   const [first, second] = [useStill(a.id), useStill(b.id)];
   const told = (id: number) =>
     [first, second].some((one) => one.still === null || one.still.frames.has(id));
@@ -28,6 +29,8 @@ export function ComparedBodies(props: { a: Side; b: Side }) {
   const frames = [first, second].flatMap((one) => one.still?.frames.get(about?.id ?? 0) ?? []);
   const range = commonRange(frames);
   const largest = (state: StillState) => state.still?.frames.get(about?.id ?? 0)?.max ?? null;
+  const waiting = (side: Side) =>
+    rows?.find((row) => row.id === side.id)?.kind === "run" ? "Reading…" : "Solving…";
   const caption = (side: Side, state: StillState, beside: number | null) => {
     const value = largest(state);
     return (
@@ -74,8 +77,13 @@ export function ComparedBodies(props: { a: Side; b: Side }) {
           over={over}
           onReady={ready}
           cells={[
-            { key: a.id, state: first, caption: caption(a, first, null) },
-            { key: b.id, state: second, caption: caption(b, second, largest(first)) },
+            { key: a.id, state: first, caption: caption(a, first, null), waiting: waiting(a) },
+            {
+              key: b.id,
+              state: second,
+              caption: caption(b, second, largest(first)),
+              waiting: waiting(b),
+            },
           ]}
         />
       </div>

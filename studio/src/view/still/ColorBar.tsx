@@ -4,13 +4,14 @@ import { useView } from "../../store/view";
 import { gradient } from "../colormaps";
 
 /** The colors that several bodies share, with the values at both ends. */
-export function ColorBar(props: { field: Field; low: number; high: number }) {
+export function ColorBar(props: { field: Field; low: number; high: number; named?: boolean }) {
   const { field, low, high } = props;
   const { colormap, bands } = useView();
   const unit = shownUnit(field.unit);
   const factor = factorOf(unit);
   return (
     <span className="color-bar" data-testid="color-bar" title={field.title}>
+      {props.named && <span>{field.title}</span>}
       {formatNumber(low / factor, 3)}
       <i style={{ background: gradient(colormap, bands).replace("to top", "to right") }} />
       {formatNumber(high / factor, 3)} {unitText(unit)}

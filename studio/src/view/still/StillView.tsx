@@ -12,6 +12,8 @@ export interface StillCell {
   readonly key: string;
   readonly state: StillState;
   readonly caption: ReactNode;
+  /** What is said until the body is there. */
+  readonly waiting: string;
 }
 
 export interface StillViewProps {
@@ -65,8 +67,8 @@ export function StillView(props: StillViewProps) {
       <div className="still-cells">
         {cells.map((cell) => (
           <section key={cell.key} className="still-cell">
-            <div className="still-caption">{cell.caption}</div>
-            <Told state={cell.state} />
+            {cell.caption && <div className="still-caption">{cell.caption}</div>}
+            <Told state={cell.state} waiting={cell.waiting} />
           </section>
         ))}
       </div>
@@ -75,7 +77,7 @@ export function StillView(props: StillViewProps) {
 }
 
 /** What is under way in a cell, or why it stays empty. */
-function Told(props: { state: StillState }) {
+function Told(props: { state: StillState; waiting: string }) {
   const { still, pending, failure, again } = props.state;
   if (failure) {
     return (
@@ -87,10 +89,11 @@ function Told(props: { state: StillState }) {
       </p>
     );
   }
-  if (!pending) return null;
+  // A newer edition takes the place of the one that is shown when it is there.
+  if (!pending || still) return null;
   return (
-    <p className={`still-told${still ? " corner" : ""}`} role="status">
-      Solving…
+    <p className="still-told" role="status">
+      {props.waiting}
     </p>
   );
 }

@@ -2,7 +2,7 @@
 // error. They are drawn over the body, or those inside of it could not be seen.
 import {
   BufferGeometry,
-  Color,
+  type Camera,
   Group,
   LineBasicMaterial,
   LineSegments,
@@ -13,6 +13,7 @@ import {
 } from "three";
 import type { Triple } from "../../protocol";
 import type { Label } from "../labels";
+import { themeColor } from "../theme";
 
 export interface Mark {
   readonly key: string;
@@ -20,6 +21,7 @@ export interface Mark {
   readonly simulated: Triple;
   readonly text: string;
   readonly title: string;
+  /** A color variable of theme.css. */
   readonly color: string;
 }
 
@@ -31,7 +33,10 @@ export class Marks {
   readonly labels: readonly Label[];
   private readonly disposables: { dispose(): void }[] = [];
 
-  constructor(marks: readonly Mark[], size: number, lineColor: Color) {
+  constructor(
+    private readonly marks: readonly Mark[],
+    size: number,
+  ) {
     const ball = new SphereGeometry(BALL * size, 16, 12);
     const over = { depthTest: false, transparent: true };
     const ends = marks.flatMap(({ measured, simulated }) => [
@@ -40,13 +45,13 @@ export class Marks {
     ]);
     const lines = new LineSegments(
       new BufferGeometry().setFromPoints(ends),
-      new LineBasicMaterial({ ...over, color: lineColor }),
+      new LineBasicMaterial({ ...over, color: themeColor("--bad") }),
     );
     lines.renderOrder = 8;
     this.group.add(lines);
     this.disposables.push(ball, lines.geometry, lines.material);
     for (const { measured, color } of marks) {
-      const material = new MeshBasicMaterial({ ...over, color: new Color(color) });
+      const material = new MeshBasicMaterial({ ...over, color: themeColor(color) });
       const mesh = new Mesh(ball, material);
       mesh.position.set(...measured);
       mesh.renderOrder = 9;
@@ -58,13 +63,26 @@ export class Marks {
       kind: "probe",
       text,
       title,
-      color,
+      color: `var(${color})`,
       at: (out) => out.set(...measured),
     }));
+  }
+
+  /** Whether words stand better at the left of their points, as the body is at the right. */
+  leanLeft(camera: Camera): boolean {
+    let sum = 0;
+    for (const { measured, simulated } of this.marks) {
+      sum += onScreen(simulated, camera) - onScreen(measured, camera);
+    }
+    return sum > 0;
   }
 
   dispose(): void {
     this.group.removeFromParent();
     for (const one of this.disposables) one.dispose();
   }
+}
+
+function onScreen(point: Triple, camera: Camera): number {
+  return new Vector3(...point).project(camera).x;
 }

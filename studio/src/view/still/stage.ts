@@ -172,7 +172,7 @@ export class StillStage {
     const box = this.box();
     if (marks.length > 0 && !box.isEmpty()) {
       const size = box.getSize(new Vector3()).length();
-      this.marks = new Marks(marks, size, themeColor("--bad"));
+      this.marks = new Marks(marks, size);
       this.overlay.add(this.marks.group);
     }
     this.labels.set(this.marks?.labels ?? []);
@@ -236,6 +236,8 @@ export class StillStage {
         if (one && (scene.over || i === column)) renderer.render(one.scene, this.rig.camera);
       renderer.render(this.overlay, this.rig.camera);
     }
+    const left = this.marks?.leanLeft(this.rig.camera) ?? false;
+    this.labels.element.classList.toggle("lean-left", left);
     this.labels.place(this.rig.camera, cell, height);
   }
 
