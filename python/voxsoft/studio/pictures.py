@@ -33,6 +33,8 @@ class Pictures:
         self._outlet.tell(body.event())
         canvas = self._playback.require_canvas()
         for mode in {tab.view.mode for tab in self._outlet.tabs()}:
+            if mode == "tets":  # hands and tapes hold on to the surface, also where it is not drawn
+                self._outlet.topology(canvas.topology("surface"), mode)
             self._outlet.topology(canvas.topology(mode), mode)
         self.forget()
 
@@ -50,6 +52,8 @@ class Pictures:
         if body is None or canvas is None:
             return
         self._outlet.tell_one(tab, self._event(body))
+        if tab.view.mode == "tets":
+            self._outlet.topology_for(tab, canvas.topology("surface"))
         self._outlet.topology_for(tab, canvas.topology(tab.view.mode))
         if self._smooth is not None:
             self._outlet.smooth_for(tab, self._smooth)

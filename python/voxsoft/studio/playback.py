@@ -20,7 +20,7 @@ from voxsoft.studio.mover import Mover
 from voxsoft.studio.pace import Pace, RealTimeFactor
 from voxsoft.studio.past import Past, StoredFrame
 from voxsoft.studio.plots import Plots
-from voxsoft.studio.sentences import at_rest, diverged
+from voxsoft.studio.sentences import at_rest, diverged, said_time
 
 #: How a search for rest may have ended, in the words of the page.
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
@@ -186,9 +186,8 @@ class Playback:
         """Take the state at rest that a solver found."""
         self.result, self.progress = result, None
         self.state = _STATES.get(result.status, "paused")
-        self.sentence = (
-            f"{result.message[:1].upper()}{result.message[1:]}, in {result.seconds:.2f} s."
-        )
+        said = f"{result.message[:1].upper()}{result.message[1:]}"
+        self.sentence = f"{said}, in {said_time(result.seconds)}."
         mover = self.mover()
         if mover is not None:
             mover.go_to_rest(result.positions, result.residual, result.elastic_energy)

@@ -3,6 +3,8 @@ import { useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
 import { openSheet, setMode, usePage } from "../store/page";
 import { dismiss, useStudio } from "../store/studio";
+import { useView } from "../store/view";
+import { SCHEMES, schemeWords } from "../view/schemes";
 import { type Action, actions } from "./actions";
 import { Icon } from "./icons";
 import { STEPS, tourSeen } from "./tour";
@@ -149,8 +151,6 @@ function Keys(props: { keys?: readonly string[] | undefined }) {
 }
 
 const BY_MOUSE: readonly [string, string][] = [
-  ["Turn the view", "drag beside the body, or right button"],
-  ["Move the view", "Shift + drag, or middle button"],
   ["Zoom to the pointer", "wheel"],
   ["Turn about a point", "double-click the body"],
   ["Pull the body", "drag on the body while time runs"],
@@ -161,6 +161,8 @@ const BY_MOUSE: readonly [string, string][] = [
 
 function Shortcuts() {
   const all = actions().filter((action) => action.keys);
+  const scheme = useView((view) => view.scheme);
+  const named = SCHEMES.find((one) => one.value === scheme)?.label;
   const groups = [...new Set(all.map((action) => action.group))];
   return (
     <Scrim label="Keyboard shortcuts" testId="shortcuts">
@@ -185,8 +187,8 @@ function Shortcuts() {
           </section>
         ))}
         <section>
-          <h3>Mouse</h3>
-          {BY_MOUSE.map(([what, how]) => (
+          <h3>Mouse as in {named}</h3>
+          {[...schemeWords(scheme), ...BY_MOUSE].map(([what, how]) => (
             <div key={what} className="shortcut">
               <span>{what}</span>
               <span className="muted">{how}</span>

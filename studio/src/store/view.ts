@@ -2,12 +2,14 @@
 // and the change between surface and tetrahedra.
 import { create } from "zustand";
 import type { ColormapName } from "../view/colormaps";
+import type { Scheme } from "../view/schemes";
 import { keepAs, kept } from "./page";
 
 export type Appearance = "voxels" | "smooth" | "tets" | "wireframe";
 export type Coloring = "field" | "parts";
 export type RangeMode = "auto" | "locked" | "symmetric";
-export type SectionAxis = "off" | "x" | "y" | "z";
+/** Across an axis, or in the direction that `sectionNormal` has. */
+export type SectionAxis = "off" | "x" | "y" | "z" | "free";
 
 export interface View {
   appearance: Appearance;
@@ -32,7 +34,10 @@ export interface View {
   /** Where the section is, as a share of the body's bounds. */
   sectionAt: number;
   sectionFlipped: boolean;
+  sectionNormal: readonly [number, number, number];
   tape: boolean;
+  /** Which buttons of the mouse steer the camera. */
+  scheme: Scheme;
   /** Spring by which the mouse pulls, N/m. */
   stiffness: number;
 }
@@ -46,6 +51,7 @@ const KEPT = [
   "symbols",
   "grid",
   "orthographic",
+  "scheme",
   "stiffness",
 ] as const;
 
@@ -69,7 +75,9 @@ export const useView = create<View>(() => ({
   section: "off",
   sectionAt: 0.5,
   sectionFlipped: false,
+  sectionNormal: [0, 0, 1],
   tape: false,
+  scheme: "voxsoft",
   stiffness: 50,
   ...kept<View>(KEY),
 }));

@@ -1,4 +1,4 @@
-import { useRef, useState } from "react";
+import { useState } from "react";
 import { Button, Select, Toggle } from "../controls/Choice";
 import { NumberField } from "../controls/NumberField";
 import { Icon } from "../shell/icons";
@@ -6,6 +6,7 @@ import { useStudio } from "../store/studio";
 import { type Appearance, type SectionAxis, setView, useShown, useView } from "../store/view";
 import { COLORMAPS, type ColormapName } from "./colormaps";
 import { recordGif, recordWebm, savePicture } from "./recorder";
+import { SCHEMES, type Scheme } from "./schemes";
 import type { Viewport } from "./viewport";
 
 const APPEARANCES: { value: Appearance; label: string }[] = [
@@ -147,6 +148,12 @@ function More() {
         fallback={1}
         onChange={(value) => setView({ exaggeration: value })}
       />
+      <Select
+        label="Mouse as in"
+        value={view.scheme}
+        options={SCHEMES}
+        onChange={(value) => setView({ scheme: value as Scheme })}
+      />
       <div className="view-checks">
         <Toggle label="Voxel edges" checked={view.edges} onChange={(edges) => setView({ edges })} />
         <Toggle
@@ -178,13 +185,14 @@ const AXES: { value: SectionAxis; label: string }[] = [
 
 function SectionTools() {
   const { section, sectionAt, sectionFlipped } = useView();
+  const axes = section === "free" ? [...AXES, { value: "free", label: "turned" }] : AXES;
   return (
     <div className="view-tools" data-testid="section-tools">
       <Select
         bare
         label="Section axis"
         value={section}
-        options={AXES}
+        options={axes}
         onChange={(value) => setView({ section: value as SectionAxis })}
       />
       <input
@@ -208,13 +216,15 @@ function SectionTools() {
   );
 }
 
+// Outlives the menu, which may be shut while a film is recorded.
+let stopRecording: (() => void) | null = null;
+
 function Film(props: { view: Viewport; close(): void }) {
   const recording = useShown((shown) => shown.recording);
-  const stop = useRef<(() => void) | null>(null);
   if (recording) {
     return (
       <div className="view-menu">
-        <Button kind="primary" testId="stop-recording" onClick={() => stop.current?.()}>
+        <Button kind="primary" testId="stop-recording" onClick={() => stopRecording?.()}>
           Stop and save the {recording === "gif" ? "GIF" : "WebM"}
         </Button>
       </div>
@@ -237,8 +247,9 @@ function Film(props: { view: Viewport; close(): void }) {
       ))}
       <Button
         kind="quiet"
+        testId="record-webm"
         onClick={() => {
-          stop.current = recordWebm(props.view);
+          stopRecording = recordWebm(props.view);
         }}
       >
         Record a film (WebM)
@@ -247,7 +258,7 @@ function Film(props: { view: Viewport; close(): void }) {
         kind="quiet"
         testId="record-gif"
         onClick={async () => {
-          stop.current = await recordGif(props.view);
+          stopRecording = await recordGif(props.view);
         }}
       >
         Record an animation (GIF)

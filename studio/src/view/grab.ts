@@ -14,8 +14,8 @@ import { formatNumber } from "../controls/units";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { useView } from "../store/view";
-import type { BodyMesh } from "./body";
 import type { Label } from "./labels";
+import type { Places } from "./target";
 
 interface Pull {
   readonly id: number;
@@ -114,7 +114,7 @@ export class Grabs {
   }
 
   /** Draw the springs, and give their words. */
-  update(mesh: BodyMesh): Label[] {
+  update(mesh: Places): Label[] {
     const states = useStudio.getState().stat?.grabs ?? [];
     const labels: Label[] = [];
     const from = new Vector3();

@@ -5,6 +5,7 @@ import { type Action, provideViewActions } from "../shell/actions";
 import { setView, useView } from "../store/view";
 import type { StandardView } from "./camera";
 import { savePicture } from "./recorder";
+import { SCHEMES } from "./schemes";
 import { Viewport } from "./viewport";
 
 const STANDARD: readonly [StandardView, string, string][] = [
@@ -84,6 +85,14 @@ function actions(shown: Viewport): Action[] {
         group: "View",
         ...(key ? { keys: [key] } : {}),
         run: () => toggle(flag),
+      }),
+    ),
+    ...SCHEMES.map(
+      ({ value, label }): Action => ({
+        id: `mouse-${value}`,
+        title: `Mouse as in ${label}`,
+        group: "View",
+        run: () => setView({ scheme: value }),
       }),
     ),
     ...[1, 2, 4].map(

@@ -2,13 +2,17 @@
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
-import type { Hit } from "./pick";
+import { type Motion, motionOf, steer } from "./schemes";
+import type { Target } from "./target";
 import type { Viewport } from "./viewport";
 
 // A press that moves less than this, in pixels, is a click.
 const STILL = 4;
 
-type Gesture = { kind: "turn" | "move" } | { kind: "maybe-pull"; hit: Hit } | { kind: "pull" };
+type Gesture =
+  | { kind: "steer"; motion: Motion }
+  | { kind: "maybe-pull"; hit: Target }
+  | { kind: "pull" };
 
 export function listen(view: Viewport): void {
   const canvas = view.renderer.domElement;
@@ -21,10 +25,9 @@ export function listen(view: Viewport): void {
     canvas.setPointerCapture(event.pointerId);
     start = last = { x: event.clientX, y: event.clientY };
     const hit = event.button === 0 && !event.altKey ? view.hit(event.clientX, event.clientY) : null;
-    if (event.button === 1 || (event.button === 0 && event.shiftKey && !hit))
-      gesture = { kind: "move" };
-    else if (hit) gesture = { kind: "maybe-pull", hit };
-    else gesture = { kind: "turn" };
+    const motion = hit ? null : motionOf(useView.getState().scheme, event);
+    if (hit) gesture = { kind: "maybe-pull", hit };
+    else gesture = motion && { kind: "steer", motion };
     event.preventDefault();
   });
 
@@ -35,21 +38,20 @@ export function listen(view: Viewport): void {
       view.hoverOver({ x: event.clientX, y: event.clientY });
       return;
     }
-    if (gesture.kind === "turn") view.rig.turn(dx, dy);
-    else if (gesture.kind === "move") view.rig.move(dx, dy);
+    if (gesture.kind === "steer") steer(view.rig, gesture.motion, dx, dy);
     else if (gesture.kind === "maybe-pull") {
       const far = Math.hypot(event.clientX - start.x, event.clientY - start.y);
       if (far < STILL) return;
       if (mayPull()) {
-        const mesh = view.shownMesh();
-        if (mesh)
-          view.grabs.begin(gesture.hit.vertex, mesh.place(gesture.hit.vertex, 1), view.rig.toEye);
+        const { vertex } = gesture.hit;
+        const at = view.places?.place(vertex, 1);
+        if (at) view.grabs.begin(vertex, at, view.rig.toEye);
         view.grabs.move(view.ray(event.clientX, event.clientY));
         gesture = { kind: "pull" };
         view.hoverOver(null);
         canvas.style.cursor = "grabbing";
         if (useStudio.getState().stat?.state !== "playing") send({ t: "play" });
-      } else gesture = { kind: "turn" };
+      } else gesture = { kind: "steer", motion: "turn" };
     } else view.grabs.move(view.ray(event.clientX, event.clientY));
     view.request();
   });
@@ -111,7 +113,7 @@ function mayPull(): boolean {
   return moving && !view.tape && view.exaggeration === 1 && view.appearance !== "smooth";
 }
 
-function clicked(view: Viewport, hit: Hit): void {
+function clicked(view: Viewport, hit: Target): void {
   if (useView.getState().tape) view.tape.add(hit);
   else send({ t: "pick", vertex: hit.vertex });
 }

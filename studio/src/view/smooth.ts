@@ -50,7 +50,13 @@ export class SmoothMesh {
   private readonly material: ShaderMaterial;
   private readonly stencils: readonly StencilMesh[];
 
+  /** x, y, z of each vertex at rest, m. */
+  readonly vertices: Float32Array;
+  readonly triangles: Uint32Array;
+
   constructor(smooth: Smooth, section: { plane: IUniform<Vector4>; section: IUniform<number> }) {
+    this.vertices = smooth.vertices;
+    this.triangles = smooth.triangles;
     this.geometry.setAttribute("position", new BufferAttribute(smooth.vertices, 3));
     this.geometry.setIndex(new BufferAttribute(smooth.triangles, 1));
     this.geometry.computeVertexNormals();

@@ -11,9 +11,9 @@ import {
   Vector3,
 } from "three";
 import { formatQuantity } from "../controls/units";
-import type { BodyMesh } from "./body";
 import type { Label } from "./labels";
 import type { Hit } from "./pick";
+import type { Places } from "./target";
 
 type Anchor = Pick<Hit, "triangle" | "weights">;
 
@@ -50,7 +50,7 @@ export class Tape {
   }
 
   /** Draw it; gives its length as drawn without exaggeration, and its words. */
-  update(mesh: BodyMesh, exaggeration: number): { length: number | null; labels: Label[] } {
+  update(mesh: Places, exaggeration: number): { length: number | null; labels: Label[] } {
     this.group.visible = this.anchors.length > 0;
     if (!this.group.visible) return { length: null, labels: [] };
     const places = this.geometry.getAttribute("position") as BufferAttribute;
@@ -77,7 +77,7 @@ export class Tape {
   }
 }
 
-function at(mesh: BodyMesh, anchor: Anchor, exaggeration: number): Vector3 {
+function at(mesh: Places, anchor: Anchor, exaggeration: number): Vector3 {
   const sum = new Vector3();
   const one = new Vector3();
   for (const [i, vertex] of anchor.triangle.entries()) {

@@ -21,14 +21,15 @@ import { Grabs } from "./grab";
 import { roundLength } from "./ground";
 import { type Label, Labels } from "./labels";
 import { Painter } from "./painter";
-import { type Hit, pick } from "./pick";
 import { listen } from "./pointer";
 import { ladder, WHOLE } from "./quality";
 import { Section } from "./section";
+import { SectionHandle } from "./sectionHandle";
 import { SmoothMesh } from "./smooth";
 import { Stopwatch } from "./stopwatch";
 import { Symbols } from "./symbols";
 import { Tape } from "./tape";
+import { type Places, type Target, TetPlaces, targetOf } from "./target";
 import { themeColor } from "./theme";
 
 // Colors stay as they are written: those of the maps must be those of the legend.
@@ -54,6 +55,7 @@ export class Viewport {
   private readonly stopwatch: Stopwatch;
   private readonly scene = new Scene();
   private readonly section = new Section();
+  private readonly sectionHandle = new SectionHandle(this.section, this.rig);
   private readonly symbols = new Symbols();
   private readonly labels = new Labels();
   private ink = themeColor("--ink");
@@ -62,6 +64,7 @@ export class Viewport {
   private surface: BodyMesh | null = null;
   private tets: BodyMesh | null = null;
   private smooth: SmoothMesh | null = null;
+  private tetPlaces: TetPlaces | null = null;
   private latest: Frame | null = null;
   private positions: { key: string; values: Float32Array } | null = null;
   private asked: number | null = null;
@@ -90,7 +93,7 @@ export class Viewport {
     );
     this.renderer.domElement.setAttribute("aria-label", "The body");
     this.renderer.domElement.tabIndex = 0;
-    this.element.append(this.renderer.domElement, this.labels.element);
+    this.element.append(this.renderer.domElement, this.labels.element, this.sectionHandle.element);
     this.scene.add(this.section.group, this.symbols.group, this.grabs.group, this.tape.group);
     new ResizeObserver(() => this.resize()).observe(this.element);
     new MutationObserver(() => this.recolor()).observe(document.documentElement, {
@@ -275,6 +278,7 @@ export class Viewport {
     this.labels.element.classList.toggle("passive", view.tape || this.grabs.holding);
     this.labels.set(labels);
     this.labels.place(this.rig.camera, this.element.clientWidth, this.element.clientHeight);
+    this.sectionHandle.place(this.element.clientWidth, this.element.clientHeight);
     this.hover(now, view);
     this.tell(now, view);
     for (const listener of this.drawnListeners) listener();
@@ -357,9 +361,9 @@ export class Viewport {
     }
     if (view.extremes && mesh.frame && view.coloring === "field")
       labels.push(...this.extremeWords(mesh, view));
-    const surface = this.surface;
-    if (surface) labels.push(...this.grabs.update(surface));
-    const tape = surface ? this.tape.update(surface, view.exaggeration) : null;
+    const places = this.places;
+    if (places) labels.push(...this.grabs.update(places));
+    const tape = places ? this.tape.update(places, view.exaggeration) : null;
     if (tape) labels.push(...tape.labels);
     if (tape && tape.length !== useShown.getState().tapeLength) {
       useShown.setState({ tapeLength: tape.length });
@@ -436,17 +440,27 @@ export class Viewport {
     return this.raycaster.ray;
   }
 
-  /** What of the body is at a place of the page. Grabs work on the surface only. */
-  hit(x: number, y: number): Hit | null {
-    const mesh = this.surface;
+  /** What of the body is at a place of the page. */
+  hit(x: number, y: number): Target | null {
     const view = useView.getState();
-    if (!mesh || mesh !== this.shownMesh() || view.appearance === "wireframe") return null;
+    const [surface, mesh] = [this.surface, this.shownMesh()];
+    if (!surface || !mesh) return null;
     const keep = (point: Vector3) => this.section.keeps(point);
-    return pick(this.ray(x, y), this.drawnPositions(mesh, view), mesh.topology.triangles, keep);
+    const smooth = view.appearance === "smooth" ? this.smooth : null;
+    const positions = this.drawnPositions(mesh, view);
+    return targetOf(this.ray(x, y), surface, mesh, positions, smooth, keep);
+  }
+
+  /** Where the vertices of the surface are drawn, also where tetrahedra stand for it. */
+  get places(): Places | null {
+    const [surface, mesh] = [this.surface, this.shownMesh()];
+    if (!surface || !mesh || mesh === surface) return surface;
+    if (this.tetPlaces?.tets !== mesh) this.tetPlaces = new TetPlaces(surface, mesh);
+    return this.tetPlaces;
   }
 
   private drawnPositions(mesh: BodyMesh, view: View): Float32Array {
-    const key = `${mesh.topology.id} ${mesh.frame?.number} ${mesh.frame?.time} ${view.exaggeration}`;
+    const key = `${mesh.topology.id} ${mesh.topology.tets} ${mesh.frame?.number} ${mesh.frame?.time} ${view.exaggeration}`;
     if (this.positions?.key === key) return this.positions.values;
     const n = mesh.topology.rest.length / 3;
     const values = new Float32Array(3 * n);
@@ -472,7 +486,7 @@ export class Viewport {
     if (!this.hoverAt || this.grabs.holding || now - this.lastHover < HOVER_EVERY) return;
     this.lastHover = now;
     const hit = this.hit(this.hoverAt.x, this.hoverAt.y);
-    const frame = this.surface?.frame;
+    const frame = this.shownMesh()?.frame;
     this.renderer.domElement.style.cursor = view.tape ? "crosshair" : hit ? "grab" : "";
     if (!hit || !frame || view.coloring !== "field") {
       if (useShown.getState().hover) useShown.setState({ hover: null });
@@ -484,7 +498,7 @@ export class Viewport {
         x: this.hoverAt.x - rect.left,
         y: this.hoverAt.y - rect.top,
         vertex: hit.vertex,
-        value: valueIn(frame, hit.vertex),
+        value: valueIn(frame, hit.drawn),
       },
     });
   }

@@ -1,6 +1,10 @@
 """The tools over the picture, and the speed of time."""
 
+import io
+
+import numpy as np
 import pytest
+from PIL import Image
 
 
 def boxes(tab, selector):
@@ -57,4 +61,147 @@ def test_slow_motion_shows_every_step_and_follows_the_keys(tab):
         tab.until(f"document.querySelector('.transport select').value === '{slower}'")
     speed.select_option("auto")
     tab.until("document.querySelector('.transport select').value === 'auto'")
+    assert tab.errors == []
+
+
+def center(tab, name):
+    left, top, right, bottom = boxes(tab, f"[data-testid='{name}']")
+    return np.array([(left + right) / 2, (top + bottom) / 2])
+
+
+def by(point, dx, dy):
+    """A point of the page, moved by some pixels."""
+    return np.add(point, (dx, dy))
+
+
+def drag(tab, start, end, button="left", held=()):
+    for key in held:
+        tab.page.keyboard.down(key)
+    tab.page.mouse.move(*start)
+    tab.page.mouse.down(button=button)
+    tab.page.mouse.move(*end, steps=8)
+    tab.page.mouse.up(button=button)
+    for key in held:
+        tab.page.keyboard.up(key)
+
+
+def share_of_color(tab, color):
+    """The part of the picture that has a color."""
+    box = tab.page.locator(".viewport canvas").bounding_box()
+    image = Image.open(io.BytesIO(tab.page.screenshot(clip=box))).convert("RGB")
+    return (np.abs(np.asarray(image).astype(int) - color).max(axis=2) < 6).mean()
+
+
+CUT = np.array([0xC9, 0x8A, 0x4B])
+
+
+def test_the_section_follows_its_handle_and_stays_capped(tab):
+    assert tab.find("section-move").is_hidden()
+    tab.find("section").click()
+    tab.find("section-move").wait_for()
+    slider = tab.page.get_by_label("Section position")
+    before = float(slider.input_value())
+    start, turner = center(tab, "section-move"), center(tab, "section-turn")
+    end = start + 30 * (turner - start) / np.linalg.norm(turner - start)
+    drag(tab, start, end)
+    tab.until(f"document.querySelector('[aria-label=\\'Section position\\']').value != {before}")
+    # The grip stays under the pointer, and the slider tells the same.
+    assert center(tab, "section-move") == pytest.approx(end, abs=4)
+    assert share_of_color(tab, CUT) > 0.002
+    axis = tab.page.get_by_label("Section axis")
+    drag(tab, center(tab, "section-turn"), by(center(tab, "section-turn"), 40, 25))
+    tab.until("document.querySelector('[aria-label=\\'Section axis\\']').value === 'free'")
+    assert share_of_color(tab, CUT) > 0.002
+    axis.select_option("z")
+    tab.find("section-turn").focus()
+    tab.page.keyboard.press("Shift+ArrowUp")
+    tab.until("document.querySelector('[aria-label=\\'Section axis\\']').value === 'free'")
+    grip = tab.find("section-move")
+    held = int(grip.get_attribute("aria-valuenow"))
+    grip.focus()
+    for key, step in (("ArrowUp", 1), ("PageDown", -10)):
+        tab.page.keyboard.press(key)
+        held += step
+        tab.until(
+            "Math.abs(document.querySelector('[data-testid=section-move]').ariaValueNow"
+            f" - {held}) <= 1"
+        )
+    # Keys of the handle are its own: no frame was taken.
+    assert tab.page.evaluate("voxsoft.time") == 0
+    tab.find("section").click()
+    tab.until("document.querySelector('.section-handle').hidden")
+    assert tab.errors == []
+
+
+def test_the_mouse_steers_as_in_the_scheme_that_is_chosen(tab):
+    far = 20
+
+    # Two vertices tell whether the view has turned: moving shifts both of them alike.
+    def spread():
+        tab.until("voxsoft.screenOf(0) !== null")
+        first, last = tab.page.evaluate(
+            f"[voxsoft.screenOf(0), voxsoft.screenOf({far})]",
+        )
+        return np.subtract(last, first), np.array(first)
+
+    x, y = boxes(tab, ".viewport canvas")[:2]
+    start = np.array([x + 60, y + 160])
+    tab.find("view-more").click()
+    tab.page.get_by_label("Mouse as in").select_option("blender")
+    tab.find("view-more").click()
+    before, place = spread()
+    drag(tab, start, by(start, 60, 0), button="right")
+    drag(tab, start, by(start, 60, 0), button="middle", held=["Shift"])
+    moved, there = spread()
+    assert moved == pytest.approx(before, abs=3)  # perspective changes a little
+    assert there[0] - place[0] == pytest.approx(60, abs=6)
+    drag(tab, start, by(start, 60, 0), button="middle")
+    turned, _ = spread()
+    assert np.linalg.norm(turned - before) > 10
+    drag(tab, start, by(start, 0, 80), button="middle", held=["Control"])
+    small, _ = spread()
+    assert np.linalg.norm(small) < 0.8 * np.linalg.norm(turned)
+    tab.page.keyboard.press("?")
+    tab.find("shortcuts").wait_for()
+    assert "MOUSE AS IN BLENDER" in tab.find("shortcuts").inner_text().upper()
+    assert tab.page.evaluate("JSON.parse(localStorage['voxsoft.view']).scheme") == "blender"
+
+
+@pytest.mark.parametrize("display", ["tets", "wireframe", "smooth"])
+def test_tape_and_values_work_in_every_display(tab, display):
+    tab.page.get_by_label("Show as").select_option(display)
+    if display == "tets":
+        tab.until("voxsoft.triangles === 640")
+    x, y = tab.middle()
+    tab.page.mouse.click(x, y)
+    tab.find("picked").wait_for()
+    tab.find("picked").get_by_label("Close").click()
+    tab.find("tape").click()
+    tab.until("document.querySelector('.view-labels.passive') !== null")
+    tab.page.mouse.click(x - 60, y)
+    tab.page.mouse.click(x + 60, y)
+    length = tab.find("label-tape")
+    length.wait_for()
+    assert float(length.inner_text().removesuffix(" mm")) > 5
+    assert tab.errors == []
+
+
+@pytest.mark.parametrize("display", ["tets", "wireframe"])
+def test_a_pull_works_where_tetrahedra_or_edges_are_shown(tab, display):
+    tab.page.get_by_label("Show as").select_option(display)
+    if display == "tets":
+        tab.until("voxsoft.triangles === 640")
+    x, y = tab.middle()
+    drag_start = np.array([x, y])
+    tab.page.mouse.move(*drag_start)
+    tab.page.mouse.down()
+    tab.page.mouse.move(*by(drag_start, 0, -90), steps=6)
+    tab.find("grab").wait_for()
+    tab.until("document.querySelector('.view-label.force') !== null")
+    # The word tells how far the vertex that is drawn has come, so the picture follows.
+    tab.until(
+        "parseFloat(document.querySelector('.view-label.force').innerText.split('moved ')[1]) > 1"
+    )
+    tab.page.mouse.up()
+    tab.until("document.querySelector('[data-testid=grab]') === null")
     assert tab.errors == []

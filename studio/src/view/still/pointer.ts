@@ -1,6 +1,8 @@
-// The mouse and the keys on bodies at rest: the left or right button turns, Shift or the middle
-// button moves, the wheel zooms to the pointer. Nothing is pulled or picked here.
+// The mouse and the keys on bodies at rest: buttons steer as the chosen scheme has it, the wheel
+// zooms to the pointer. Nothing is pulled or picked here.
+import { useView } from "../../store/view";
 import type { StandardView } from "../camera";
+import { type Motion, motionOf, steer } from "../schemes";
 import type { StillStage } from "./stage";
 
 const TURN = 24;
@@ -23,20 +25,20 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
 
 export function listen(stage: StillStage): void {
   const canvas = stage.renderer.domElement;
-  let drag: { moves: boolean; x: number; y: number } | null = null;
+  let drag: { motion: Motion; x: number; y: number } | null = null;
   canvas.addEventListener("pointerdown", (event) => {
     canvas.focus({ preventScroll: true });
     canvas.setPointerCapture(event.pointerId);
-    const moves = event.button === 1 || (event.button === 0 && event.shiftKey);
-    drag = { moves, x: event.clientX, y: event.clientY };
+    const motion = motionOf(useView.getState().scheme, event);
+    drag = motion && { motion, x: event.clientX, y: event.clientY };
     event.preventDefault();
   });
   canvas.addEventListener("pointermove", (event) => {
     if (!drag) return;
     const [dx, dy] = [event.clientX - drag.x, event.clientY - drag.y];
-    const { moves } = drag;
-    drag = { moves, x: event.clientX, y: event.clientY };
-    stage.steer((rig) => (moves ? rig.move(dx, dy) : rig.turn(dx, dy)));
+    const { motion } = drag;
+    drag = { motion, x: event.clientX, y: event.clientY };
+    stage.steer((rig) => steer(rig, motion, dx, dy));
   });
   const finish = () => {
     drag = null;
