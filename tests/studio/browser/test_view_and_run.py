@@ -192,17 +192,34 @@ def test_a_picture_is_saved_at_twice_the_size(tab):
     assert waiting.value.suggested_filename.startswith("finger-")
 
 
-def test_an_animation_has_a_frame_for_each_moment(tab):
-    tab.find("view-film").click()
-    tab.find("record-gif").click()
-    tab.find("stop-recording").wait_for()
-    tab.find("play").click()
-    tab.until("voxsoft.time > 0.3 || voxsoft.state === 'at-rest'")
-    with tab.page.expect_download() as waiting:
-        tab.find("stop-recording").click()
-    film = Image.open(waiting.value.path())
-    assert film.format == "GIF"
-    assert film.n_frames > 1
+def test_a_body_that_diverges_says_so_in_the_picture_and_comes_back(
+    tmp_path, coarse, serving, open_tab
+):
+    # Silicone ten times softer, under a hundred times its own weight: nothing can carry that.
+    soft = '{ model = "neo-hookean", young = "10 kPa", poisson = 0.45, density = "1070 kg/m^3" }'
+    server = serving(tmp_path, coarse.replace('"ecoflex-00-30"', soft))
+    try:
+        tab = open_tab(server.address)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        assert tab.find("diverged").count() == 0
+        gravity = tab.find("pane-run").get_by_label("gravity", exact=True)
+        gravity.fill("981 m/s^2")
+        gravity.press("Enter")
+        tab.find("play").click()
+        banner = tab.find("diverged")
+        banner.wait_for()
+        tab.until("voxsoft.state === 'diverged'")
+        assert "Diverged at" in banner.inner_text()
+        assert "smaller load" in banner.inner_text()
+        banner.get_by_role("button").click()
+        banner.wait_for(state="detached")
+        tab.until("voxsoft.time === 0 && voxsoft.state === 'paused'")
+        # The load is the design's own again, and the body comes to rest under it.
+        tab.find("play").click()
+        tab.until("voxsoft.state === 'at-rest'")
+        assert tab.errors == []
+    finally:
+        server.stop()
 
 
 def test_the_tape_measures_between_two_points(tab):
