@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.catalog import DISPLACEMENT, FIELDS
 from voxsoft.studio.frames import pack_points, value_at
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.surface import ShrunkTets, pack_tets
@@ -50,8 +50,10 @@ class Canvas:
         """A moment as the page reads it."""
         body, tets = self._body, mode == "tets"
         frame, seq = moment.frame & 0xFFFF_FFFF, seq & 0xFFFF_FFFF
-        if body.refusal is not None:
-            # Nothing moves what cannot be solved, and the core holds no such problem.
+        unmoved = moment.mover is None and moment.positions is None
+        if body.refusal is not None or (unmoved and field == DISPLACEMENT):
+            # Nothing moves what cannot be solved, and the core holds no such problem. And a shape
+            # that has only just come is shown before the core gets ready for its fields.
             rest = body.mesh.vertices
             points = self._shrunk.points(rest) if tets else rest[body.surface.vertices]
             return pack_points(

@@ -17,9 +17,13 @@ from voxsoft.studio import events
 from voxsoft.studio.protocol import PROTOCOL
 from voxsoft.units import UnitOf
 
+#: Number of the field that is zero wherever nothing has moved.
+DISPLACEMENT: Final = 0
 #: Fields that color the body, by the number that frames carry.
 FIELDS: Final = (
-    events.Field(id=0, name="displacement", title="Displacement", unit="m", signed=False),
+    events.Field(
+        id=DISPLACEMENT, name="displacement", title="Displacement", unit="m", signed=False
+    ),
     events.Field(id=1, name="dx", title="Displacement along x", unit="m", signed=True),
     events.Field(id=2, name="dy", title="Displacement along y", unit="m", signed=True),
     events.Field(id=3, name="dz", title="Displacement along z", unit="m", signed=True),

@@ -12,8 +12,6 @@ from voxsoft.simulation.check import CheckReport
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
 
-#: A wish waits this long for a newer one, as a slider that is dragged sends many [s].
-PATIENCE: Final = 0.01
 #: The doctor looks at a body when nothing was wished for so long [s].
 IDLE: Final = 0.15
 #: A body that takes longer than this is announced [s].
@@ -107,7 +105,5 @@ class Mesher(threading.Thread):
         with self._changed:
             while self._wish is None and not self._ended:
                 self._changed.wait()
-            if self._wish is not None and not self._ended:
-                self._changed.wait(PATIENCE)
             wish, self._wish = self._wish, None
             return None if self._ended else wish

@@ -30,12 +30,13 @@ class Pictures:
     def begin(self, body: StudioBody) -> None:
         """Give every tab another body, of which the doctor has said nothing yet."""
         self._report = self._smooth = None
-        self._outlet.tell(body.event())
+        # The shape first: what there is to say of it takes as long again.
         canvas = self._playback.require_canvas()
         for mode in {tab.view.mode for tab in self._outlet.tabs()}:
             if mode == "tets":  # hands and tapes hold on to the surface, also where it is not drawn
                 self._outlet.topology(canvas.topology("surface"), mode)
             self._outlet.topology(canvas.topology(mode), mode)
+        self._outlet.tell(body.event())
         self.forget()
 
     def examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:

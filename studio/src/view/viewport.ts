@@ -60,6 +60,9 @@ export class Viewport {
   private readonly labels = new Labels();
   private ink = themeColor("--ink");
   private readonly gate = new FrameGate();
+  // Disposed of after the next picture, which then uses their shaders again without compiling.
+  private readonly gone: BodyMesh[] = [];
+  private drawnTopology = 0;
   private readonly raycaster = new Raycaster();
   private surface: BodyMesh | null = null;
   private tets: BodyMesh | null = null;
@@ -140,6 +143,7 @@ export class Viewport {
       this.tets = mesh;
     } else this.surface = mesh;
     this.scene.add(mesh.group);
+    this.lastMoved = performance.now();
     this.request();
   }
 
@@ -176,7 +180,7 @@ export class Viewport {
   private drop(mesh: BodyMesh | null): void {
     if (!mesh) return;
     mesh.group.removeFromParent();
-    mesh.dispose();
+    this.gone.push(mesh);
   }
 
   private bodyChanged(): void {
@@ -272,6 +276,8 @@ export class Viewport {
     const labels = this.words(view, mesh);
     this.painter.backdrop.ground.face(this.rig.toEye.z);
     this.painter.paint(this.scene, this.rig.camera, quality.smooth);
+    this.drawnTopology = mesh?.topology.id ?? 0;
+    for (const one of this.gone.splice(0)) one.dispose();
     if (quality !== WHOLE) this.settle();
     if (this.moving(now)) this.stopwatch.start();
     // Words must not catch clicks that are meant for the body.
@@ -356,7 +362,8 @@ export class Viewport {
     if (!mesh) return [];
     const { body, stat } = useStudio.getState();
     const labels: Label[] = [];
-    if (body && view.symbols) {
+    // A shape comes before its words, which speak of vertices that another one may not have.
+    if (body?.topology === mesh.topology.id && view.symbols) {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
     }
     if (view.extremes && mesh.frame && view.coloring === "field")
@@ -545,7 +552,7 @@ export class Viewport {
       seq: this.lastSeq,
       latency: this.latency,
       triangles: mesh?.triangles ?? 0,
-      topology: mesh?.topology.id ?? 0,
+      topology: this.drawnTopology,
       fps: this.times.length,
     };
   }

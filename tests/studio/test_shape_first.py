@@ -1,0 +1,139 @@
+"""From a wish for a shape to the shape: the newest wins, and the picture comes before the words."""
+
+import struct
+import threading
+
+import numpy as np
+import pytest
+
+from voxsoft.design import families
+from voxsoft.studio import mesher
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.canvas import Canvas, Moment
+from voxsoft.studio.catalog import DISPLACEMENT
+from voxsoft.studio.mesher import Mesher
+from voxsoft.studio.mover import Mover
+from voxsoft.studio.pictures import Pictures
+from voxsoft.studio.playback import Playback
+from voxsoft.studio.surface import CAVITY, Surface
+from voxsoft.studio.tab import Tab
+from voxsoft.voxels import Voxels
+
+UNMOVED = Moment(frame=0, flags=1, time=0.0, mover=None, positions=None)
+
+
+@pytest.fixture(scope="module")
+def body():
+    return StudioBody.of(families.cylinder(), 1, 1)
+
+
+@pytest.fixture
+def wishes(monkeypatch):
+    """A mesher whose bodies are made only when the test lets them."""
+    begun, let, made, shown = [], threading.Semaphore(0), threading.Semaphore(0), []
+
+    def of(design, rev, topology):
+        begun.append(rev)
+        made.release()
+        let.acquire()
+        return rev
+
+    monkeypatch.setattr(mesher.StudioBody, "of", of)
+    monkeypatch.setattr(mesher, "IDLE", 60.0)
+    thread = Mesher(lambda: None, shown.append, lambda *_: None, lambda *_: None)
+    thread.start()
+    yield thread, begun, made, let, shown
+    thread.end()
+    let.release()
+    thread.join(20)
+
+
+def test_of_wishes_that_come_while_a_body_is_made_only_the_newest_is_fulfilled(wishes):
+    thread, begun, made, let, shown = wishes
+    design = families.cylinder()
+    thread.ask(design, 1)
+    assert made.acquire(timeout=20)
+    for rev in (2, 3, 4):
+        thread.ask(design, rev)
+    let.release()
+    assert made.acquire(timeout=20)
+    thread.ask(design, 5)
+    let.release()
+    assert made.acquire(timeout=20)
+    let.release()
+    thread.end()
+    thread.join(20)
+    assert begun == [1, 4, 5]
+    assert shown == [1, 4, 5]
+
+
+class Heard:
+    """An outlet that keeps what it is told."""
+
+    def __init__(self):
+        self.said = []
+        self._tab = Tab(socket=None)
+
+    def tabs(self):
+        return [self._tab]
+
+    def topology(self, packed, mode):
+        self.said.append("topology")
+
+    def tell(self, event):
+        self.said.append(type(event).__name__)
+
+    def frame(self, tab, packed):
+        self.said.append("frame")
+
+
+def test_the_shape_is_sent_before_all_that_is_said_of_it(body):
+    heard, playback = Heard(), Playback()
+    playback.begin(body)
+    pictures = Pictures(playback, heard)
+    pictures.begin(body)
+    pictures.paint_all()
+    assert heard.said == ["topology", "Body", "frame"]
+
+
+def drawn(packed):
+    """Positions [m] of a frame, the step between two of them, and the range of its field."""
+    origin, scale = np.frombuffer(packed, "<f4", 6, 32).astype(float).reshape(2, 3)
+    steps = np.frombuffer(packed, "<u2", offset=64).reshape(-1, 4)
+    return (
+        origin + scale * steps[:, :3] / 65_535,
+        scale / 65_535,
+        struct.unpack_from("<2f", packed, 56),
+    )
+
+
+@pytest.mark.parametrize("mode", ["surface", "tets"])
+def test_the_first_frame_is_what_the_core_would_pack_without_asking_it(body, mode, monkeypatch):
+    canvas = Canvas(body)
+    of_core = canvas.frame(UNMOVED._replace(mover=Mover(body)), DISPLACEMENT, mode)
+    monkeypatch.setattr(Canvas, "_surface", None)
+    monkeypatch.setattr(Canvas, "_tets", None)
+    points, _, span = drawn(Canvas(body).frame(UNMOVED, DISPLACEMENT, mode))
+    expected, step, expected_span = drawn(of_core)
+    assert (np.abs(points - expected) <= 1.01 * step).all()
+    assert span == expected_span == (0.0, 0.0)
+
+
+def test_triangles_tell_the_part_behind_them_and_the_cavity_before_them():
+    rng = np.random.default_rng(3)
+    grid = rng.integers(1, 4, (5, 5, 5))
+    grid[2, 2, 2] = 0
+    mesh = Voxels.from_array(grid, voxel_size=0.01).mesh()
+    assert len(mesh.cavities) == 1
+    tags = Surface.of(mesh).tags
+    inside = {frozenset(corners) for corners in mesh.cavities[0].triangles.tolist()}
+    of_faces = {}
+    for tet, part in zip(mesh.tets.tolist(), mesh.tet_part.tolist(), strict=True):
+        for left_out in range(4):
+            of_faces[frozenset(tet[:left_out] + tet[left_out + 1 :])] = part - 1
+    expected = [
+        CAVITY if frozenset(corners) in inside else of_faces[frozenset(corners)]
+        for corners in mesh.triangles.tolist()
+    ]
+    assert tags.tolist() == expected
+    assert len(set(expected)) == 4
