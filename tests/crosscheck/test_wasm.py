@@ -25,11 +25,15 @@ LATTICE = vs.Lattice(edge=60 * kPa, bulk=400 * kPa, density=1070.0)
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.48, density=1070.0)
 
 
-def cantilever(material):
+SILK = vs.Layer(region=vs.Region(z=(0, 0)), young="60 MPa", thickness="0.1 mm")
+
+
+def cantilever(material, layers=()):
     return vs.Design(
         name="cantilever",
         voxel_size=5 * mm,
         parts=[vs.Part(shape=vs.Box(size=(60 * mm, 10 * mm, 10 * mm)), material=material)],
+        layers=layers,
         clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
         loads=[vs.Gravity()],
     )
@@ -55,8 +59,17 @@ def run_in_node(tmp_path, scene, substeps):
         (families.cylinder(), 8.0),
         (cantilever(LATTICE), None),
         (cantilever(RUBBER), None),
+        (cantilever(RUBBER, [SILK]), None),
+        (cantilever(LATTICE, [SILK]), 8.0),
     ],
-    ids=["cylinder", "cylinder damped at a rate", "lattice beam", "rubber beam"],
+    ids=[
+        "cylinder",
+        "cylinder damped at a rate",
+        "lattice beam",
+        "rubber beam",
+        "rubber beam on a layer",
+        "lattice beam on a layer",
+    ],
 )
 def test_a_thousand_substeps_have_the_same_bits(tmp_path, design, damping):
     setup = Setup.of(design)

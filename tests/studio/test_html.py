@@ -4,6 +4,7 @@ import base64
 import html
 import json
 import re
+from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
@@ -76,6 +77,11 @@ def test_pressure_in_several_cavities_counts_once_for_each():
     design = vs.Design.from_document(tomllib.loads(two))
     loads = notes_of(page_of(design).text)["body"]["loads"]
     assert [load["index"] for load in loads] == [0, 1]
+
+
+def test_a_body_with_a_layer_has_a_page():
+    page = vs.load(Path(__file__).parents[2] / "examples" / "bender.toml").show()
+    assert notes_of(page.text)["name"] == "bender"
 
 
 def test_what_cannot_be_shown_live_is_said():

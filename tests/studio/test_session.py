@@ -2,6 +2,7 @@
 
 import json
 import socket
+import tomllib
 
 import httpx
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from own_loop import run
 
+import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.simulation import simulate
 from voxsoft.studio.protocol import PROTOCOL
@@ -54,6 +56,28 @@ def test_a_tab_is_shown_the_design_and_its_body(studio):
         assert np.ptp(positions_of(frame), axis=0) == pytest.approx([0.05, 0.05, 0.035], abs=1e-6)
 
     run(scenario())
+
+
+def test_a_body_with_a_layer_is_played_to_its_rest(studio):
+    bare = families.beam().with_values("voxel_size=10 mm").to_toml()
+    layer = (
+        '[[layers]]\nregion = { z = ["10 mm", "10 mm"] }\nyoung = "30 MPa"\nthickness = "0.1 mm"\n'
+    )
+    text = bare + layer
+    design = vs.Design.from_document(tomllib.loads(text))
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            await page.send("text", rev=1, text=text)
+            await page.until("body", lambda b: b.rev > 1)
+            await page.send("play")
+            _, frame = await page.shown(lambda s: s.state == "at-rest", seconds=60.0)
+        return frame
+
+    frame = run(scenario())
+    due = simulate(design).positions[:, 2].min()
+    assert positions_of(frame)[:, 2].min() == pytest.approx(due, rel=1e-3)
 
 
 def test_played_and_solved_bodies_come_to_the_same_rest(studio):

@@ -170,22 +170,7 @@ pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[
     for tet in body.tets() {
         visit(&tet.vertices, tet.hessian(positions, None).as_flattened());
     }
-    visit_element_stiffness(body, positions, visit);
-}
-
-/// The part of [`visit_stiffness`] that belongs to hyperelastic voxels and membranes.
-pub fn visit_element_stiffness(
-    body: &Body,
-    positions: &[Vec3],
-    visit: &mut dyn FnMut(&[u32], &[f64]),
-) {
-    let bricks = body.bricks();
-    in_order(
-        bricks.len(),
-        STIFFNESS_BATCH,
-        |i| bricks[i].stiffness(body.material_of(&bricks[i]), positions, None),
-        |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
-    );
+    visit_brick_stiffness(body, positions, visit);
     for membrane in body.membranes() {
         visit(
             &membrane.vertices(),
@@ -194,7 +179,25 @@ pub fn visit_element_stiffness(
     }
 }
 
-/// For every vertex, a bound in N/m on the row sum of the stiffness matrix at `positions`.
+fn visit_brick_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[u32], &[f64])) {
+    let bricks = body.bricks();
+    in_order(
+        bricks.len(),
+        STIFFNESS_BATCH,
+        |i| bricks[i].stiffness(body.material_of(&bricks[i]), positions, None),
+        |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
+    );
+}
+
+/// Hands the stiffness of every membrane where it is taut to `visit`, as [`visit_stiffness`] does.
+fn visit_taut_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[u32], &[f64])) {
+    for membrane in body.membranes() {
+        let matrix = membrane.taut_stiffness(positions);
+        visit(&membrane.vertices(), matrix.as_flattened());
+    }
+}
+
+/// For every vertex, a bound in N/m on the row sum of the stiffness matrix at `positions`, membranes taut.
 ///
 /// A constraint adds `k ∇_iC ∇_jCᵀ`, bounded by `k |∇_iC| |∇_jC|`; the geometric part of an edge is
 /// bounded by `k` across it, which the same row already holds along it.
@@ -212,7 +215,7 @@ pub fn row_sums(body: &Body, positions: &[Vec3], sums: &mut [f64]) {
             sums[vertex as usize] += tet.stiffness * length * total;
         }
     }
-    visit_element_stiffness(body, positions, &mut |vertices, matrix| {
+    let mut add = |vertices: &[u32], matrix: &[f64]| {
         let size = 3 * vertices.len();
         for (place, vertex) in vertices.iter().enumerate() {
             let rows = matrix[3 * place * size..].chunks(size).take(3);
@@ -221,10 +224,13 @@ pub fn row_sums(body: &Body, positions: &[Vec3], sums: &mut [f64]) {
                 .fold(0.0, f64::max);
             sums[*vertex as usize] += largest;
         }
-    });
+    };
+    visit_brick_stiffness(body, positions, &mut add);
+    visit_taut_stiffness(body, positions, &mut add);
 }
 
-/// Adds the product of the material part of the stiffness matrix at `positions` with `direction`.
+/// Adds the product of the material part of the stiffness matrix at `positions` with `direction`. Membranes have
+/// theirs, [`add_taut_product`].
 pub fn add_stiffness_product(
     body: &Body,
     positions: &[Vec3],
@@ -252,16 +258,26 @@ pub fn add_stiffness_product(
             );
         }
     }
-    visit_element_stiffness(body, positions, &mut |vertices, matrix| {
-        let size = 3 * vertices.len();
-        for (row, entries) in matrix.chunks(size).enumerate() {
-            let mut sum = 0.0;
-            for (column, k) in entries.iter().enumerate() {
-                sum += k * direction[vertices[column / 3] as usize][column % 3];
-            }
-            product[vertices[row / 3] as usize][row % 3] += sum;
-        }
+    visit_brick_stiffness(body, positions, &mut |vertices, matrix| {
+        add_product(vertices, matrix, direction, product);
     });
+}
+
+/// Adds the product of the stiffness of all membranes, were they taut at `positions`, with `direction`.
+pub fn add_taut_product(body: &Body, positions: &[Vec3], direction: &[Vec3], product: &mut [Vec3]) {
+    visit_taut_stiffness(body, positions, &mut |vertices, matrix| {
+        add_product(vertices, matrix, direction, product);
+    });
+}
+
+fn add_product(vertices: &[u32], matrix: &[f64], direction: &[Vec3], product: &mut [Vec3]) {
+    for (row, entries) in matrix.chunks(3 * vertices.len()).enumerate() {
+        let mut sum = 0.0;
+        for (column, k) in entries.iter().enumerate() {
+            sum += k * direction[vertices[column / 3] as usize][column % 3];
+        }
+        product[vertices[row / 3] as usize][row % 3] += sum;
+    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,11 @@
 //! - wrinkled, `e₁ > 0`, `e₂ < −ν e₁`: that of a strip, `c (1 − ν²)/2 e₁²`,
 //! - slack, `e₁ ≤ 0`: none,
 //!
-//! convex with a continuous stress, plus the small part [`SLACK`] of the taut energy everywhere.
+//! convex with a continuous stress, plus the small part [`SLACK`] of the taut energy everywhere. A strain of
+//! zero lies on the border of all three: rounding decides there which one a triangle is in, so whatever
+//! needs a bound on its stiffness asks for [`Membrane::taut_stiffness`].
+//!
+//! Directions come without angles, from arithmetic and roots alone, which every processor rounds alike.
 
 use crate::ProblemError;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
@@ -233,6 +237,28 @@ impl Membrane {
         }
     }
 
+    /// The stiffness in N/m that it has where it is taut and hardly strained, at `positions`: none that it has
+    /// while strains are small is larger.
+    pub fn taut_stiffness(&self, positions: &[Vec3]) -> [[f64; 9]; 9] {
+        self.stiffness(positions, Some([0.0; 3]))
+    }
+
+    /// A stiffness in N/m between corners, the same along all axes, that is no smaller than the taut one
+    /// however the triangle is turned: `A t Y/(1 − |ν|) ∇N_i·∇N_j`, because the energy is at most
+    /// `A t Y/(1 − |ν|)/2` times the square of the strain, and that at most the square of the
+    /// displacement's gradient.
+    pub fn bounding_stiffness(&self) -> [[f64; 3]; 3] {
+        let m = &self.material;
+        let bound = self.area * m.thickness * m.young / (1.0 - m.poisson.abs());
+        let gradients = &self.gradients;
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let ([p, q], [r, s]) = (gradients[i], gradients[j]);
+                bound * (p * r + q * s)
+            })
+        })
+    }
+
     /// The Hessian of the energy in N/m, row and column `3 corner + axis`.
     ///
     /// A strain of the caller's takes the place of the present one in stress and moduli.
@@ -272,16 +298,20 @@ struct Principal {
 impl Principal {
     fn of([e11, e22, g12]: Plane) -> Self {
         let (middle, half, shear) = ((e11 + e22) / 2.0, (e11 - e22) / 2.0, g12 / 2.0);
-        let radius = half.hypot(shear);
-        let angle = 0.5 * f64::atan2(shear, half);
-        let (s, c) = angle.sin_cos();
+        let radius = (half * half + shear * shear).sqrt();
+        // The cosine and the sine of twice the angle from the first axis to the first direction.
+        let (cos, sin) = if radius > 0.0 {
+            (half / radius, shear / radius)
+        } else {
+            (1.0, 0.0)
+        };
+        let (along, across, both) = ((1.0 + cos) / 2.0, (1.0 - cos) / 2.0, sin / 2.0);
         Self {
             values: [middle + radius, middle - radius],
             dyads: [
-                [c * c, s * s, c * s],
-                [s * s, c * c, -c * s],
-                [-2.0 * c * s, 2.0 * c * s, c * c - s * s]
-                    .map(|x| x * std::f64::consts::FRAC_1_SQRT_2),
+                [along, across, both],
+                [across, along, -both],
+                [-sin, sin, cos].map(|x| x * std::f64::consts::FRAC_1_SQRT_2),
             ],
         }
     }
@@ -394,6 +424,41 @@ mod tests {
             let extra = (across + 0.3 * green).powi(2) / (0.91 * green * green);
             let ratio = membrane.energy(&stretched) / strip;
             assert!((ratio - 1.0 - SLACK * extra).abs() < 1e-9, "{ratio}");
+        }
+    }
+
+    #[test]
+    fn the_taut_stiffness_is_that_of_a_sheet_pulled_a_little_and_stays_below_its_bound() {
+        for poisson in [0.3, 0.5, -0.4] {
+            let material = MembraneMaterial { poisson, ..CLOTH };
+            let membrane = Membrane::new([0, 1, 2], REST, material).unwrap();
+            let taut = membrane.taut_stiffness(&REST);
+            let pulled = REST.map(|p| scale(1.0 + 1e-9, p));
+            let near = membrane.stiffness(&pulled, None);
+            for (a, b) in taut.as_flattened().iter().zip(near.as_flattened()) {
+                assert!((a - b).abs() < 1e-8, "{a} {b}");
+            }
+            // bound − taut is positive semidefinite if no motion gives it a negative value; that of one
+            // size in all directions of the plane gives zero.
+            let bound = membrane.bounding_stiffness();
+            let slack = |u: &[f64; 9]| -> f64 {
+                let terms = (0..81).map(|place| {
+                    let (i, j) = (place / 9, place % 9);
+                    let same = if i % 3 == j % 3 { 1.0 } else { 0.0 };
+                    u[i] * (same * bound[i / 3][j / 3] - taut[i][j]) * u[j]
+                });
+                terms.sum()
+            };
+            for motion in 0..200 {
+                let u = std::array::from_fn(|i| {
+                    ((motion * 9 + i) as f64 * 0.618_033_988_75).fract() - 0.5
+                });
+                assert!(slack(&u) > -1e-12, "{}", slack(&u));
+            }
+            if poisson >= 0.0 {
+                let growth: [f64; 9] = std::array::from_fn(|i| REST[i / 3][i % 3]);
+                assert!(slack(&growth).abs() < 1e-12, "{}", slack(&growth));
+            }
         }
     }
 

@@ -21,6 +21,7 @@
 
 mod damping;
 pub mod dynamics;
+mod envelope;
 mod motion;
 mod outcome;
 pub mod relaxation;

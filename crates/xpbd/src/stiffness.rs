@@ -8,12 +8,22 @@ const LANCZOS_STEPS: usize = 12;
 /// Halvings of the interval that holds an eigenvalue: to a millionth.
 const HALVINGS: usize = 20;
 
+/// What membranes add to a stiffness matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Membranes {
+    /// All they can: they are taut.
+    Taut,
+    /// Nothing: their stiffness is dealt with elsewhere.
+    Apart,
+}
+
 /// The largest eigenvalue of `M⁻¹K` at rest, for the masses given (kg): the square of the highest
 /// frequency in rad²/s². A body that has strips brings them, which is quicker.
 pub(crate) fn largest_eigenvalue(
     problem: &Problem,
     masses: &[f64],
     strips: Option<&Strips>,
+    membranes: Membranes,
 ) -> f64 {
     let body = problem.body();
     let mut on_strips = strips.map(|strips| {
@@ -48,6 +58,9 @@ pub(crate) fn largest_eigenvalue(
             None => {
                 product.fill([0.0; 3]);
                 elastic::add_stiffness_product(body, body.rest(), &direction, &mut product);
+                if membranes == Membranes::Taut {
+                    elastic::add_taut_product(body, body.rest(), &direction, &mut product);
+                }
             }
         }
         let along: f64 = (0..count).map(|i| dot(direction[i], product[i])).sum();
@@ -155,7 +168,7 @@ mod tests {
                 }
             }
             for strips in [None, Strips::of(body)] {
-                let found = largest_eigenvalue(problem, &masses, strips.as_ref());
+                let found = largest_eigenvalue(problem, &masses, strips.as_ref(), Membranes::Taut);
                 assert!(
                     found <= exact * (1.0 + 1e-5) && found > 0.97 * exact,
                     "{found} {exact}"

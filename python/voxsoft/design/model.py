@@ -325,7 +325,7 @@ class Design(Record):
         Raises
         ------
         VoxSoftError
-            The design cannot be meshed or solved, or has layers, which do not move over time.
+            The design cannot be meshed or solved.
 
         Examples
         --------

@@ -224,11 +224,6 @@ class Result:
         """Show the design as a page that is alive: in a notebook, or as a file with ``save``.
 
         The page begins at the unloaded shape and comes to this result when time runs.
-
-        Raises
-        ------
-        VoxSoftError
-            The design has layers, which do not move over time.
         """
         # `studio` lies above `simulation` in the layers; this convenience reaches up when called.
         from voxsoft.studio.html import page_of

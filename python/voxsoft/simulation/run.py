@@ -10,7 +10,6 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design, Solver
-from voxsoft.errors import SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
 from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
 from voxsoft.simulation.rest import quickest_rest, relax_fully
@@ -93,7 +92,6 @@ def simulate(
     if wants_statics(setup.design, solver):
         used, report = find_equilibrium(setup, solver, progress)
     elif _wants_time(solver):
-        _refuse_layers(setup.design)
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
     elif solver.method == "auto" and solver.damping is None:
         used, report = quickest_rest(setup, solver, progress)
@@ -165,15 +163,6 @@ def _wants_time(solver: Solver) -> bool:
         solver.retardation,
     )
     return any(value is not None for value in timed) or isinstance(solver.damping, float)
-
-
-def _refuse_layers(design: Design) -> None:
-    if design.layers:
-        raise SimulationError(
-            "layers",
-            "runs over time do not know layers yet",
-            'find the state at rest with method = "statics", without settings of time',
-        )
 
 
 def _dynamics(

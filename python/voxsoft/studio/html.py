@@ -14,14 +14,14 @@ import numpy as np
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.errors import FileError, SimulationError
+from voxsoft.errors import FileError
 from voxsoft.files.designs import FilePath, load
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import FIELDS
-from voxsoft.studio.mover import TOLERANCE, Mover, inner_loads
+from voxsoft.studio.mover import TOLERANCE, inner_loads
 
 #: The page without a scene, built with the studio's page.
 TEMPLATE: Final = Path(__file__).with_name("static") / "viewer.html"
@@ -82,7 +82,7 @@ def page_of_body(
     Parameters
     ----------
     body
-        The body; it must be one that can be solved and has no layers.
+        The body; it must be one that can be solved.
     factors
         How many times as large as in the design each load is; default: as in the design.
     text
@@ -95,12 +95,10 @@ def page_of_body(
     FileError
         The viewer was not built.
     VoxSoftError
-        The body cannot be solved, or has layers, which do not move over time.
+        The body cannot be solved.
     """
     if body.refusal is not None:
         raise body.refusal
-    if not Mover.can_move(body):
-        raise SimulationError("layers", "do not move over time yet, so no page can show them live")
     setup = body.under(factors) if factors else body.setup
     design = setup.design
     solver = design.solver
@@ -143,7 +141,7 @@ def page_of(shown: Design | Result) -> LivePage:
     Raises
     ------
     VoxSoftError
-        The design cannot be meshed or solved, or has layers.
+        The design cannot be meshed or solved.
     """
     design = shown.design if isinstance(shown, Result) else shown
     body = StudioBody.of(design, rev=1, topology=1)
@@ -161,7 +159,7 @@ def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] =
     FileError
         The source cannot be read, or the target not be written.
     VoxSoftError
-        The design cannot be meshed or solved, or has layers.
+        The design cannot be meshed or solved.
     """
     origin = Path(source)
     if origin.is_dir() and assignments:

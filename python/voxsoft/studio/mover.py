@@ -38,11 +38,6 @@ class Mover:
     ----------
     body
         The body; it must be one that can be solved.
-
-    Raises
-    ------
-    SimulationError
-        The core does not move such bodies, which have layers.
     """
 
     body: StudioBody
@@ -60,12 +55,6 @@ class Mover:
 
     def __post_init__(self) -> None:
         body, solver = self.body, self.body.setup.design.solver
-        if not self.can_move(body):
-            raise SimulationError(
-                "play",
-                "bodies with layers do not move over time yet",
-                "look for rest, which works with layers",
-            )
         self._live = _core.Live(
             body.setup.problem,
             body.mesh.triangles.astype(np.uint32),
@@ -78,11 +67,6 @@ class Mover:
         )
         self.loads = list(body.load_values)
         self._final = list(self.loads)
-
-    @staticmethod
-    def can_move(body: StudioBody) -> bool:
-        """Whether the core steps such bodies through time."""
-        return not body.setup.design.layers
 
     def advance(self, seconds: float, budget: float) -> int:
         """Simulate for some seconds, or for as long as the budget of the clock allows.

@@ -102,7 +102,7 @@ class Playback:
         Raises
         ------
         SimulationError
-            There is no body, or one that does not move over time.
+            There is no body.
         VoxSoftError
             The body cannot be solved.
         """
@@ -188,13 +188,10 @@ class Playback:
         self.state = _STATES.get(result.status, "paused")
         said = f"{result.message[:1].upper()}{result.message[1:]}"
         self.sentence = f"{said}, in {said_time(result.seconds)}."
-        mover = self.mover()
-        if mover is not None:
-            mover.go_to_rest(result.positions, result.residual, result.elastic_energy)
+        mover = self.require_mover()
+        mover.go_to_rest(result.positions, result.residual, result.elastic_energy)
         self.frame += 1
         self.past.keep(self.frame, self.time, result.positions)
-        if mover is None:
-            self.shown = self.past.at(self.frame)
 
     @property
     def moving(self) -> bool:
@@ -310,27 +307,14 @@ class Playback:
         Raises
         ------
         SimulationError
-            There is no body, or one that does not move over time.
+            There is no body.
         VoxSoftError
             The body cannot be solved.
         """
         body = self.require_body()
         if body.refusal is not None:
             raise body.refusal
-        mover = self.mover()
-        if mover is None:
-            raise SimulationError(
-                "play",
-                "bodies with layers do not move over time yet",
-                "look for rest, which works with layers",
-            )
-        return mover
-
-    def mover(self) -> Mover | None:
-        """What moves the body, if anything does."""
-        body = self.body
-        solvable = body is not None and body.refusal is None and Mover.can_move(body)
-        if self._mover is None and body is not None and solvable:
+        if self._mover is None:
             self._mover = Mover(body)
         return self._mover
 

@@ -5,6 +5,7 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 use voxsoft_solid::{Body, Floor, Problem, State, elastic};
 
 use super::grab::{Held, add_pulls};
+use super::sheets::Sheets;
 use super::{Arrays, Damping, Subject};
 use crate::damping;
 use crate::viscosity::Viscosity;
@@ -20,6 +21,7 @@ pub(super) struct OnVertices {
     forces: Vec<Vec3>,
     forces_before: Vec<Vec3>,
     viscosity: Viscosity,
+    sheets: Option<Sheets>,
     edge_multipliers: Vec<f64>,
     edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
@@ -53,6 +55,7 @@ impl OnVertices {
             forces: vec![[0.0; 3]; count],
             forces_before: vec![[0.0; 3]; count],
             viscosity: Viscosity::new(body, settings.retardation),
+            sheets: Sheets::of(problem),
             edge_multipliers: vec![0.0; body.edges().len()],
             edge_compliances: body.edges().iter().map(|e| 1.0 / e.stiffness).collect(),
             tet_multipliers: vec![0.0; body.tets().len()],
@@ -67,7 +70,8 @@ impl OnVertices {
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
     /// Hyperelastic voxels and membranes are forces only: a substep of one over the highest frequency
-    /// integrates them as it stands (symplectic Euler), and there is nothing to project.
+    /// integrates voxels as it stands (symplectic Euler), [`Sheets`] see to membranes, and there is
+    /// nothing to project.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -97,6 +101,10 @@ impl OnVertices {
             membrane.add_forces(&self.start, &mut self.forces);
         }
         self.update_damping(subject);
+        let kept = libm::exp(-self.damping_rate * h);
+        if let Some(sheets) = &mut self.sheets {
+            sheets.note(kept, &self.state.velocities);
+        }
         self.held.weigh(
             subject.grabs,
             |vertex| vertex as usize,
@@ -104,7 +112,6 @@ impl OnVertices {
             &mut self.inverse_masses,
             &mut self.state.velocities,
         );
-        let kept = libm::exp(-self.damping_rate * h);
         for vertex in 0..self.start.len() {
             let velocity = &mut self.state.velocities[vertex];
             for axis in 0..3 {
@@ -124,6 +131,13 @@ impl OnVertices {
             &mut self.state.velocities,
             &mut self.state.positions,
         );
+        if let Some(sheets) = &mut self.sheets {
+            sheets.spread(h, &self.inverse_masses, &mut self.state.velocities);
+            for &vertex in sheets.vertices() {
+                let moved = scale(h, self.state.velocities[vertex]);
+                self.state.positions[vertex] = add(self.start[vertex], moved);
+            }
+        }
         subject
             .problem
             .place_clamps(time, 1.0, &mut self.state.positions);
@@ -249,8 +263,14 @@ impl Arrays for OnVertices {
     fn substep(&mut self, subject: Subject<'_>, h: f64) {
         self.predict(subject, h);
         let (problem, settings) = (subject.problem, subject.settings);
+        if let Some(sheets) = &mut self.sheets {
+            sheets.note(1.0, &self.state.positions);
+        }
         for _ in 0..settings.iterations {
             self.sweep(problem.body(), settings.retardation, h);
+        }
+        if let Some(sheets) = &mut self.sheets {
+            sheets.spread(h, &self.inverse_masses, &mut self.state.positions);
         }
         problem.place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
         self.lift_to_floor(problem);

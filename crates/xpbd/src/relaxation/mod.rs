@@ -13,7 +13,7 @@ use crate::outcome::{
     Answer, BLOW_UP_EXCESS, Breakdown, MAX_BACK_OFFS, Observer, Progress, Status, farthest,
     find_breakdown, travel_limit,
 };
-use crate::stiffness::largest_eigenvalue;
+use crate::stiffness::{Membranes, largest_eigenvalue};
 
 /// Settings of [`relax`].
 #[derive(Debug, Clone, PartialEq)]
@@ -107,8 +107,8 @@ fn run(
     let body = problem.body();
     let mut row_sums = vec![0.0; body.rest().len()];
     elastic::row_sums(body, body.rest(), &mut row_sums);
-    let mut mass_factor =
-        largest_eigenvalue(problem, &row_sums, strips) * SAFETY / STABLE_EIGENVALUE;
+    let eigenvalue = largest_eigenvalue(problem, &row_sums, strips, Membranes::Taut);
+    let mut mass_factor = eigenvalue * SAFETY / STABLE_EIGENVALUE;
     let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
     let limit = travel_limit(problem);
 
