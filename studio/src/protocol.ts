@@ -285,6 +285,13 @@ export interface JobShowCommand {
   id: string;
 }
 
+/** Ask how a job can be done again without the studio. */
+export interface RecipeCommand {
+  t: "recipe";
+  seq: number;
+  id: string;
+}
+
 /** Ask for the list of runs. */
 export interface RunsCommand {
   t: "runs";
@@ -729,7 +736,25 @@ export interface CalibratedEvent {
   card: string;
 }
 
-/** A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address. */
+/**
+ * How a job can be done again: a script, and a command where the options allow it (else "").
+ *
+ * `version` is that of the VoxSoft which did it; "" while it has not ended.
+ */
+export interface RecipeEvent {
+  t: "recipe";
+  job: string;
+  python: string;
+  command: string;
+  seed: number | null;
+  version: string;
+}
+
+/**
+ * A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address.
+ *
+ * `again` tells whether the studio knows how it can be done again.
+ */
 export interface RunRow {
   id: string;
   kind: "calibrate" | "run" | "study" | "unknown";
@@ -742,6 +767,7 @@ export interface RunRow {
   thumbnail: string | null;
   message: string;
   trials: number | null;
+  again: boolean;
 }
 
 /** The list of runs, newest first; `trash` holds what can be restored. */
@@ -858,6 +884,7 @@ export type AnyCommand =
   | JobResumeCommand
   | JobStopCommand
   | JobShowCommand
+  | RecipeCommand
   | RunsCommand
   | RunRenameCommand
   | RunDeleteCommand
@@ -879,6 +906,7 @@ export type AnyEvent =
   | GenerationEvent
   | OverlayEvent
   | CalibratedEvent
+  | RecipeEvent
   | RunsEvent
   | ComparedEvent
   | MeasuredEvent

@@ -264,6 +264,12 @@ class JobShow(Command):
     id: ShortText
 
 
+class Recipe(Command):
+    """Ask how a job can be done again without the studio."""
+
+    id: ShortText
+
+
 class Runs(Command):
     """Ask for the list of runs."""
 
@@ -339,6 +345,7 @@ AnyCommand = (
     | JobResume
     | JobStop
     | JobShow
+    | Recipe
     | Runs
     | RunRename
     | RunDelete

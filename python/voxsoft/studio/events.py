@@ -430,8 +430,24 @@ class Calibrated(Event):
     card: str
 
 
+class Recipe(Event):
+    """How a job can be done again: a script, and a command where the options allow it (else "").
+
+    `version` is that of the VoxSoft which did it; "" while it has not ended.
+    """
+
+    job: str
+    python: str
+    command: str
+    seed: int | None
+    version: str
+
+
 class RunRow(Entry):
-    """A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address."""
+    """A folder of the list of runs; `when` is ISO 8601, `thumbnail` an address.
+
+    `again` tells whether the studio knows how it can be done again.
+    """
 
     id: str
     kind: Literal["run", "study", "calibrate", "unknown"]
@@ -444,6 +460,7 @@ class RunRow(Entry):
     thumbnail: str | None
     message: str = ""
     trials: int | None = None
+    again: bool = False
 
 
 class Runs(Event):
@@ -547,6 +564,7 @@ AnyEvent = (
     | Generation
     | Overlay
     | Calibrated
+    | Recipe
     | Runs
     | Compared
     | Measured

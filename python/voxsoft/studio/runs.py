@@ -136,6 +136,7 @@ class RunList:
             thumbnail=f"/thumbnail/{folder.name}" if _picture(folder) else None,
             message=message,
             trials=trials,
+            again=(folder / TASK).is_file(),
         )
 
     def _existing(self, parent: Path, name: str) -> Path:

@@ -36,6 +36,7 @@ from voxsoft.studio.opening import (
 )
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.recipes import recipe_of
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
@@ -272,7 +273,6 @@ class Session:
             spec=spec,
             tables=tables,
         )
-        write_whole(folder / DESIGN, document.text)
         self.jobs.start(task, folder)
         self._runs_changed()
 
@@ -299,6 +299,10 @@ class Session:
         if self.jobs.known(command.id) is None:  # all tabs know those of this studio
             for event in stored_job(self.list.folder_of(command.id)):
                 self.tabs.tell_one(tab, event)
+
+    @_obey.register
+    def _(self, command: commands.Recipe, tab: Tab) -> None:
+        self.tabs.tell_one(tab, recipe_of(self.list.folder_of(command.id)))
 
     @_obey.register
     def _(self, command: commands.Measurement, tab: Tab) -> None:

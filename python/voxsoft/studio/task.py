@@ -10,12 +10,15 @@ import msgspec
 from voxsoft.design import Design
 from voxsoft.errors import FileError
 from voxsoft.files.designs import read_document, with_whole_paths
+from voxsoft.files.run_folder import make_folder
 from voxsoft.files.whole import write_whole
 from voxsoft.studio.commands import CalibrateSpec, RunSpec, StudySpec
 from voxsoft.studio.events import JobKind
 
 #: The file that holds a task.
 TASK: Final = "job.json"
+#: The folder of the measured tables, mapped already.
+MEASURED: Final = "measured"
 #: The text of the design, as it was when the job began.
 DESIGN: Final = "design.toml"
 
@@ -57,7 +60,7 @@ class Task(msgspec.Struct):
         return Design.from_document(with_whole_paths(document, Path(self.base)))
 
     def write(self, folder: Path) -> None:
-        """Write the task to its folder.
+        """Write the task to its folder, its design and its tables beside it.
 
         Raises
         ------
@@ -65,6 +68,18 @@ class Task(msgspec.Struct):
             It cannot be written.
         """
         write_whole(folder / TASK, msgspec.json.format(msgspec.json.encode(self), indent=1))
+        if not (folder / DESIGN).exists():  # a run leaves its own there
+            write_whole(folder / DESIGN, self.design)
+        for (file, _), table in zip(self.measured_files(folder), self.tables, strict=True):
+            make_folder(file.parent)
+            write_whole(file, table.text)
+
+    def measured_files(self, folder: Path) -> list[tuple[Path, str | None]]:
+        """Where the measured tables lie in the folder, and which material to take of each."""
+        return [
+            (folder / MEASURED / f"{number}.csv", table.select)
+            for number, table in enumerate(self.tables, start=1)
+        ]
 
     @classmethod
     def read(cls, folder: Path) -> Task:

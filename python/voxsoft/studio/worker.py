@@ -68,8 +68,8 @@ def main(folder: Path) -> int:
     os.dup2(2, 1)
     task = Task.read(folder)
     progress = Progress(task, folder, _teller(line_out, task, folder))
-    threading.Thread(target=listen, args=(sys.stdin, progress), daemon=True).start()
     try:
+        threading.Thread(target=listen, args=(sys.stdin, progress), daemon=True).start()
         message = runner_of(task.kind)(task, progress)
         progress.end("done", message)
     except KeyboardInterrupt as interrupt:

@@ -14,6 +14,7 @@ import type {
   MeasuredEvent,
   OverlayEvent,
   PickedEvent,
+  RecipeEvent,
   RunsEvent,
   StatEvent,
   TrialEvent,
@@ -46,6 +47,7 @@ export interface Studio {
   generations: Readonly<Record<string, readonly GenerationEvent[]>>;
   overlays: Readonly<Record<string, OverlayEvent>>;
   calibrated: Readonly<Record<string, CalibratedEvent>>;
+  recipes: Readonly<Record<string, RecipeEvent>>;
   runs: RunsEvent | null;
   compared: ComparedEvent | null;
   measured: Readonly<Record<string, MeasuredEvent>>;
@@ -71,6 +73,7 @@ export const useStudio = create<Studio>(() => ({
   generations: {},
   overlays: {},
   calibrated: {},
+  recipes: {},
   runs: null,
   compared: null,
   measured: {},
@@ -150,6 +153,9 @@ export function apply(event: AnyEvent): void {
       break;
     case "calibrated":
       set((state) => ({ calibrated: { ...state.calibrated, [event.job]: event } }));
+      break;
+    case "recipe":
+      set((state) => ({ recipes: { ...state.recipes, [event.job]: event } }));
       break;
     case "runs":
       set({ runs: event });

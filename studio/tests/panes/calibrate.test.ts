@@ -3,7 +3,8 @@ import type { CalibrateDraft } from "../../src/panes/calibrate/draft";
 import { marksOf } from "../../src/panes/calibrate/marksOf";
 import { bestPlane, fitPlane } from "../../src/panes/calibrate/plane";
 import { calibrateSpec, modelOf, obstacle, withUnits } from "../../src/panes/calibrate/setup";
-import type { MeasuredEvent } from "../../src/protocol";
+import { errorsText, generationsText } from "../../src/panes/calibrate/text";
+import type { GenerationEvent, MeasuredEvent } from "../../src/protocol";
 
 const DRAFT: CalibrateDraft = {
   files: [{ name: "beam.csv", text: "", columns: null, select: null }],
@@ -133,4 +134,26 @@ it("says the error at each measured point in mm and in percent", () => {
   ]);
   expect(marks.map((mark) => mark.text)).toEqual(["2.5 mm, 3.33 %"]);
   expect(marks[0]?.title).toBe("tip.csv, station 1: off by 2.5 mm, 3.33 % of the sag");
+});
+
+it("copies errors and generations in SI units, each column with its unit", () => {
+  const station = { experiment: "tip", station: "arc 30 mm", measured: [-0.015], error: 0.001 };
+  expect(errorsText([{ ...station, simulated: [-0.014], percent: 1.3 }], ["dz"])).toBe(
+    "table\tstation\tdz measured (m)\tdz simulated (m)\terror (m)\terror (% of the sag)\n" +
+      "tip\tarc 30 mm\t-0.015\t-0.014\t0.001\t1.3\n",
+  );
+  const generation: GenerationEvent = {
+    t: "generation",
+    job: "a",
+    index: 1,
+    best: 0.5,
+    mean: 0.2,
+    error: null,
+    parameters: { edge: 2e4 },
+    spread: {},
+  };
+  expect(generationsText([generation])).toBe(
+    "generation\tbest fitness\tmean fitness\terror (m)\t" +
+      "edge (Pa)\tedge lowest (Pa)\tedge highest (Pa)\n1\t0.5\t0.2\t\t20000\t\t\n",
+  );
 });

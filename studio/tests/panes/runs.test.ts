@@ -16,6 +16,7 @@ const row = (id: string): RunRow => ({
   thumbnail: null,
   message: "",
   trials: 3,
+  again: false,
 });
 
 it("finds rows that hold all words of a search", () => {

@@ -19,6 +19,7 @@ import {
   matchesFilter,
   rangeOf,
   textOn,
+  trialsText,
   valueOn,
   within,
 } from "../../src/panes/study/trials";
@@ -149,6 +150,17 @@ describe("trials", () => {
     ]);
     expect(valueOn(STUDY.trials[2] as TrialEvent, axes[1] as never)).toBeNaN();
     expect(textOn(0.012, axes[0] as never)).toBe("12 mm");
+  });
+  it("copies designs with the units of their columns, why they failed, and words as they are", () => {
+    const failed = trial(1, 0.015, null);
+    expect(trialsText([failed], axesOf({ ...STUDY, trials: [failed] }))).toBe(
+      "design\tstatus\twall (m)\trise (m)\tweight (kg)\tmass (kg)\tseconds\tnote\n" +
+        "1\tdiverged\t0.015\t\t\t1\t1\tblew up at 0.3 s\n",
+    );
+    const soft = trial(0, "soft", 1, { message: "two\tlines\nhere" });
+    const copied = trialsText([soft], axesOf({ ...STUDY, trials: [soft] }));
+    expect(copied).toContain("\tsoft\t1\t1\t");
+    expect(copied).toContain("two lines here\n");
   });
   it("puts choices that are no numbers in order", () => {
     const words = { ...STUDY, trials: [trial(0, "soft", 1), trial(1, "firm", 2)] };

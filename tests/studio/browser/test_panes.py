@@ -252,6 +252,22 @@ class TestStudy:
         studied.page.get_by_label("Filter the designs").fill("length < 45 mm")
         studied.find("trial-count").get_by_text("2 of 4 designs").wait_for()
 
+    def test_the_designs_and_how_they_came_about_are_copied(self, studied):
+        studied.page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        studied.find("copy-trials").click()
+        studied.find("toast").get_by_text("Copied 4 designs").wait_for()
+        copied = studied.page.evaluate("navigator.clipboard.readText()").splitlines()
+        assert copied[0].startswith("design\tstatus\tlength (m)\tgoal (m)\t")
+        assert len(copied) == 5
+        studied.find("copy-command").click()
+        studied.find("toast").get_by_text("Copied the command").wait_for()
+        command = studied.page.evaluate("navigator.clipboard.readText()")
+        assert command.startswith("voxsoft sweep ")
+        assert "parameters.length.step=10 mm" in command
+        studied.find("copy-python").click()
+        studied.find("toast").get_by_text("Copied the script").wait_for()
+        compile(studied.page.evaluate("navigator.clipboard.readText()"), "again.py", "exec")
+
     def test_two_designs_are_compared_side_by_side(self, studied):
         studied.page.get_by_label("Compare design 0").check()
         studied.page.get_by_label("Compare design 2").check()
@@ -321,6 +337,10 @@ class TestRuns:
         table = studied.find("runs-table")
         row = table.locator("tbody tr").first
         row.wait_for()
+        row.click()
+        studied.find("reproduce").get_by_text("voxsoft sweep").wait_for()
+        assert "seed 0 · VoxSoft" in studied.find("reproduce").inner_text()
+        studied.shot("runs-reproduce")
         assert re.search("goal .* mm", row.inner_text())
         name = row.locator("strong").inner_text()
         row.hover()

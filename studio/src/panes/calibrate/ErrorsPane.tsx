@@ -1,10 +1,12 @@
 import { useMemo } from "react";
-import { Empty } from "../../controls/Choice";
+import { Button, Empty } from "../../controls/Choice";
+import { copy } from "../../controls/clipboard";
 import { formatKind } from "../../controls/kinds";
 import { type Column, Table } from "../../controls/Table";
 import { formatNumber } from "../../controls/units";
 import type { StationError } from "../../protocol";
 import { useCalibration } from "./current";
+import { errorsText } from "./text";
 import "../study/study.css";
 
 /** The error at each station in mm and in percent, with what was measured and simulated. */
@@ -73,18 +75,35 @@ export default function ErrorsPane() {
       },
     ];
   }, [rows, quantities]);
+  if (rows.length === 0) {
+    return (
+      <Empty title="No errors yet">
+        <p>Once a calibration runs, the error at each station stands here in mm and percent.</p>
+      </Empty>
+    );
+  }
   return (
-    <Table
-      label="Errors at the stations"
-      testId="errors-table"
-      columns={columns}
-      rows={rows}
-      rowKey={(row) => `${row.experiment} ${row.station}`}
-      empty={
-        <Empty title="No errors yet">
-          <p>Once a calibration runs, the error at each station stands here in mm and percent.</p>
-        </Empty>
-      }
-    />
+    <div className="plot-pane">
+      <div className="plot-bar">
+        <span className="muted">{rows.length} stations</span>
+        <Button
+          kind="quiet"
+          testId="copy-errors"
+          label="Copy the errors as a table, in SI units"
+          onClick={() => void copy(errorsText(rows, quantities), "the errors")}
+        >
+          Copy data
+        </Button>
+      </div>
+      <div className="plot-rest">
+        <Table
+          label="Errors at the stations"
+          testId="errors-table"
+          columns={columns}
+          rows={rows}
+          rowKey={(row) => `${row.experiment} ${row.station}`}
+        />
+      </div>
+    </div>
   );
 }

@@ -1,8 +1,10 @@
 import { useMemo, useState } from "react";
-import { Empty, Select } from "../../controls/Choice";
+import { Button, Empty, Select } from "../../controls/Choice";
+import { copy } from "../../controls/clipboard";
 import { Plot, type Series } from "../../controls/Plot";
 import type { GenerationEvent } from "../../protocol";
 import { useCalibration } from "./current";
+import { generationsText } from "./text";
 import "../study/study.css";
 
 interface Curves {
@@ -87,6 +89,14 @@ export default function GenerationsPane() {
           ]}
           onChange={setWhat}
         />
+        <Button
+          kind="quiet"
+          testId="copy-generations"
+          label="Copy the generations as a table, in SI units"
+          onClick={() => void copy(generationsText(generations), "the generations")}
+        >
+          Copy data
+        </Button>
       </div>
       <div className="plot-rest">
         <Plot

@@ -5,6 +5,7 @@ import type { JobEvent } from "../../protocol";
 import { Icon } from "../../shell/icons";
 import { send } from "../../store/session";
 import { Glyph } from "../design/Glyph";
+import { RecipeButtons } from "./Recipe";
 import "./jobs.css";
 
 const WORDS: Readonly<Record<JobEvent["state"], string>> = {
@@ -75,12 +76,13 @@ export function JobCard(props: { job: JobEvent; unit: string }) {
         </span>
       </div>
       {job.stage && live && <p className="muted">{job.stage}</p>}
-      {job.best && (
+      {job.best && live && (
         <p>
           <span className="muted">best</span> {job.best}
         </p>
       )}
       {job.message && <p className={job.state === "failed" ? "bad" : "muted"}>{job.message}</p>}
+      <RecipeButtons job={job.id} />
     </div>
   );
 }

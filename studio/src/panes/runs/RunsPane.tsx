@@ -11,7 +11,9 @@ import { onReady, send } from "../../store/session";
 import { toast, useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
 import { Glyph } from "../design/Glyph";
+import { Reproduce } from "../jobs/Recipe";
 import { ago, inTrash, matchesSearch } from "./rows";
+import "../jobs/jobs.css";
 import "./runs.css";
 
 const MODES: Readonly<Record<RunRow["kind"], Mode>> = {
@@ -209,6 +211,7 @@ export default function RunsPane() {
       </Empty>
     );
   }
+  const again = trash ? null : runs.rows.find((row) => row.id === shown && row.again);
   const list = trash ? runs.trash : rows;
   return (
     <div className="runs">
@@ -262,6 +265,7 @@ export default function RunsPane() {
           />
         )}
       </div>
+      {again && <Reproduce key={again.id} job={again.id} />}
     </div>
   );
 }

@@ -1,6 +1,7 @@
 // All designs of a study as a table, the best first: sort by a click, filter by words and comparisons.
 import { useDeferredValue, useMemo, useState } from "react";
 import { Button, Toggle } from "../../controls/Choice";
+import { copy } from "../../controls/clipboard";
 import { writtenUnit } from "../../controls/kinds";
 import { type Column, Table } from "../../controls/Table";
 import { formatSpan, parseQuantity } from "../../controls/units";
@@ -8,7 +9,7 @@ import type { TrialEvent } from "../../protocol";
 import { type CurrentStudy, useStudy } from "./current";
 import { NoStudy } from "./NoStudy";
 import { choose, comparePinned, hover, pin, useSelection } from "./selection";
-import { bestFirst, matchesFilter, textOn, valueOn, within } from "./trials";
+import { bestFirst, matchesFilter, textOn, trialsText, valueOn, within } from "./trials";
 import "./study.css";
 
 export default function TrialsPane() {
@@ -115,6 +116,14 @@ function Trials(props: { current: CurrentStudy }) {
         </span>
         <Toggle label="all metrics" checked={metrics} onChange={showMetrics} />
         <Button
+          kind="quiet"
+          testId="copy-trials"
+          label="Copy these designs as a table, in SI units"
+          onClick={() => void copy(trialsText(rows, axes), `${rows.length} designs`)}
+        >
+          Copy data
+        </Button>
+        <Button
           disabled={pinned.length < 2}
           testId="compare-pinned"
           onClick={() => comparePinned(id)}
@@ -142,7 +151,13 @@ function Trials(props: { current: CurrentStudy }) {
 
 function Status(props: { trial: TrialEvent; best: boolean }) {
   const { trial } = props;
-  if (trial.status !== "ok") return <span className="badge bad">{trial.status}</span>;
+  if (trial.status !== "ok") {
+    return (
+      <span className="badge bad" title={trial.message}>
+        {trial.status}
+      </span>
+    );
+  }
   if (!trial.feasible) return <span className="badge warn">not allowed</span>;
   return props.best ? <span className="badge good">best</span> : <span className="muted">ok</span>;
 }

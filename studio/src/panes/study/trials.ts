@@ -1,5 +1,7 @@
 // What the plots and the table of a study need of its trials.
-import { describeValue, formatKind } from "../../controls/kinds";
+
+import { describeValue, formatKind, siUnit } from "../../controls/kinds";
+import { tableText } from "../../controls/tableText";
 import type { TrialEvent, TrialsEvent } from "../../protocol";
 
 /** A quantity that each trial has: a parameter, an objective or another metric. */
@@ -188,4 +190,22 @@ export function matchesFilter(
       const words = [trial.status, trial.feasible ? "" : "infeasible", trial.message].join(" ");
       return words.toLowerCase().includes(part);
     });
+}
+
+/** Trials as a table for a spreadsheet: SI numbers, their units in its head. */
+export function trialsText(trials: readonly TrialEvent[], axes: readonly Axis[]): string {
+  const titled = ({ name, kind }: Axis) =>
+    siUnit(kind) === "1" ? name : `${name} (${siUnit(kind)})`;
+  return tableText(
+    ["design", "status", ...axes.map(titled), "seconds", "note"],
+    trials.map((trial) => [
+      trial.index,
+      trial.status,
+      ...axes.map((axis) =>
+        axis.choices ? describeValue(trial.parameters[axis.name]) : valueOn(trial, axis),
+      ),
+      trial.seconds,
+      trial.message,
+    ]),
+  );
 }
