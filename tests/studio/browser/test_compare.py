@@ -174,6 +174,29 @@ class TestCompare:
         told.get_by_text("is not in the list of runs any more").wait_for()
         assert colors(settled(tab, LEFT)) > 200
 
+    def test_nobody_waits_for_a_body_whose_pane_is_closed(self, compared_runs, open_tab):
+        tab = open_tab(compared_runs.address, mode="runs")
+        given_up = []
+        tab.page.on("requestfailed", lambda request: given_up.append(request.url))
+        tab.page.route("**/still?of=bars", lambda route: None)  # a solver that takes its time
+        compare(tab, "bars", "short")
+        tab.find("largest-short").wait_for()
+        assert tab.find("still").get_by_role("status").inner_text() == "Solving…"
+        with tab.page.expect_event("requestfailed"):
+            tab.find("mode-simulate").click()
+        assert [url for url in given_up if url.endswith("of=bars")] == given_up != []
+
+    def test_a_server_that_does_not_answer_is_said(self, compared_runs, open_tab):
+        tab = open_tab(compared_runs.address, mode="runs")
+        tab.page.route("**/still?of=long", lambda route: route.abort("connectionrefused"))
+        compare(tab, "short", "long")
+        told = tab.find("still").get_by_role("alert")
+        told.get_by_text("VoxSoft does not answer.").wait_for()
+        tab.page.unroute("**/still?of=long")
+        told.get_by_role("button", name="Try again").click()
+        tab.find("largest-long").wait_for()
+        told.wait_for(state="detached")
+
 
 MEASURED = "s (mm),dz (mm)\n30,-10\n60,-30\n90,-52\n"
 

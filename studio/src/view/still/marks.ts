@@ -68,13 +68,14 @@ export class Marks {
     }));
   }
 
-  /** Whether words stand better at the left of their points, as the body is at the right. */
+  /**
+   * Whether words stand better at the left of their points: towards the first of them, since a
+   * specimen that bends leaves room on the side of its clamp.
+   */
   leanLeft(camera: Camera): boolean {
-    let sum = 0;
-    for (const { measured, simulated } of this.marks) {
-      sum += onScreen(simulated, camera) - onScreen(measured, camera);
-    }
-    return sum > 0;
+    const [first, last] = [this.marks[0], this.marks.at(-1)];
+    if (!first || !last) return false;
+    return onScreen(first.measured, camera) < onScreen(last.measured, camera);
   }
 
   dispose(): void {

@@ -80,6 +80,7 @@ export class StillStage {
   set(scene: StillScene): void {
     const before = this.scene;
     this.scene = scene;
+    this.rig.flat = scene.view.orthographic;
     let fresh = false;
     for (const [i, still] of scene.bodies.entries()) {
       if (this.shown[i]?.still === still) continue;
