@@ -110,7 +110,7 @@ function mayPull(): boolean {
   const state = useStudio.getState().stat?.state;
   const view = useView.getState();
   const moving = state === "playing" || state === "paused" || state === "at-rest";
-  return moving && !view.tape && view.exaggeration === 1 && view.appearance !== "smooth";
+  return moving && !view.tape && view.exaggeration === 1;
 }
 
 function clicked(view: Viewport, hit: Target): void {

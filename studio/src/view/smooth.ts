@@ -1,4 +1,4 @@
-// The smooth surface of the shapes, at rest, with normals of its own.
+// The smooth surface of the shapes, with normals of its own; it follows the voxels as they move.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -9,10 +9,13 @@ import {
   type IUniform,
   Mesh,
   ShaderMaterial,
+  Vector3,
   type Vector4,
 } from "three";
 import type { Smooth } from "../engine/frames";
 import type { View } from "../store/view";
+import type { BodyMesh } from "./body";
+import { Skin } from "./skin";
 import { type StencilMesh, stencilPair } from "./stencil";
 
 const VERTEX = /* glsl */ `
@@ -53,11 +56,16 @@ export class SmoothMesh {
   /** x, y, z of each vertex at rest, m. */
   readonly vertices: Float32Array;
   readonly triangles: Uint32Array;
+  /** The same as they are drawn. */
+  readonly drawn: Float32Array;
+  private skin: Skin | null = null;
+  private followed = "";
 
   constructor(smooth: Smooth, section: { plane: IUniform<Vector4>; section: IUniform<number> }) {
     this.vertices = smooth.vertices;
     this.triangles = smooth.triangles;
-    this.geometry.setAttribute("position", new BufferAttribute(smooth.vertices, 3));
+    this.drawn = smooth.vertices.slice();
+    this.geometry.setAttribute("position", new BufferAttribute(this.drawn, 3));
     this.geometry.setIndex(new BufferAttribute(smooth.triangles, 1));
     this.geometry.computeVertexNormals();
     this.material = new ShaderMaterial({
@@ -83,6 +91,26 @@ export class SmoothMesh {
     (this.material.uniforms.uOwn!.value as Color).set(colors.parts[0] ?? "#e8b88a");
     this.group.visible = visible;
     for (const stencil of this.stencils) stencil.visible = view.section !== "off";
+  }
+
+  /** Move it as the surface is moved. */
+  follow(surface: BodyMesh, exaggeration: number): void {
+    const { frame, topology } = surface;
+    const key = `${topology.id} ${frame?.number} ${frame?.time} ${exaggeration}`;
+    if (key === this.followed) return;
+    this.followed = key;
+    this.skin ??= new Skin(this.vertices, topology.rest, topology.voxelSize || 1e-3);
+    const moved = new Float32Array(topology.rest.length);
+    const at = new Vector3();
+    for (let i = 0; i < moved.length; i += 3) {
+      surface.place(i / 3, exaggeration, at);
+      moved[i] = at.x - topology.rest[i]!;
+      moved[i + 1] = at.y - topology.rest[i + 1]!;
+      moved[i + 2] = at.z - topology.rest[i + 2]!;
+    }
+    this.skin.move(this.vertices, moved, this.drawn);
+    this.geometry.getAttribute("position").needsUpdate = true;
+    this.geometry.computeVertexNormals();
   }
 
   dispose(): void {

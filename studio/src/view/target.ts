@@ -54,7 +54,7 @@ export function targetOf(
   keep: (point: Vector3) => boolean,
 ): Target | null {
   if (smooth) {
-    const hit = pick(ray, smooth.vertices, smooth.triangles, keep);
+    const hit = pick(ray, smooth.drawn, smooth.triangles, keep);
     const target = hit && onSurface(hit, surface, smooth.vertices);
     return target && { ...target, drawn: target.vertex };
   }

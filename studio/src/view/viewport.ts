@@ -339,6 +339,7 @@ export class Viewport {
       one?.style(view, colors, one === mesh && !smooth);
     }
     this.smooth?.style(view, colors, smooth);
+    if (smooth && this.surface) this.smooth?.follow(this.surface, view.exaggeration);
     const box = mesh?.box(view.exaggeration) ?? new Box3();
     this.section.update(
       view,

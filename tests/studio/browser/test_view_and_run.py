@@ -25,6 +25,17 @@ def changed(before, after):
     return int((np.abs(before - after).max(axis=2) > 12).sum())
 
 
+def settled(tab):
+    """The picture once it stands still: in motion it may be coarser."""
+    before = picture(tab)
+    while True:
+        tab.page.wait_for_timeout(400)
+        now = picture(tab)
+        if changed(before, now) == 0:
+            return now
+        before = now
+
+
 def farthest_vertex(tab):
     """A vertex of the free end: the one that lies farthest along x."""
     return tab.page.evaluate(
@@ -144,6 +155,20 @@ def test_each_way_to_show_the_body_draws_another_picture(tab):
     tab.find("section-tools").wait_for()
     tab.until("document.querySelector('.view-tools') !== null")
     assert changed(plain, picture(tab)) > 500
+    assert tab.errors == []
+
+
+def test_the_smooth_shape_moves_with_the_voxels(tab):
+    tab.page.get_by_label("Show as").select_option("smooth")
+    tab.find("legend").wait_for(state="detached")
+    still = settled(tab)
+    tab.find("play").click()
+    tab.until("voxsoft.state === 'at-rest'")
+    tab.until("document.querySelector('[data-testid=fps]') === null")
+    assert changed(still, settled(tab)) > 1000
+    tab.find("reset").click()
+    tab.until("voxsoft.time === 0")
+    assert changed(still, settled(tab)) < 100
     assert tab.errors == []
 
 

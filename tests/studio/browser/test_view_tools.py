@@ -186,8 +186,8 @@ def test_tape_and_values_work_in_every_display(tab, display):
     assert tab.errors == []
 
 
-@pytest.mark.parametrize("display", ["tets", "wireframe"])
-def test_a_pull_works_where_tetrahedra_or_edges_are_shown(tab, display):
+@pytest.mark.parametrize("display", ["tets", "wireframe", "smooth"])
+def test_a_pull_works_in_every_display(tab, display):
     tab.page.get_by_label("Show as").select_option(display)
     if display == "tets":
         tab.until("voxsoft.triangles === 640")
@@ -198,7 +198,7 @@ def test_a_pull_works_where_tetrahedra_or_edges_are_shown(tab, display):
     tab.page.mouse.move(*by(drag_start, 0, -90), steps=6)
     tab.find("grab").wait_for()
     tab.until("document.querySelector('.view-label.force') !== null")
-    # The word tells how far the vertex that is drawn has come, so the picture follows.
+    # The word tells how far the vertex has come, and the picture follows it.
     tab.until(
         "parseFloat(document.querySelector('.view-label.force').innerText.split('moved ')[1]) > 1"
     )
