@@ -522,6 +522,14 @@ export interface BodyPart {
   color: string;
 }
 
+/** A layer: its stiffness in N/m, its center, and triangles of drawn vertices, three each. */
+export interface BodyLayer {
+  name: string;
+  stiffness: number;
+  center: Triple;
+  triangles: number[];
+}
+
 /**
  * A new body: its topology follows as a binary message with the same id.
  *
@@ -547,6 +555,7 @@ export interface BodyEvent {
   loads: BodyLoad[];
   probes: BodyProbe[];
   parts: BodyPart[];
+  layers: BodyLayer[];
   seconds: number;
   memory: number;
   smooth: boolean;

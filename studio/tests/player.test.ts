@@ -12,7 +12,16 @@ const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.
 const BODY: BodyEvent = {
   ...{ t: "body", topology: 4, rev: 1, voxels: 24, vertices: 63, tets: 120 },
   ...{ surface_vertices: 58, triangles: 112, voxel_size: 0.005, cavities: [], leaks: [] },
-  ...{ mass: 0.003, volume: 3e-6, findings: [], clamps: [], parts: [], seconds: 0, memory: 0 },
+  ...{
+    mass: 0.003,
+    volume: 3e-6,
+    findings: [],
+    clamps: [],
+    layers: [],
+    parts: [],
+    seconds: 0,
+    memory: 0,
+  },
   ...{ smooth: false, probes: [{ name: "tip", center: [0.03, 0.005, 0.005], vertices: [57] }] },
   bounds: [
     [0, 0, 0],

@@ -81,7 +81,14 @@ def test_pressure_in_several_cavities_counts_once_for_each():
 
 def test_a_body_with_a_layer_has_a_page():
     page = vs.load(Path(__file__).parents[2] / "examples" / "bender.toml").show()
-    assert notes_of(page.text)["name"] == "bender"
+    body = notes_of(page.text)["body"]
+    (fabric,) = body["layers"]
+    assert fabric["name"] == "fabric"
+    assert fabric["stiffness"] == pytest.approx(9000.0)
+    # Two triangles on each of 20 x 6 faces, all among what is drawn.
+    assert len(fabric["triangles"]) == 3 * 2 * 20 * 6
+    assert set(fabric["triangles"]) <= set(range(body["surface_vertices"]))
+    assert fabric["center"] == pytest.approx([0.04, 0.012, 0.0])
 
 
 def test_what_cannot_be_shown_live_is_said():

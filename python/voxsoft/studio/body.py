@@ -167,6 +167,7 @@ class StudioBody:
             loads=[_load(setup, index) for index in range(len(setup.design.loads))],
             probes=self._probes(),
             parts=_parts(setup.design),
+            layers=_layers(setup, self.surface),
             seconds=self.seconds,
             memory=float(self.voxels.count * BYTES_PER_VOXEL),
         )
@@ -218,6 +219,29 @@ def _clamps(setup: Setup) -> list[events.BodyClamp]:
             )
         )
     return found
+
+
+def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
+    try:
+        found = setup.layers
+    except VoxSoftError:
+        return []
+    told = []
+    drawn = np.full(len(setup.mesh.vertices), -1)
+    drawn[surface.vertices] = np.arange(len(surface.vertices))
+    for index, (layer, triangles) in enumerate(zip(setup.design.layers, found, strict=True)):
+        # Those inside the body are not drawn, as its vertices there are not.
+        shown = drawn[triangles.all]
+        shown = shown[(shown >= 0).all(axis=1)]
+        told.append(
+            events.BodyLayer(
+                name=layer.name or f"layer {index + 1}",
+                stiffness=layer.young * layer.thickness,
+                center=_point(setup.mesh.vertices[np.unique(triangles.all)].mean(axis=0)),
+                triangles=shown.ravel().tolist(),
+            )
+        )
+    return told
 
 
 def _load(setup: Setup, index: int) -> events.BodyLoad:

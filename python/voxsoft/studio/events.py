@@ -198,6 +198,15 @@ class BodyLoad(Entry):
     direction: Triple
 
 
+class BodyLayer(Entry):
+    """A layer: its stiffness in N/m, its center, and triangles of drawn vertices, three each."""
+
+    name: str
+    stiffness: float
+    center: Triple
+    triangles: list[int]
+
+
 class BodyProbe(Entry):
     """A named place of measurement, with the surface vertices of it."""
 
@@ -238,6 +247,7 @@ class Body(Event):
     loads: list[BodyLoad]
     probes: list[BodyProbe]
     parts: list[BodyPart]
+    layers: list[BodyLayer]
     seconds: float
     memory: float
     smooth: bool = False

@@ -19,9 +19,11 @@ import {
   Vector4,
 } from "three";
 import type { Frame, Topology } from "../engine/frames";
+import type { BodyLayer } from "../protocol";
 import type { View } from "../store/view";
 import { texels } from "./colormaps";
 import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
+import { type Sheet, sheetOn } from "./sheets";
 import { stencilPair } from "./stencil";
 
 /** Colors of cavities, after Okabe and Ito; the same as in body.css. */
@@ -80,6 +82,8 @@ export class BodyMesh {
   private readonly edges: LineSegments<BufferGeometry, ShaderMaterial>;
   private readonly ghost: LineSegments<BufferGeometry, ShaderMaterial>;
   private readonly geometries: BufferGeometry[] = [];
+  private readonly rest: BufferAttribute;
+  private sheets: Sheet[] = [];
   private readonly shared: Uniforms;
   private readonly lut: DataTexture;
   private readonly bounds = new Box3();
@@ -91,6 +95,7 @@ export class BodyMesh {
     this.topology = topology;
     const n = topology.rest.length / 3;
     const rest = new BufferAttribute(topology.rest, 3);
+    this.rest = rest;
     this.attribute = new BufferAttribute(new Uint16Array(4 * n), 4, true);
     this.attribute.setUsage(35048); // DYNAMIC_DRAW
     this.lut = new DataTexture(texels("viridis", 0), 256, 1);
@@ -181,6 +186,16 @@ export class BodyMesh {
     return lines;
   }
 
+  /** Draws the layers of the body, if they are not there yet. */
+  cover(layers: readonly BodyLayer[]): void {
+    if (this.sheets.length > 0) return;
+    this.sheets = layers.map((layer) => {
+      const index = new BufferAttribute(new Uint32Array(layer.triangles), 1);
+      return sheetOn(this.geometry(this.rest, index), this.shared);
+    });
+    for (const sheet of this.sheets) this.group.add(sheet);
+  }
+
   /** Whether a frame is one of this body in this kind of view. */
   suits(frame: Frame): boolean {
     return (
@@ -258,6 +273,7 @@ export class BodyMesh {
     (ghost.uInk!.value as Vector4).set(colors.ink.r, colors.ink.g, colors.ink.b, 0.3);
     ghost.uFade!.value = 0;
     this.ghost.visible = visible && view.ghost;
+    for (const sheet of this.sheets) sheet.visible = visible && view.symbols;
   }
 
   /** Bounds as drawn. */
@@ -298,5 +314,6 @@ export class BodyMesh {
     }
     this.edges.material.dispose();
     this.ghost.material.dispose();
+    for (const sheet of this.sheets) sheet.material.dispose();
   }
 }

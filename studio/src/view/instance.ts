@@ -48,7 +48,7 @@ function actions(shown: Viewport): Action[] {
     ["edges", "Voxel edges", "e"],
     ["ghost", "Undeformed ghost", "g"],
     ["cavities", "Look into the cavities", "c"],
-    ["symbols", "Clamps, loads and probes"],
+    ["symbols", "Clamps, layers, loads, probes"],
     ["extremes", "Mark minimum and maximum"],
     ["grid", "Ground grid"],
     ["orthographic", "Orthographic view", "o"],

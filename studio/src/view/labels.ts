@@ -3,7 +3,16 @@ import { type Camera, Vector3 } from "three";
 
 export interface Label {
   readonly key: string;
-  readonly kind: "clamp" | "load" | "probe" | "cavity" | "leak" | "extreme" | "force" | "tape";
+  readonly kind:
+    | "clamp"
+    | "layer"
+    | "load"
+    | "probe"
+    | "cavity"
+    | "leak"
+    | "extreme"
+    | "force"
+    | "tape";
   readonly text: string;
   readonly title?: string;
   readonly color?: string;

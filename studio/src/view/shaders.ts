@@ -79,6 +79,21 @@ void main() {
 }
 `;
 
+export const SHEET_FRAGMENT = /* glsl */ `
+precision highp float;
+${CUT}
+in vec3 vWorld;
+uniform vec3 uOwn;
+out vec4 color;
+void main() {
+  if (cutAway(vWorld)) discard;
+  // Threads both ways on the screen, between which the body's own color shows.
+  vec2 way = vec2(gl_FragCoord.x + gl_FragCoord.y, gl_FragCoord.x - gl_FragCoord.y) / 10.0;
+  vec2 near = smoothstep(0.36, 0.46, abs(fract(way) - 0.5));
+  color = vec4(uOwn, mix(0.2, 0.85, max(near.x, near.y)));
+}
+`;
+
 export const STENCIL_FRAGMENT = /* glsl */ `
 precision highp float;
 ${CUT}

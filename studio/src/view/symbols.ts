@@ -1,4 +1,4 @@
-// Clamps, loads and probes: marks on the body, and words that can be clicked.
+// Clamps, layers, loads and probes: marks on the body, and words that can be clicked.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -17,6 +17,7 @@ import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
 import { type BodyMesh, CAVITY_COLORS } from "./body";
 import type { Label } from "./labels";
+import { LAYER_COLOR } from "./sheets";
 
 const CLAMP_COLOR = "#98a1ab";
 const LOAD_COLOR = "#e8704a";
@@ -26,6 +27,19 @@ const PROBE_COLOR = "#56b4e9";
 export function loadText(load: BodyLoad, stat: StatEvent | null): string {
   const value = stat?.loads[load.index] ?? load.value;
   return `${formatNumber(value / load.factor, 3)} ${unitText(load.unit)}`.trim();
+}
+
+/** The mean of drawn vertices where they are now, if they are drawn. */
+function middle(
+  vertices: readonly number[],
+  mesh: BodyMesh | null,
+  exaggeration: number,
+): [number, number, number] | null {
+  if (!mesh || mesh.topology.tets || vertices.length === 0) return null;
+  const sum = new Vector3();
+  const one = new Vector3();
+  for (const vertex of vertices) sum.add(mesh.place(vertex, exaggeration, one));
+  return sum.divideScalar(vertices.length).toArray();
 }
 
 export class Symbols {
@@ -109,6 +123,17 @@ export class Symbols {
         onClick: () => showPane("design"),
       });
     }
+    for (const [i, layer] of body.layers.entries()) {
+      labels.push({
+        key: `layer-${i}`,
+        kind: "layer",
+        text: layer.name,
+        title: `A layer of ${formatNumber(layer.stiffness, 3)} N/m`,
+        color: LAYER_COLOR,
+        at: (out) => fixed(middle(layer.triangles, mesh, exaggeration) ?? layer.center)(out),
+        onClick: () => showPane("design"),
+      });
+    }
     for (const load of body.loads) {
       labels.push({
         key: `load-${load.index}`,
@@ -121,14 +146,8 @@ export class Symbols {
       });
     }
     for (const probe of body.probes) {
-      const place = (out: Vector3) => {
-        if (!mesh || mesh.topology.tets || probe.vertices.length === 0)
-          return fixed(probe.center)(out);
-        const one = new Vector3();
-        out.set(0, 0, 0);
-        for (const vertex of probe.vertices) out.add(mesh.place(vertex, exaggeration, one));
-        return out.divideScalar(probe.vertices.length);
-      };
+      const place = (out: Vector3) =>
+        fixed(middle(probe.vertices, mesh, exaggeration) ?? probe.center)(out);
       labels.push({
         key: `probe-${probe.name}`,
         kind: "probe",

@@ -143,6 +143,7 @@ export class Viewport {
       this.tets = mesh;
     } else this.surface = mesh;
     this.scene.add(mesh.group);
+    this.coverSurface();
     this.lastMoved = performance.now();
     this.request();
   }
@@ -187,7 +188,14 @@ export class Viewport {
     const body = useStudio.getState().body;
     if (body) this.symbols.build(body);
     else this.symbols.clear();
+    this.coverSurface();
     this.request();
+  }
+
+  // The body's layers, whichever of its surface and what is told of it comes first.
+  private coverSurface(): void {
+    const body = useStudio.getState().body;
+    if (body && body.topology === this.surface?.topology.id) this.surface.cover(body.layers);
   }
 
   private viewChanged(now: View, before: View): void {
