@@ -42,7 +42,7 @@ from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
-from voxsoft.studio.task import DESIGN, Table, Task
+from voxsoft.studio.task import Table, Task
 from voxsoft.studio.uploads import safe_name, unpack_folder
 
 #: Folder of the studio's own files below the runs.
