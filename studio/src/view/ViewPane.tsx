@@ -174,7 +174,10 @@ function Banner() {
   if (!diverged && stat?.state !== "diverged") return null;
   return (
     <div className="view-banner" role="alert" data-testid="diverged">
-      <strong>Diverged.</strong> <span>{stat?.sentence}</span>
+      <p>
+        <strong>Diverged</strong>
+        {stat?.state === "diverged" ? stat.sentence.replace(/^Diverged/, "") : " by this frame."}
+      </p>
       <Button onClick={() => send({ t: "reset" })}>Back to the unloaded shape</Button>
     </div>
   );
