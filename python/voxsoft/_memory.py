@@ -50,3 +50,15 @@ def _read() -> int:
         return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
     except (AttributeError, OSError, ValueError):
         return UNKNOWN_MEMORY
+
+
+def gigabytes(size: float) -> str:
+    """Say a number of bytes in gigabytes, to two digits and without powers of ten.
+
+    Examples
+    --------
+    >>> gigabytes(14e6), gigabytes(2.4e10), gigabytes(2.21e17)
+    ('0.014 GB', '24 GB', '220,000,000 GB')
+    """
+    rounded = float(f"{size / 1e9:.2g}")
+    return f"{rounded:,.0f} GB" if rounded >= 10 else f"{rounded:g} GB"

@@ -11,6 +11,7 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
+from bad_designs import NO_DESIGN, NO_TEXT, NOT_SOLVABLE
 from typer.testing import CliRunner
 
 from voxsoft.cli.app import app
@@ -29,31 +30,7 @@ def call(*arguments):
 
 
 @pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ("colour=red", "is not known here"),
-        ("voxel_size=5", "has no unit"),
-        ("voxel_size=5 kPa", "a length is due"),
-        ("voxel_size=-5 mm", "-5 mm"),
-        ("voxel_size=0", "0"),
-        ("voxel_size=1 um", "more than the limit of"),
-        ("voxel_size=100 mm", "is empty"),
-        ("shapes.outer.radius== radus", "radus"),
-        ("parameters.cap.value== cap", "cap"),
-        ("radius", "is not an assignment"),
-        ("radius=100 mm", "25 mm"),
-        ("parts.0.material=ecoflex", "did you mean"),
-        ("clamps=[]", "nothing holds the body"),
-        ("clamps.0.region.z=[1, 2]", "unit"),
-        ('clamps.0.region.z=["1 m", "2 m"]', "catches no vertex"),
-        ('probes.top.z=["1 m", "1 m"]', "catches no vertex"),
-        ("shapes.cavity.radius=1 mm", "no enclosed cavity"),
-        ("objectives.rise.maximize=displacment", 'did you mean "displacement"'),
-        ("objectives.rise.probe=tip", 'no probe "tip"'),
-        ('constraints.light={metric = "mass", max = "30 mm"}', "mass is a mass"),
-        ('constraints.light={metric = "mass", max = "30 g", axis = "z"}', "no direction"),
-        ("solver.method=magic", "magic"),
-    ],
+    ("change", "words"), [*NO_DESIGN, *NOT_SOLVABLE, ("radius", "is not an assignment")]
 )
 def test_a_bad_design_is_said_in_words(change, words):
     outcome = call("run", CYLINDER, "--set", change, "--json")
@@ -83,11 +60,7 @@ def test_a_piece_that_nothing_holds_is_named():
     assert "touches no clamp" in outcome.stderr
 
 
-@pytest.mark.parametrize(
-    "content",
-    [b"", b'name = "a', b"\xff\xfe", b"\x89PNG\r\n\x1a\n\x00", b"a = " + b"[" * 10_000],
-    ids=["empty", "truncated", "not-utf8", "binary", "deep"],
-)
+@pytest.mark.parametrize("content", NO_TEXT.values(), ids=NO_TEXT)
 @pytest.mark.parametrize("verb", ["check", "mesh", "run", "sweep", "optimize"])
 def test_a_broken_file_is_invalid(verb, content):
     Path("broken.toml").write_bytes(content)

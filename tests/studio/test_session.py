@@ -249,56 +249,6 @@ def test_a_slider_gives_a_new_body_and_a_bad_value_keeps_the_old_one(studio):
     run(scenario())
 
 
-@pytest.mark.parametrize(
-    ("path", "value", "words"),
-    [
-        (["voxel_size"], "1 um", "more than the limit of"),
-        (["voxel_size"], "100 mm", "is empty"),
-        (["voxel_size"], "-5 mm", "-5 mm"),
-        (["shapes", "outer", "radius"], "= radus", "radus"),
-        (["parameters", "cap", "value"], "= cap", "cap"),
-        (["objectives", "rise", "probe"], "tip", 'no probe "tip"'),
-        (["solver", "method"], "magic", "magic"),
-        (["colour"], "red", "is not known here"),
-    ],
-)
-def test_a_malformed_design_is_said_at_its_line(studio, path, value, words):
-    async def scenario():
-        async with studio.page() as page:
-            await page.send("edit", rev=1, path=path, value=value)
-            document = await page.until("document", lambda d: d.diagnostics)
-            assert any(words in f"{d['what']} {d['hint']}" for d in document.diagnostics)
-            await page.send("undo")
-            await page.until("document", lambda d: d.valid)
-
-    run(scenario())
-
-
-@pytest.mark.parametrize(
-    ("path", "value", "words"),
-    [
-        (["clamps"], [], "nothing holds the body"),
-        (["clamps", 0, "region", "z"], ["1 m", "2 m"], "catches no vertex"),
-        (["probes", "top", "z"], ["1 m", "1 m"], "catches no vertex"),
-        (["shapes", "cavity", "radius"], "1 mm", "no enclosed cavity"),
-        (["constraints"], {"light": {"metric": "mass", "max": "30 mm"}}, "mass is a mass"),
-    ],
-)
-def test_a_body_that_cannot_be_solved_is_shown_all_the_same(studio, path, value, words):
-    async def scenario():
-        async with studio.page() as page:
-            await page.until("topology")
-            await page.send("edit", rev=1, path=path, value=value)
-            body = await page.until("body", lambda b: b.topology == 2)
-            await page.until("frame", lambda f: f.topology == 2)
-            await page.send("play")
-            error = await page.until("error")
-        assert any(words in f["what"] for f in body.findings)
-        assert words in error.what
-
-    run(scenario())
-
-
 def test_a_body_too_large_for_the_memory_is_refused_with_the_estimate(studio, monkeypatch):
     monkeypatch.setattr("voxsoft.studio.body.memory_limit", lambda: 5_000_000)
 

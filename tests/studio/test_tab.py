@@ -72,6 +72,46 @@ def test_statistics_and_rows_are_merged_while_they_wait():
     assert '"rows":[[1.0],[2.0]]' in sent[1]
 
 
+def test_news_that_were_overtaken_are_not_kept_for_a_tab_that_reads_slowly():
+    def fill(tab):
+        for number in range(1000):
+            tab.put(events.Runs(rows=[], trash=[], folder=f"{number}"))
+            tab.put(events.Stat(topology=1, state="playing", sentence="", time=float(number)))
+            tab.put(events.Plot(topology=1, names=["t"], units=["s"], rows=[[float(number)]]))
+            tab.put_topology(bytes([number % 256]))
+        yield None
+
+    sent = pumped(fill).sent
+    texts = [each for each in sent if isinstance(each, str)]
+    assert [each for each in sent if isinstance(each, bytes)] == [bytes([999 % 256])]
+    assert len(texts) == 3
+    assert any('"folder":"999"' in each for each in texts)
+    assert any('"time":999.0' in each for each in texts)
+    assert any("[0.0],[1.0]" in each and "[999.0]]" in each for each in texts)
+
+
+def test_a_tab_that_reads_nothing_is_cut_off_though_its_pump_is_stuck():
+    class Stuck(Wire):
+        async def send_text(self, data):
+            await asyncio.Event().wait()
+
+    async def scenario():
+        wire = Stuck()
+        tab = Tab(wire)
+        pump = asyncio.create_task(tab.pump())
+        tab.put(events.Log(level="info", text="the pump is stuck with this one"))
+        await asyncio.sleep(0.01)
+        for _ in range(3 * LONGEST_QUEUE):
+            tab.put(events.Log(level="info", text=""))
+        assert tab.closed
+        assert len(tab._queue) == 0
+        await asyncio.sleep(0.01)
+        pump.cancel()
+        return wire
+
+    assert run(scenario()).closed == 1013
+
+
 def test_a_tab_that_does_not_keep_up_is_cut_off():
     def fill(tab):
         for _ in range(LONGEST_QUEUE + 1):

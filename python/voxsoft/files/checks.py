@@ -14,7 +14,9 @@ from voxsoft.errors import UnitError, VoxSoftError
 from voxsoft.files.designs import FilePath, load
 from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.surface_files import Surface, read_surface
+from voxsoft.shapes.triangles import open_edges
 from voxsoft.simulation import CheckReport, Finding, check
+from voxsoft.simulation.check import findings_of_holes
 from voxsoft.units import format_quantity, parse
 
 #: Voxels along the longest side of a mesh whose voxel size is not given.
@@ -88,7 +90,11 @@ def check_mesh(
     except VoxSoftError as error:
         return _report_of(error)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
-    findings = [*report.findings, *_findings_of(surface, file.name), *chosen]
+    findings = [
+        *report.findings,
+        *findings_of_holes(*open_edges(surface.triangles), file.name),
+        *chosen,
+    ]
     return replace(report, findings=tuple(findings))
 
 
@@ -138,19 +144,3 @@ def _voxel_size(
         raise UnitError("--voxel-size", "cannot be chosen for a body without size", 'write "2 mm"')
     what = f"{format_quantity(size, 'length')} was chosen, about {DEFAULT_VOXELS} along the body"
     return size, [Finding("warning", "voxel size", what, "give --voxel-size")]
-
-
-def _findings_of(surface: Surface, name: str) -> list[Finding]:
-    edges = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    _, uses = np.unique(edges, axis=0, return_counts=True)
-    open_edges = int(np.count_nonzero(uses == 1))
-    if open_edges == 0:
-        return []
-    return [
-        Finding(
-            "warning",
-            name,
-            f"the surface has holes: {open_edges:,} of {len(uses):,} edges belong to one triangle",
-            "look at the voxels; the inside was guessed by winding numbers",
-        )
-    ]

@@ -8,13 +8,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft._memory import memory_limit
+from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Shape, Triple
 from voxsoft.voxels import Voxels
 
 #: Sides closer to a cell face than this part of a voxel lie on it.
 _SNAP = 1e-6
+#: Bytes that a cell takes until its grid is made; measured: 3.4 to 4.0 for 10 to 250 million cells.
+BYTES_PER_CELL = 4
 
 
 def inside(
@@ -108,6 +110,7 @@ def voxelize(
     low, high = grid_bounds(shape, voxel_size, bounds, names)
     cells = (high[0] - low[0], high[1] - low[1], high[2] - low[2])
     origin = (low[0] * voxel_size, low[1] * voxel_size, low[2] * voxel_size)
+    _refuse_too_many(cells)
     found = inside(shape, voxel_size, cells, origin, names)
     if not found.any():
         raise ShapeError(
@@ -116,6 +119,17 @@ def voxelize(
             "use a smaller voxel_size, or check the sizes and places of its parts",
         )
     return Voxels.from_array(found, voxel_size, origin)
+
+
+def _refuse_too_many(cells: tuple[int, int, int]) -> None:
+    due, free = math.prod(cells) * BYTES_PER_CELL, memory_limit()
+    if due > free:
+        raise ShapeError(
+            "voxel_size",
+            f"a grid of {cells[0]:,} x {cells[1]:,} x {cells[2]:,} cells needs about "
+            f"{gigabytes(due)} of memory, more than the limit of {gigabytes(free)}",
+            "make the voxels larger",
+        )
 
 
 def grid_bounds(

@@ -55,13 +55,27 @@ class TriangleMesh(Shape):
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
+        solid = self._solid
+        return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
+
+    def open_edges(self) -> tuple[int, int]:
+        """Return how many edges belong to one triangle only, and how many there are.
+
+        Raises
+        ------
+        ShapeError
+            The file cannot be read.
+        """
+        return self._solid.open_edges
+
+    @property
+    def _solid(self) -> _Solid:
         path = Path(self.path)
         try:
             changed = path.stat().st_mtime_ns
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        solid = _solid(path, changed, parse(f"1 {self.unit}", "length"))
-        return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
+        return _solid(path, changed, parse(f"1 {self.unit}", "length"))
 
 
 @lru_cache(maxsize=8)
@@ -93,7 +107,8 @@ class _Solid:
     ) -> None:
         import igl
 
-        _refuse_soup(triangles, name)
+        self.open_edges = open_edges(triangles)
+        _refuse_soup(*self.open_edges, name)
         self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
         self.low: Triple = tuple(used.min(axis=0).tolist())
@@ -127,13 +142,17 @@ def _is_closed(triangles: NDArray[np.int64]) -> bool:
     return not balance.any()
 
 
-def _refuse_soup(triangles: NDArray[np.int64], name: str) -> None:
+def open_edges(triangles: NDArray[np.int64]) -> tuple[int, int]:
+    """Return how many edges of triangles (t, 3) belong to one only, and how many there are."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)
-    open_edges = int(np.count_nonzero(uses == 1))
-    if open_edges > _MOST_OPEN * len(uses):
+    return int(np.count_nonzero(uses == 1)), len(uses)
+
+
+def _refuse_soup(bare: int, edges: int, name: str) -> None:
+    if bare > _MOST_OPEN * edges:
         raise ShapeError(
             "path",
-            f"{name} encloses nothing: {open_edges} of {len(uses)} edges belong to one triangle",
+            f"{name} encloses nothing: {bare} of {edges} edges belong to one triangle",
             "export a closed surface, or merge vertices that coincide",
         )

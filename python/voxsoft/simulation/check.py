@@ -14,6 +14,7 @@ from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY
 from voxsoft.mesh import Mesh
+from voxsoft.shapes import TriangleMesh
 from voxsoft.simulation.layers import chambers
 from voxsoft.simulation.setup import Setup
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
@@ -160,6 +161,7 @@ def examine(
             mass = setup.problem.mass
         except VoxSoftError as error:
             findings += _errors(error)
+        findings += _findings_of_surfaces(body)
     findings += [*_findings_of_voxels(voxels, leaks), *_findings_of_mesh(mesh)]
     constraints = len(mesh.edges) + len(mesh.tets)
     thinnest = _thinnest_wall(voxels)
@@ -222,6 +224,21 @@ def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...],
         cavities.append(Cavity(runs, len(cells), surface.volume, bounds, surface.area))
     leaks = [leak for leak in voxels.leaks if tuple(leak.cells[0].tolist()) not in closed]
     return tuple(cavities), tuple(leaks)
+
+
+def findings_of_holes(bare: int, edges: int, where: str) -> list[Finding]:
+    """Say that a surface has holes, where some of its edges belong to one triangle only."""
+    if bare == 0:
+        return []
+    what = f"the surface has holes: {bare:,} of {edges:,} edges belong to one triangle"
+    hint = "look at the voxels, whose inside was guessed, or close the surface where it was made"
+    return [Finding("warning", where, what, hint)]
+
+
+def _findings_of_surfaces(design: Design) -> Iterator[Finding]:
+    for name, shape in design.shapes.items():
+        if isinstance(shape, TriangleMesh):
+            yield from findings_of_holes(*shape.open_edges(), f"shapes.{name}.path")
 
 
 def _findings_of_voxels(voxels: Voxels, leaks: tuple[Leak, ...]) -> Iterator[Finding]:

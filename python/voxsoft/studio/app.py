@@ -244,7 +244,10 @@ class _Pages:
         return await asyncio.get_running_loop().run_in_executor(self._commands, call, *arguments)
 
     async def _aside(self, call: Any, *arguments: Any) -> Any:  # noqa: ANN401
-        return await asyncio.get_running_loop().run_in_executor(self._files, call, *arguments)
+        try:
+            return await asyncio.get_running_loop().run_in_executor(self._files, call, *arguments)
+        except asyncio.CancelledError:
+            raise FileError("studio", "was ended before this was done") from None
 
 
 class _TooLargeError(FileError):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -11,12 +13,13 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft._memory import memory_limit
+from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Force, Gravity, Pressure, Traction
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.discretize import voxels_of
-from voxsoft.errors import MeshError, VoxSoftError
+from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
+from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.studio import events
@@ -30,6 +33,8 @@ from voxsoft.voxels import Voxels
 BYTES_PER_VOXEL: Final = 6_000
 #: The part of the free memory that one body may take.
 SHARE_OF_MEMORY: Final = 0.5
+#: Cells of the grid of a look at a body that may be too large.
+CELLS_OF_A_LOOK: Final = 1_000_000
 #: Colors of parts, distinct also for color-blind eyes (Okabe and Ito), lightened.
 PART_COLORS: Final = ("#e8b88a", "#8ab8dc", "#7fc8a9", "#d9a3c4", "#e6d27a", "#b9b9c9")
 #: Points of a clamp that are drawn.
@@ -77,6 +82,7 @@ class StudioBody:
         started = time.perf_counter()
         refine = design.solver.refine
         lost = 0.0
+        _refuse_far_too_large(design)
         if design.fill == "fraction":
             cut = CutVoxels.of(design, refine)
             _refuse_too_large(cut.voxels.count)
@@ -188,13 +194,33 @@ class StudioBody:
         ]
 
 
-def _refuse_too_large(voxels: int) -> None:
+def _refuse_far_too_large(design: Design) -> None:
+    """Refuse what a look with larger voxels shows to be far too large, before it takes memory.
+
+    Thin walls may be lost to such a look, and others counted too thick by a voxel: what is within
+    a factor of four is counted in full.
+    """
+    cells = 0
+    for part in design.parts:
+        shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
+        low, high = grid_bounds(shape, design.voxel_size, names=design.shapes)
+        cells += math.prod(b - a for a, b in zip(low, high, strict=True))
+    coarser = math.ceil((cells / CELLS_OF_A_LOOK) ** (1 / 3))
+    if coarser < 2:
+        return
+    with suppress(ShapeError):  # nothing is left of the body: the full count tells
+        look = design.model_copy(update={"voxel_size": coarser * design.voxel_size})
+        _refuse_too_large(voxels_of(look).count * coarser**3, within=4.0)
+
+
+def _refuse_too_large(voxels: int, within: float = 1.0) -> None:
     due, free = voxels * BYTES_PER_VOXEL, memory_limit()
-    if due > SHARE_OF_MEMORY * free:
+    if due > within * SHARE_OF_MEMORY * free:
+        about = "" if within == 1.0 else "some "
         raise MeshError(
             "voxel_size",
-            f"{voxels:,} voxels would need about {due / 1e9:.2g} GB of memory; "
-            f"{free / 1e9:.2g} GB are free",
+            f"{about}{voxels:,} voxels would need about {gigabytes(due)} of memory; "
+            f"{gigabytes(free)} are free",
             "make the voxels larger",
         )
 

@@ -267,7 +267,7 @@ def _plain(name: str) -> str:
         Any other.
     """
     if (
-        not re.fullmatch(r"[^/\\\0:*?\"<>|]{1,120}", name)
+        not re.fullmatch(r"[^/\\\0-\x1f\x7f:*?\"<>|]{1,120}", name)
         or name.startswith(".")
         or not name.strip()
     ):

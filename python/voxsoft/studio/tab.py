@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Final, Protocol
 
@@ -15,6 +16,8 @@ from voxsoft.studio.protocol import CREDITS, encode
 LONGEST_QUEUE: Final = 5_000
 #: Rows of a plot that wait in one message.
 MOST_ROWS: Final = 20_000
+#: Events that tell all of something: a newer one makes those that wait useless.
+_STATES: Final = (events.Document, events.Body, events.Runs, events.Stat)
 #: Code by which a websocket says "try again later".
 TRY_AGAIN: Final = 1013
 
@@ -40,7 +43,9 @@ class Tab:
     """A websocket with its queue.
 
     Frames need credits, of which an `ack` returns one; the newest frame takes the place of one that
-    waits. Everything else is sent in order, and what only repeats itself is merged while it waits.
+    waits. Everything else is sent in order. What waits gives way to newer news of its kind, or is
+    joined with them, so that a tab that reads slowly costs little memory; one that reads nothing is
+    cut off.
 
     Attributes
     ----------
@@ -65,6 +70,7 @@ class Tab:
     _queue: deque[events.Event | bytes] = field(default_factory=deque)
     _frame: bytes | None = None
     _wake: asyncio.Event = field(default_factory=asyncio.Event)
+    _closing: asyncio.Future[None] | None = None
 
     @property
     def hungry(self) -> bool:
@@ -73,42 +79,63 @@ class Tab:
 
     def put(self, event: events.Event) -> None:
         """Queue an event."""
-        last = self._queue[-1] if self._queue else None
-        if isinstance(event, events.Stat) and isinstance(last, events.Stat):
-            self._queue[-1] = event
-        elif (
-            isinstance(event, events.Plot)
-            and isinstance(last, events.Plot)
-            and not event.clear
-            and last.topology == event.topology
-            and len(last.rows) < MOST_ROWS
-        ):
-            self._queue[-1] = events.Plot(
-                topology=last.topology,
-                names=event.names,
-                units=event.units,
-                rows=[*last.rows, *event.rows],
-                clear=last.clear,
-            )
-        else:
+        if isinstance(event, _STATES):
+            self._forget(lambda waiting: type(waiting) is type(event))
+        if not (isinstance(event, events.Plot) and self._joined(event)):
             self._queue.append(event)
-        self._wake.set()
+        self._woken()
 
     def put_topology(self, packed: bytes) -> None:
-        """Queue a topology; frames of the one before are of no use any more."""
+        """Queue a topology; pictures of the one before are of no use any more."""
         self._frame = None
+        self._forget(lambda waiting: isinstance(waiting, bytes))
         self._queue.append(packed)
-        self._wake.set()
+        self._woken()
 
     def put_smooth(self, packed: bytes) -> None:
         """Queue a smooth surface, which goes beside the frames."""
         self._queue.append(packed)
-        self._wake.set()
+        self._woken()
 
     def put_frame(self, packed: bytes) -> None:
         """Offer a frame; it takes the place of one that waits."""
         self._frame = packed
         self._wake.set()
+
+    def _forget(self, old: Callable[[events.Event | bytes], bool]) -> None:
+        """Drop what waits and has been overtaken."""
+        if any(map(old, self._queue)):
+            self._queue = deque(waiting for waiting in self._queue if not old(waiting))
+
+    def _joined(self, event: events.Plot) -> bool:
+        """Add rows to those that wait already; whether that could be done."""
+        for at in reversed(range(len(self._queue))):
+            waiting = self._queue[at]
+            if isinstance(waiting, events.Plot):
+                same = not event.clear and waiting.topology == event.topology
+                if not same or len(waiting.rows) >= MOST_ROWS:
+                    return False
+                self._queue[at] = events.Plot(
+                    topology=event.topology,
+                    names=event.names,
+                    units=event.units,
+                    rows=[*waiting.rows, *event.rows],
+                    clear=waiting.clear,
+                )
+                return True
+        return False
+
+    def _woken(self) -> None:
+        """Let the pump send, or cut the tab off if too much waits: the pump may be stuck."""
+        self._wake.set()
+        if self.closed:
+            self._queue.clear()
+        elif len(self._queue) > LONGEST_QUEUE:
+            self.closed = True
+            self._queue.clear()
+            self._closing = asyncio.ensure_future(
+                self.socket.close(TRY_AGAIN, "the tab does not keep up")
+            )
 
     def ack(self) -> None:
         """Take a credit back; a tab never has more than it began with."""
@@ -120,10 +147,6 @@ class Tab:
         while not self.closed:
             await self._wake.wait()
             self._wake.clear()
-            if len(self._queue) > LONGEST_QUEUE:
-                self.closed = True
-                await self.socket.close(TRY_AGAIN, "the tab does not keep up")
-                return
             while self._queue:
                 waiting = self._queue.popleft()
                 if isinstance(waiting, bytes):
