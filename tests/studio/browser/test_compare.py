@@ -173,6 +173,11 @@ class TestCompare:
         told.get_by_role("button", name="Try again").click()
         told.get_by_text("is not in the list of runs any more").wait_for()
         assert colors(settled(tab, LEFT)) > 200
+        # Once it is there again, comparing again shows it.
+        shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "doomed")
+        tab.find("compare-runs").click()
+        tab.find("largest-doomed").wait_for()
+        told.wait_for(state="detached")
 
     def test_nobody_waits_for_a_body_whose_pane_is_closed(self, compared_runs, open_tab):
         tab = open_tab(compared_runs.address, mode="runs")

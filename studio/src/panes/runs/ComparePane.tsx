@@ -45,7 +45,7 @@ export default function ComparePane() {
   const others = otherDifferences(compared);
   return (
     <div className="pane compare" data-testid="compare">
-      <ComparedBodies a={a} b={b} />
+      <ComparedBodies compared={compared} />
       <table className="table" aria-label={`${a.name} and ${b.name} side by side`}>
         <thead>
           <tr>

@@ -1,7 +1,7 @@
 import { useCallback, useState } from "react";
 import { Button, Select } from "../../controls/Choice";
 import { formatNumber, formatQuantity } from "../../controls/units";
-import type { Field, Side } from "../../protocol";
+import type { ComparedEvent, Field, Side } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { ColorBar } from "../../view/still/ColorBar";
 import { commonRange } from "../../view/still/fetchStill";
@@ -12,15 +12,16 @@ import { percentChange, sideTitle } from "./compared";
 const NOTHING: readonly Field[] = [];
 
 /** The two bodies at rest, seen by one camera and colored by one field over one range. */
-export function ComparedBodies(props: { a: Side; b: Side }) {
-  const { a, b } = props;
+export function ComparedBodies(props: { compared: ComparedEvent }) {
+  const { compared } = props;
+  const { a, b } = compared;
   const [field, choose] = useState(0);
   const [over, setOver] = useState(false);
   const [fit, setFit] = useState<() => void>(() => () => {});
   const ready = useCallback((next: () => void) => setFit(() => next), []);
   const known = useStudio((state) => state.hello?.fields) ?? NOTHING;
   const rows = useStudio((state) => state.runs?.rows);
-  const [first, second] = [useStill(a.id), useStill(b.id)];
+  const [first, second] = [useStill(a.id, compared), useStill(b.id, compared)];
   const told = (id: number) =>
     [first, second].some((one) => one.still === null || one.still.frames.has(id));
   // A body at rest has no speed; other fields need a problem that can be set up.
