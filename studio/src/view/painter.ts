@@ -8,7 +8,7 @@ import {
 } from "three";
 import { Backdrop } from "./backdrop";
 import { Copy } from "./copy";
-import type { Quality } from "./quality";
+import { type Quality, WHOLE } from "./quality";
 
 const SAMPLES = 4;
 
@@ -21,6 +21,8 @@ export class Painter {
     stencilBuffer: true,
   });
   private readonly copy = new Copy(this.smoothed.texture);
+  /** Pixels along a side as a share of those of the screen, in the latest picture. */
+  share = WHOLE.share;
   private width = 1;
   private height = 1;
 
@@ -46,6 +48,7 @@ export class Painter {
   prepare(quality: Quality, ratio = Math.min(2, devicePixelRatio)): void {
     const { renderer } = this;
     const wanted = ratio * quality.share;
+    this.share = quality.share;
     const { width, height } = this.canvas;
     const fits =
       Math.floor(this.width * wanted) === width && Math.floor(this.height * wanted) === height;

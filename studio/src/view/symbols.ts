@@ -44,14 +44,24 @@ function middle(
 
 export class Symbols {
   readonly group = new Group();
-  private disposables: { dispose(): void }[] = [];
+  // Kept from body to body: their shaders would have to be compiled for each again.
+  private readonly held = new PointsMaterial({
+    color: new Color(CLAMP_COLOR),
+    size: 5,
+    sizeAttenuation: false,
+    transparent: true,
+    opacity: 0.9,
+    depthWrite: false,
+  });
+  private readonly loaded = new MeshBasicMaterial({ color: new Color(LOAD_COLOR) });
+  private geometries: BufferGeometry[] = [];
 
   build(body: BodyEvent): void {
     this.clear();
     const size = Math.hypot(
       ...body.bounds[1].map((high, axis) => high - (body.bounds[0][axis] ?? 0)),
     );
-    for (const clamp of body.clamps) this.points(clamp.points.flat(), CLAMP_COLOR, 5);
+    for (const clamp of body.clamps) this.points(clamp.points.flat());
     for (const load of body.loads) {
       const direction = new Vector3(...load.direction);
       if (load.kind !== "pressure" && direction.lengthSq() > 0) {
@@ -60,45 +70,36 @@ export class Symbols {
     }
   }
 
-  private points(places: number[], color: string, size: number): void {
+  private points(places: number[]): void {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(places), 3));
-    const material = new PointsMaterial({
-      color: new Color(color),
-      size,
-      sizeAttenuation: false,
-      transparent: true,
-      opacity: 0.9,
-      depthWrite: false,
-    });
-    const points = new Points(geometry, material);
+    const points = new Points(geometry, this.held);
     points.renderOrder = 6;
     this.group.add(points);
-    this.disposables.push(geometry, material);
+    this.geometries.push(geometry);
   }
 
   // An arrow whose tip touches the point that the load acts on.
   private arrow(tip: Vector3, direction: Vector3, length: number): void {
     const head = 0.28 * length;
-    const material = new MeshBasicMaterial({ color: new Color(LOAD_COLOR) });
     const shaft = new CylinderGeometry(0.028 * length, 0.028 * length, length - head, 12);
     shaft.translate(0, -(head + (length - head) / 2), 0);
     const cone = new ConeGeometry(0.1 * length, head, 20);
     cone.translate(0, -head / 2, 0);
     for (const geometry of [shaft, cone]) {
-      const mesh = new Mesh(geometry, material);
+      const mesh = new Mesh(geometry, this.loaded);
       mesh.quaternion.setFromUnitVectors(new Vector3(0, 1, 0), direction);
       mesh.position.copy(tip);
       mesh.renderOrder = 6;
       this.group.add(mesh);
     }
-    this.disposables.push(material, shaft, cone);
+    this.geometries.push(shaft, cone);
   }
 
   clear(): void {
     this.group.clear();
-    for (const one of this.disposables) one.dispose();
-    this.disposables = [];
+    for (const geometry of this.geometries) geometry.dispose();
+    this.geometries = [];
   }
 
   /** Words for what the body has; probes follow their vertices. */

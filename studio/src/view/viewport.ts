@@ -22,7 +22,7 @@ import { roundLength } from "./ground";
 import { type Label, Labels } from "./labels";
 import { Painter } from "./painter";
 import { listen } from "./pointer";
-import { ladder, WHOLE } from "./quality";
+import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
 import { SectionHandle } from "./sectionHandle";
 import { SmoothMesh } from "./smooth";
@@ -40,6 +40,8 @@ const TELL_EVERY_WHERE_SLOW = 400;
 const HOVER_EVERY = 100;
 /** A picture in which nothing changed for so long stands still, ms. */
 const SETTLED = 400;
+/** Only a picture that has moved for so long, ms, changes its size: that alone takes a while. */
+const LASTING = 300;
 
 // Another document, not another revision of the same one, is a reason to fit the view.
 function nameOf(document: DocumentEvent | null): string | null {
@@ -78,6 +80,7 @@ export class Viewport {
   private hoverAt: { x: number; y: number } | null = null;
   private hoverTimer: ReturnType<typeof setTimeout> | null = null;
   private placedBefore = 0;
+  private movingSince = 0;
   private lastMoved = Number.NEGATIVE_INFINITY;
   private settleTimer: ReturnType<typeof setTimeout> | null = null;
   private times: number[] = [];
@@ -144,7 +147,7 @@ export class Viewport {
     } else this.surface = mesh;
     this.scene.add(mesh.group);
     this.coverSurface();
-    this.lastMoved = performance.now();
+    this.stir(performance.now());
     this.request();
   }
 
@@ -203,7 +206,7 @@ export class Viewport {
     if (now.field !== before.field || mode(now) !== mode(before)) this.tellView();
     if (!now.tape && before.tape) this.tape.clear();
     this.rig.flat = now.orthographic;
-    this.lastMoved = performance.now();
+    this.stir(performance.now());
     this.request();
   }
 
@@ -273,12 +276,12 @@ export class Viewport {
   private draw(now: number): void {
     const frame = this.takeFrame(now);
     if (this.rig.advance(now)) this.request();
-    if (frame || this.rig.places !== this.placedBefore) this.lastMoved = now;
+    if (frame || this.rig.places !== this.placedBefore) this.stir(now);
     this.placedBefore = this.rig.places;
     this.grabs.flush();
     const view = useView.getState();
     const mesh = this.shownMesh();
-    const quality = this.moving(now) ? ladder.quality : WHOLE;
+    const quality = this.qualityAt(now);
     this.painter.prepare(quality);
     this.style(view, mesh);
     const labels = this.words(view, mesh);
@@ -304,6 +307,17 @@ export class Viewport {
       this.settleTimer = null;
       if (useStudio.getState().stat?.state !== "playing") this.request();
     }, SETTLED);
+  }
+
+  private stir(now: number): void {
+    if (now - this.lastMoved >= SETTLED) this.movingSince = now;
+    this.lastMoved = now;
+  }
+
+  private qualityAt(now: number): Quality {
+    if (!this.moving(now)) return WHOLE;
+    const lasts = this.lastMoved - this.movingSince > LASTING;
+    return lasts ? ladder.quality : { ...ladder.quality, share: this.painter.share };
   }
 
   // What is recorded is whole, however long it takes.
