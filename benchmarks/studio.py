@@ -1,9 +1,11 @@
 """The studio in a real browser: frames shown, their bytes, and the way from a slider to the eye.
 
 ``python benchmarks/studio.py [--json]``. Needs Chromium and Playwright. Headless Chromium draws by
-software here, so that frames per second say what a machine without a graphics card shows, and the
-server's own step stands beside them. A figure counts only once the page shows a body of the right
-number of voxels that moves, and once the tip in the page is where the frame of the server says.
+software here, so that frames per second say what a machine without a graphics card shows. What
+one with a card could show stands beside them: the frames that the server makes for a client which
+takes each at once, and the processor time of the page for a picture, without that of drawing. A
+figure counts only once the page shows a body of the right number of voxels that moves, and once
+the tip in the page is where the frame of the server says.
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from measure import Report
+from studio_wire import wire
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -43,6 +46,8 @@ WINDOW, PATIENCE = 5.0, 120.0
 #: Bars of 2 mm voxels as (length, width) in voxels.
 BODIES = {2_000: (20, 10), 5_120: (20, 16), 20_000: (50, 20)}
 MOVES = 9
+#: Between two moves of the slider, so that what follows a shape is over, in ms.
+REST = 1500
 
 BAR = """
 schema = "voxsoft/1"
@@ -107,6 +112,7 @@ def opened(browser: Browser, address: str) -> Iterator[tuple[Page, list[int]]]:
     sizes: list[int] = []
     page = browser.new_page(viewport={"width": 1600, "height": 900}, reduced_motion="reduce")
     page.add_init_script("localStorage.setItem('voxsoft.tour', '{\"seen\":true}')")
+    page.add_init_script(MARKS)
 
     def listen(socket: Any) -> None:
         socket.on(
@@ -135,6 +141,9 @@ def frames(report: Report, browser: Browser, count: int, address: str) -> None:
         page.get_by_test_id("play").click()
         until(page, "voxsoft.time > 0.005")
         sizes.clear()
+        devtools = page.context.new_cdp_session(page)
+        devtools.send("Performance.enable", {"timeDomain": "threadTicks"})
+        busy = page_seconds(devtools)
         # Pictures are counted in the page: a frame that was sent and never drawn is none.
         shown, seconds = page.evaluate(
             """window => new Promise(done => {
@@ -151,13 +160,41 @@ def frames(report: Report, browser: Browser, count: int, address: str) -> None:
         )
         if shown == 0 or not sizes:
             raise SystemExit(f"wrong answer: {count:,} voxels do not move in the page")
+        busy = page_seconds(devtools) - busy
         pane = page.get_by_test_id("pane-run").inner_text()
         report.add(f"{count:,} voxels: frames shown", shown / seconds, "1/s")
+        report.add(f"{count:,} voxels: the page's own work for one", 1e3 * busy / shown, "ms")
         report.add(f"{count:,} voxels: bytes of a frame", statistics.median(sizes), "B")
         step = re.search(r"Substep\s+([\d.]+) (ms|µs)", pane)
         if step:
             scale = 1e-3 if step[2] == "µs" else 1.0
             report.add(f"{count:,} voxels: substep of the server", float(step[1]) * scale, "ms")
+
+
+def page_seconds(devtools: Any) -> float:
+    """Processor time of the page's main thread [s]: its scripts, layout and paint, no drawing."""
+    metrics = devtools.send("Performance.getMetrics")["metrics"]
+    return float(next(one["value"] for one in metrics if one["name"] == "TaskDuration"))
+
+
+# Notes in the page when an edit is sent, how long it was meshed, and when the shape comes.
+MARKS = """
+window.marks = {};
+window.WebSocket = class extends WebSocket {
+  constructor(...given) {
+    super(...given);
+    this.addEventListener("message", ({ data }) => {
+      if (typeof data !== "string") {
+        if (new DataView(data).getUint8(4) === 1) window.marks.came ??= performance.now();
+      } else if (data.includes('"t":"body"')) window.marks.meshed ??= JSON.parse(data).seconds;
+    });
+  }
+  send(data) {
+    if (String(data).includes('"t":"edit"')) window.marks.sent ??= performance.now();
+    super.send(data);
+  }
+};
+"""
 
 
 def slider(report: Report, browser: Browser, count: int, address: str) -> None:
@@ -168,30 +205,44 @@ def slider(report: Report, browser: Browser, count: int, address: str) -> None:
         field = page.get_by_test_id("pane-design").locator("input[type=range]").first
         field.wait_for()
         field.focus()
-        times = []
+        times: dict[str, list[float]] = {}
         for move in range(MOVES):
-            topology = page.evaluate("voxsoft.topology")
             key = "ArrowRight" if move % 2 == 0 else "ArrowLeft"
             # Watched in the page itself, from the key on, so that the driver adds nothing.
-            waiting = page.evaluate_handle(
+            page.evaluate(
                 """before => {
                   window.moved = new Promise(done => {
                     addEventListener("keydown", () => {
                       const start = performance.now();
-                      const look = () =>
-                        voxsoft.topology !== before && voxsoft.triangles > 0
-                          ? done(performance.now() - start) : requestAnimationFrame(look);
+                      window.marks = {};
+                      const look = () => {
+                        if (voxsoft.topology === before || !marks.meshed) {
+                          requestAnimationFrame(look);
+                          return;
+                        }
+                        const drawn = performance.now();
+                        done({
+                          "whole": drawn - start,
+                          "the page, to the command": marks.sent - start,
+                          "server and wire, to the shape": marks.came - marks.sent,
+                          "of which meshing": 1000 * marks.meshed,
+                          "the page, to the picture": drawn - marks.came,
+                        });
+                      };
                       look();
                     }, { once: true, capture: true });
                   });
                 }""",
-                topology,
+                page.evaluate("voxsoft.topology"),
             )
             page.keyboard.press(key)
-            times.append(float(page.evaluate("window.moved")))
-            waiting.dispose()
+            for part, time_of_part in page.evaluate("window.moved").items():
+                times.setdefault(part, []).append(float(time_of_part))
+            page.wait_for_timeout(REST)
         name = f"{count:,} voxels: from a slider's move to the new shape"
-        report.add(name, statistics.median(times[1:]), "ms")
+        for part, all_times in times.items():
+            title = name if part == "whole" else f"  {part}"
+            report.add(title, statistics.median(all_times[1:]), "ms")
 
 
 def first_paint(report: Report, browser: Browser, address: str) -> None:
@@ -226,6 +277,7 @@ def main() -> None:
                 if count == 5_120:
                     slider(report, browser, count, address)
                 else:
+                    wire(report, count, address)
                     frames(report, browser, count, address)
                 if count == 2_000:
                     first_paint(report, browser, address)

@@ -1,0 +1,85 @@
+"""The studio's server without a browser: frames to a client that takes each at once.
+
+A browser that draws by software takes frames more slowly than the server makes them; this client
+says what the server and the wire could give to a page that keeps up.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+import time
+from typing import TYPE_CHECKING
+from urllib.parse import parse_qs, urlsplit
+
+from measure import Report
+
+from voxsoft.studio.protocol import PROTOCOL
+
+if TYPE_CHECKING:
+    from websockets.sync.client import ClientConnection
+
+#: Kinds of binary messages.
+TOPOLOGY, FRAME = 1, 2
+#: Simulated time before frames are counted [s], how long they are counted, how long to wait [s].
+WARM, WINDOW, PATIENCE = 0.005, 5.0, 120.0
+
+
+class Tab:
+    """Speaks as a tab of the browser does, and shows nothing."""
+
+    def __init__(self, socket: ClientConnection) -> None:
+        self._socket = socket
+        self._seq = 0
+
+    def send(self, tag: str, **fields: object) -> None:
+        """Send a command."""
+        self._seq += 1
+        self._socket.send(json.dumps({"t": tag, "seq": self._seq, **fields}))
+
+    def binary(self) -> bytes:
+        """The next binary message; a frame is acknowledged at once."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            message = self._socket.recv(timeout=PATIENCE)
+            if isinstance(message, bytes):
+                if message[4] == FRAME:
+                    self.send("ack", frame=struct.unpack_from("<I", message, 12)[0])
+                return message
+        raise SystemExit("wrong answer: no frame comes")
+
+    def frame(self) -> tuple[float, int]:
+        """Simulated time [s] and number of vertices of the next frame."""
+        while (message := self.binary())[4] != FRAME:
+            pass
+        simulated, vertices = struct.unpack_from("<dI", message, 16)
+        return simulated, vertices
+
+
+def wire(report: Report, count: int, address: str) -> None:
+    """Frames per second that the server makes, and how much of time they show."""
+    from websockets.sync.client import connect
+
+    parts = urlsplit(address)
+    token = parse_qs(parts.query)["token"][0]
+    url = f"ws://{parts.netloc}/ws?token={token}"
+    with connect(url, origin=f"http://{parts.netloc}", max_size=None) as socket:
+        tab = Tab(socket)
+        tab.send("hello", protocol=PROTOCOL)
+        while (message := tab.binary())[4] != TOPOLOGY:
+            pass
+        (drawn,) = struct.unpack_from("<I", message, 24)
+        tab.send("play")
+        while (first := tab.frame())[0] < WARM:
+            pass
+        started, frames, last = time.perf_counter(), 0, first
+        while (gone := time.perf_counter() - started) < WINDOW:
+            last = tab.frame()
+            frames += 1
+        tab.send("reset")
+    if last[1] != drawn or last[0] <= first[0]:
+        raise SystemExit(
+            f"wrong answer: frames of {count:,} voxels show another body, or no motion"
+        )
+    report.add(f"{count:,} voxels: frames of the server alone", frames / gone, "1/s")
+    report.add(f"{count:,} voxels: simulated time", (last[0] - first[0]) / gone, "s/s")
