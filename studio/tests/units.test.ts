@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import {
+  formatEnergy,
   formatNumber,
   formatQuantity,
   formatSpan,
@@ -60,6 +61,11 @@ describe("parseQuantity", () => {
 });
 
 describe("format", () => {
+  it("tells small energies without powers of ten, and dust as nothing", () => {
+    expect(formatEnergy(3.19e-3)).toBe("3.19 mJ");
+    expect(formatEnergy(6.2e-8)).toBe("0.062 µJ");
+    expect(formatEnergy(-5.7e-34)).toBe("0 mJ");
+  });
   it("writes what people read", () => {
     expect(formatQuantity(0.02, "m")).toBe("20 mm");
     expect(formatQuantity(4000, "Pa")).toBe("4 kPa");

@@ -98,6 +98,13 @@ export function formatQuantity(value: number, si: string, digits = 4): string {
   return unit === "1" ? number : `${number} ${unitText(unit)}`;
 }
 
+/** An energy in millijoule, or in microjoule where that would be all zeros; dust of rounding is 0. */
+export function formatEnergy(joule: number): string {
+  const size = Math.abs(joule);
+  if (size < 1e-10) return "0 mJ";
+  return size < 1e-5 ? `${formatNumber(joule * 1e6, 3)} µJ` : formatQuantity(joule, "J", 3);
+}
+
 /** A unit as set in type: superscripts, the micro sign, the degree sign. */
 export function unitText(unit: string): string {
   const plain = canonical(unit);

@@ -9,7 +9,7 @@ const AUTO = "auto";
 export function PaceChoice() {
   const pace = useStudio((state) => state.stat?.pace ?? 1);
   const chosen = useStudio((state) => state.stat?.pace_chosen ?? null);
-  const auto = chosen === null && pace !== 1 ? `auto · ${paceName(pace)}` : "auto";
+  const auto = chosen === null && pace !== 1 ? `auto · ${paceName(pace)}` : "auto speed";
   const options = [
     { value: AUTO, label: auto },
     ...PACES.map((one) => ({ value: String(one), label: paceName(one) })),

@@ -1,6 +1,6 @@
 import { Button, Empty, Progress, Section, Select } from "../controls/Choice";
 import { NumberField } from "../controls/NumberField";
-import { factorOf, formatNumber, formatQuantity } from "../controls/units";
+import { factorOf, formatEnergy, formatNumber, formatQuantity } from "../controls/units";
 import type { BodyLoad } from "../protocol";
 import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -50,8 +50,8 @@ function State() {
     ["Real time", stat.state === "playing" ? `${formatNumber(stat.real_time_factor, 2)} ×` : "–"],
     ["Substep", `${formatNumber(stat.step_ms, 3)} ms`],
     ["Residual", stat.residual === null ? "–" : formatQuantity(stat.residual, "%", 2)],
-    ["Elastic energy", stat.elastic === null ? "–" : formatQuantity(stat.elastic, "J", 3)],
-    ["Kinetic energy", stat.kinetic === null ? "–" : formatQuantity(stat.kinetic, "J", 3)],
+    ["Elastic energy", stat.elastic === null ? "–" : formatEnergy(stat.elastic)],
+    ["Kinetic energy", stat.kinetic === null ? "–" : formatEnergy(stat.kinetic)],
     ["Stored frames", `${stat.frames_stored} (${formatNumber(stat.bytes_stored / 1e6, 3)} MB)`],
   ];
   return (

@@ -66,9 +66,10 @@ def simulated(tab):
     tab.find("ghost").click()
     tab.find("section").click()
     tab.page.get_by_label("Section axis").select_option("y")
-    tab.find("cavities").click()
     take(tab, "section")
     tab.find("section").click()
+    tab.find("cavities").click()
+    take(tab, "cavities")
     tab.find("cavities").click()
     tab.page.get_by_label("Color by").select_option(label="Displacement")
 
@@ -85,6 +86,12 @@ def optimized(tab):
     tab.find("trials-table").locator("tbody tr").first.click()
     tab.until("voxsoft.state === 'at-rest'")
     take(tab, "optimize")
+    checks = tab.find("trials-table").get_by_role("checkbox")
+    checks.nth(0).check()
+    checks.nth(3).check()
+    tab.find("compare-pinned").click()
+    tab.find("compare").wait_for()
+    take(tab, "compare")
 
 
 def calibrated(tab):
