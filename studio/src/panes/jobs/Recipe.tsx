@@ -41,7 +41,7 @@ export function RecipeButtons(props: { job: string }) {
         disabled={!recipe?.command}
         onClick={() => recipe && void copy(recipe.command, "the command")}
       >
-        Copy the command
+        Copy command
       </Button>
     </div>
   );
