@@ -62,12 +62,10 @@ export function Viewer(props: { empty: boolean }) {
       </header>
       <main className="viewer-main">
         <ViewPane />
-        {wide && (
-          <aside className="viewer-side">
-            <RunPane />
-            <ProbesPane />
-          </aside>
-        )}
+        <aside className="viewer-side">
+          <RunPane />
+          {wide && <ProbesPane />}
+        </aside>
       </main>
       <Sheets />
     </div>

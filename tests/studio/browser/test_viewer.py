@@ -44,6 +44,19 @@ def test_a_page_from_disk_plays_is_pulled_and_follows_its_loads(live_page, alone
     assert tab.errors == []
 
 
+def test_a_page_on_a_phone_has_its_loads_below_the_body(live_page, alone, tmp_path):
+    path = tmp_path / "finger.html"
+    live_page.save(path)
+    tab = alone(path.as_uri())
+    tab.page.set_viewport_size({"width": 400, "height": 800})
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.until("document.documentElement.scrollWidth <= 400")
+    box = tab.page.get_by_label("gravity slider").bounding_box()
+    assert box["x"] + box["width"] <= 400
+    assert box["y"] + box["height"] <= 800
+    assert tab.errors == []
+
+
 def test_a_page_lives_in_the_cell_of_a_notebook(live_page, alone, tmp_path):
     cell = tmp_path / "cell.html"
     cell.write_text(f"<!doctype html><body>{live_page._repr_html_()}</body>")
