@@ -2,7 +2,8 @@
 import type { Draft, Engine } from "../engine/engine";
 import type { Frame, Smooth, Topology } from "../engine/frames";
 import { calmed } from "./calm";
-import { apply, toast, useStudio } from "./studio";
+import { gathering } from "./gather";
+import { apply, applyAll, toast, useStudio } from "./studio";
 import { flushText } from "./typing";
 
 /** What draws bodies; the viewport registers itself here. */
@@ -34,10 +35,11 @@ export function connect(chosen: Engine): void {
   engine?.stop();
   engine = chosen;
   const applyStat = calmed(apply);
+  const take = gathering(apply, applyAll);
   chosen.start({
     event(event) {
       if (event.t === "stat") applyStat(event);
-      else apply(event);
+      else take(event);
       if (event.t === "hello") for (const callback of ready) callback();
     },
     topology(topology) {

@@ -20,6 +20,7 @@ import type {
   TrialEvent,
   TrialsEvent,
 } from "../protocol";
+import type { Gathered } from "./gather";
 import { PlotHistory } from "./history";
 
 export interface Toast {
@@ -105,8 +106,8 @@ export function note(level: LogEvent["level"], text: string): void {
   useStudio.setState((state) => ({ log: [...state.log, line].slice(-LONGEST_LOG) }));
 }
 
-/** Fold one event of the engine into what the page knows. */
-export function apply(event: AnyEvent): void {
+/** Fold one event of the engine into what the page knows; those that come in crowds: `applyAll`. */
+export function apply(event: Exclude<AnyEvent, Gathered>): void {
   const set = useStudio.setState;
   switch (event.t) {
     case "hello":
@@ -136,17 +137,6 @@ export function apply(event: AnyEvent): void {
       break;
     case "trials":
       set((state) => ({ trials: { ...state.trials, [event.job]: event } }));
-      break;
-    case "trial":
-      set((state) => ({ trials: withTrial(state, event) }));
-      break;
-    case "generation":
-      set((state) => ({
-        generations: {
-          ...state.generations,
-          [event.job]: withGeneration(state.generations[event.job] ?? [], event),
-        },
-      }));
       break;
     case "overlay":
       set((state) => ({ overlays: { ...state.overlays, [event.job]: event } }));
@@ -186,26 +176,50 @@ export function apply(event: AnyEvent): void {
   }
 }
 
-function withTrial(state: Studio, trial: TrialEvent): Studio["trials"] {
-  const job = state.jobs[trial.job];
-  const known = state.trials[trial.job] ?? {
-    t: "trials",
-    job: trial.job,
-    parameters: job?.parameters ?? Object.keys(trial.parameters),
-    objectives: job?.objectives ?? Object.keys(trial.objectives ?? {}),
-    directions: job?.directions ?? [],
-    kinds: {},
-    trials: [],
-  };
-  const trials = known.trials.filter((one) => one.index !== trial.index);
-  trials.push(trial);
-  return { ...state.trials, [trial.job]: { ...known, trials } };
+/** Fold many trials and generations in at once: what shows them is drawn once. */
+export function applyAll(events: readonly Gathered[]): void {
+  useStudio.setState((state) => {
+    const [trials, generations] = [{ ...state.trials }, { ...state.generations }];
+    for (const job of new Set(events.map((event) => event.job))) {
+      const own = events.filter((event) => event.job === job);
+      const tried = own.filter((event) => event.t === "trial");
+      if (tried.length > 0) trials[job] = withTrials(state, job, tried);
+      const bred = own.filter((event) => event.t === "generation");
+      if (bred.length > 0) generations[job] = withGenerations(generations[job] ?? [], bred);
+    }
+    return { trials, generations };
+  });
 }
 
-function withGeneration(
+function withTrials(state: Studio, job: string, fresh: readonly TrialEvent[]): TrialsEvent {
+  const about = state.jobs[job];
+  const known = state.trials[job];
+  const last = fresh.at(-1) as TrialEvent;
+  const byIndex = new Map(known?.trials.map((trial) => [trial.index, trial]));
+  for (const trial of fresh) {
+    byIndex.delete(trial.index); // one that is told again stands last
+    byIndex.set(trial.index, trial);
+  }
+  return {
+    t: "trials",
+    job,
+    parameters: known?.parameters ?? about?.parameters ?? Object.keys(last.parameters),
+    objectives: known?.objectives ?? about?.objectives ?? Object.keys(last.objectives ?? {}),
+    directions: known?.directions ?? about?.directions ?? [],
+    kinds: known?.kinds ?? {},
+    trials: [...byIndex.values()],
+  };
+}
+
+function withGenerations(
   known: readonly GenerationEvent[],
-  event: GenerationEvent,
+  fresh: readonly GenerationEvent[],
 ): readonly GenerationEvent[] {
-  // A job that is told again from its start replaces what was known from there on.
-  return [...known.filter((one) => one.index < event.index), event];
+  const all = [...known];
+  for (const event of fresh) {
+    // A job that is told again from its start replaces what was known from there on.
+    while (all.length > 0 && (all.at(-1) as GenerationEvent).index >= event.index) all.pop();
+    all.push(event);
+  }
+  return all;
 }
