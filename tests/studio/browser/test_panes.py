@@ -28,6 +28,10 @@ def design(served, open_tab):
     tab.find("parameter-length").wait_for()
     tab.find("text-editor").locator(".cm-content").wait_for()
     yield tab
+    # A page that goes hands over what was typed last, so that it can be undone too.
+    tab.page.reload()
+    tab.find("link").get_by_text("connected", exact=True).wait_for()
+    tab.find("text-editor").locator(".cm-content").wait_for()
     while tab.page.get_by_role("button", name="Undo (Ctrl+Z)").is_enabled():
         rev = tab.page.evaluate("document.querySelector('.cm-content').innerText")
         tab.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
