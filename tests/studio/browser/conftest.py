@@ -1,6 +1,5 @@
 """A real Chromium on a real server; without Chromium or Playwright these tests are skipped."""
 
-import io
 import os
 import re
 import shutil
@@ -13,7 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from PIL import Image
 
 # Software rendering, so that the tests run where there is no graphics card.
 FLAGS = [
@@ -178,11 +176,8 @@ class Tab:
         """Keep a picture for people to look at, where a folder for them is named."""
         folder = os.environ.get("VOXSOFT_SCREENSHOTS")
         if folder:
-            file = Path(folder) / f"{name}.png"
-            file.parent.mkdir(parents=True, exist_ok=True)
-            picture = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
-            # A quarter of the shades, which the eye does not tell apart, in two thirds of the size.
-            picture.point(lambda shade: min(255, round(shade / 4) * 4)).save(file, optimize=True)
+            Path(folder).mkdir(parents=True, exist_ok=True)
+            self.page.screenshot(path=Path(folder) / f"{name}.png")
 
 
 @pytest.fixture
