@@ -66,7 +66,7 @@ def predictions(card: str = "ecoflex-00-30", voxel_size: str = "5 mm") -> Iterat
         experiment = Experiment(_beam(size, card, voxel_size), measurement, line="centerline")
         result = simulate(experiment.setup)
         seen = experiment.seen_at(result.positions)
-        yield Prediction(beam, size, Comparison(seen, measurement.values, 1.0))
+        yield Prediction(beam, size, Comparison(seen, measurement.values, 1.0, result.positions))
 
 
 def _column(rows: list[dict[str, str]], *names: str) -> NDArray[np.float64]:

@@ -1,4 +1,7 @@
-"""The studio driven over its websocket, as a page would."""
+"""The studio driven over its websocket, as a page would.
+
+Long because one session with its document, body and time is driven through all that it does.
+"""
 
 import json
 import socket
