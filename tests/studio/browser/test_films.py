@@ -11,18 +11,19 @@ PLAYED = """(data) => new Promise((done) => {
   video.onerror = () => done({error: video.error.message});
   // A film that is written as it comes tells its length at its end only.
   video.onloadedmetadata = () => { video.currentTime = 1e6; };
-  video.onseeked = () => {
+  let looks = 0;
+  const look = () => {
     const canvas = document.createElement('canvas');
     [canvas.width, canvas.height] = [video.videoWidth, video.videoHeight];
     const context = canvas.getContext('2d');
     context.drawImage(video, 0, 0);
     const pixels = context.getImageData(0, 0, canvas.width, canvas.height).data;
-    done({
-      size: [canvas.width, canvas.height],
-      seconds: video.duration,
-      colors: new Set(new Uint32Array(pixels.buffer)).size,
-    });
+    const colors = new Set(new Uint32Array(pixels.buffer)).size;
+    // A picture that was sought may not have been decoded yet.
+    if (colors === 1 && looks++ < 100) setTimeout(look, 50);
+    else done({size: [canvas.width, canvas.height], seconds: video.duration, colors});
   };
+  video.onseeked = look;
   video.src = 'data:video/webm;base64,' + data;
 })"""
 
