@@ -113,7 +113,10 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     elif format == "png":
         _draw(shown, target, options.get("scale", 1))
     elif format == "html":
-        page_of_body(shown.body, factors=shown.factors, text=shown.text).save(target)
+        page = page_of_body(
+            shown.body, factors=shown.factors, positions=shown.positions, text=shown.text
+        )
+        page.save(target)
     else:
         raise FileError("format", f'"{format}" is not known', f"use {', '.join(FORMATS)}")
     return target

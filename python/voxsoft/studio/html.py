@@ -11,6 +11,7 @@ from typing import Final
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
@@ -39,6 +40,9 @@ class Notes(msgspec.Struct):
     sentence: str
     fields: list[events.Field]
     body: events.Body
+    #: Where the page shows the vertices first: x, y, z of each in m, as little-endian float64 in
+    #: base64; None: unloaded.
+    positions: str | None = None
 
 
 @dataclass(frozen=True)
@@ -75,7 +79,12 @@ class LivePage:
 
 
 def page_of_body(
-    body: StudioBody, *, factors: Sequence[float] = (), text: str = "", sentence: str = ""
+    body: StudioBody,
+    *,
+    factors: Sequence[float] = (),
+    positions: NDArray[np.float64] | None = None,
+    text: str = "",
+    sentence: str = "",
 ) -> LivePage:
     """Make the page of a body.
 
@@ -85,6 +94,9 @@ def page_of_body(
         The body; it must be one that can be solved.
     factors
         How many times as large as in the design each load is; default: as in the design.
+    positions
+        Where the page shows the vertices first [m], (n, 3); default: unloaded. Play shows the way
+        from the unloaded shape.
     text
         The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
     sentence
@@ -109,6 +121,7 @@ def page_of_body(
         sentence=sentence or "Press play, pull on the body, change the loads.",
         fields=list(FIELDS),
         body=_event(replace(body, setup=setup)),
+        positions=None if positions is None else _packed(positions),
     )
     scene = _core.pack_scene(
         setup.problem,
@@ -145,10 +158,10 @@ def page_of(shown: Design | Result) -> LivePage:
     """
     design = shown.design if isinstance(shown, Result) else shown
     body = StudioBody.of(design, rev=1, topology=1)
-    sentence = ""
-    if isinstance(shown, Result):
-        sentence = f"{shown.message[:1].upper()}{shown.message[1:]}."
-    return page_of_body(body, sentence=sentence)
+    if not isinstance(shown, Result):
+        return page_of_body(body)
+    sentence = f"{shown.message[:1].upper()}{shown.message[1:]}."
+    return page_of_body(body, positions=shown.positions, sentence=sentence)
 
 
 def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] = ()) -> None:
@@ -168,6 +181,10 @@ def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] =
     if not file.is_file():
         raise FileError(str(origin), "is no run folder: it holds no design.toml")
     page_of(load(file, assignments=assignments)).save(target)
+
+
+def _packed(positions: NDArray[np.float64]) -> str:
+    return base64.b64encode(positions.astype("<f8").tobytes()).decode("ascii")
 
 
 def _filled(scene: bytes, name: str) -> str:

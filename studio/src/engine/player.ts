@@ -2,6 +2,7 @@
 // Nothing here knows whether it runs in a worker; time is handed in.
 import type { AnyEvent, BodyEvent, Field, GrabState, StatEvent } from "../protocol";
 import { PROTOCOL } from "../protocol";
+import { bytesOf } from "./base64";
 import type { CoreLook, CoreRun } from "./core";
 import type { Draft } from "./engine";
 import { Pace, RealTimeFactor } from "./pace";
@@ -31,6 +32,8 @@ export interface Notes {
   readonly sentence: string;
   readonly fields: Field[];
   readonly body: BodyEvent;
+  /** Where the vertices are shown first: m, float64 in base64; null or absent: unloaded. */
+  readonly positions?: string | null;
 }
 
 export interface Audience {
@@ -91,6 +94,7 @@ export class Player {
   ) {
     for (const load of notes.body.loads) this.loads[load.index] = load.value;
     this.rest = run.positions();
+    if (notes.positions) run.seek(new Float64Array(bytesOf(notes.positions)), 0);
     this.look = run.advance(0);
   }
 
@@ -228,6 +232,7 @@ export class Player {
   /** How soon it comes to rest from the unloaded shape, to show it slowly enough to be seen. */
   private lookAhead(): void {
     if (this.look.time > 0 || this.grabs.size > 0) return;
+    this.run.reset(); // a result that is shown first stands at time zero too
     const work = Math.floor(MOST_WORK / Math.max(1, this.rest.length / 3));
     const look = this.run.advance(Math.min(work, Math.round(LONGEST_LOOK / this.look.substep)));
     this.run.reset();

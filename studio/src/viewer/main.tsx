@@ -1,11 +1,11 @@
 // One file that is alive without any server: the view and the run pane over the core in a worker.
 import core from "virtual:voxsoft-core";
 import { createRoot } from "react-dom/client";
+import { bytesOf } from "../engine/base64";
 import { WasmEngine } from "../engine/wasm";
 import CoreWorker from "../engine/wasm.worker?worker&inline";
 import { usePage, watchTheme } from "../store/page";
 import { connect } from "../store/session";
-import { bytesOf } from "./base64";
 import { Viewer } from "./Viewer";
 import "../theme.css";
 import "../controls/controls.css";

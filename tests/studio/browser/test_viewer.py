@@ -57,6 +57,25 @@ def test_a_page_on_a_phone_has_its_loads_below_the_body(live_page, alone, tmp_pa
     assert tab.errors == []
 
 
+def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, alone, tmp_path):
+    source = tmp_path / "finger.toml"
+    source.write_text(coarse)
+    result = vs.simulate(vs.load(source))
+    lowest = float(result.positions[:, 2].min())
+    path = tmp_path / "result.html"
+    result.show().save(path)
+    tab = alone(path.as_uri())
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    # Positions on the wire have 16 bits of the body's size, some 1 um here.
+    tab.until(f"Math.abs({LOWEST} - {lowest}) < 1e-5")
+    tab.shot("page-of-a-result")
+    tab.find("play").click()
+    tab.until(f"{LOWEST} > {lowest} + 1e-3")
+    tab.until("voxsoft.state === 'at-rest'")
+    assert abs(tab.page.evaluate(LOWEST) - lowest) < 2e-4
+    assert tab.errors == []
+
+
 def test_a_page_lives_in_the_cell_of_a_notebook(live_page, alone, tmp_path):
     cell = tmp_path / "cell.html"
     cell.write_text(f"<!doctype html><body>{live_page._repr_html_()}</body>")
