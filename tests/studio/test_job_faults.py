@@ -127,6 +127,7 @@ def test_two_tabs_that_start_a_job_at_once_start_two(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 def test_two_tabs_that_resume_a_job_at_once_resume_it_once(studio):
     async def scenario():
         async with studio.page() as one, studio.page() as other:

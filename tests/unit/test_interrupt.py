@@ -107,8 +107,8 @@ def checked_mesh():
 
 
 def factorized_tangent():
-    """A direct factorization, which has no place to stop at."""
-    setup = Setup.of(cube(15))
+    """A direct factorization of a second or so, which has no place to stop at."""
+    setup = Setup.of(cube(19))
     rest = setup.mesh.vertices
     _ = setup.problem
     return lambda: _core.adjoint(setup.problem, rest, np.ones((1, *rest.shape)))
