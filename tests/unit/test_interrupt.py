@@ -108,7 +108,7 @@ def checked_mesh():
 
 def factorized_tangent():
     """A direct factorization of a second or so, which has no place to stop at."""
-    setup = Setup.of(cube(19))
+    setup = Setup.of(cube(25))
     rest = setup.mesh.vertices
     _ = setup.problem
     return lambda: _core.adjoint(setup.problem, rest, np.ones((1, *rest.shape)))
