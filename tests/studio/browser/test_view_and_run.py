@@ -168,6 +168,10 @@ def test_the_smooth_shape_moves_with_the_voxels(tab):
     assert changed(still, settled(tab)) > 1000
     tab.find("reset").click()
     tab.until("voxsoft.time === 0")
+    # A busy machine may stand at a coarse picture for a while.
+    for _ in range(100):
+        if changed(still, settled(tab)) < 100:
+            break
     assert changed(still, settled(tab)) < 100
     assert tab.errors == []
 
