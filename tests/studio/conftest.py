@@ -29,6 +29,7 @@ class Page:
         self._seq = 0
         self.frames = []
         self.smooth = None
+        self.topology = None
         self.log = []
 
     async def send(self, tag, **fields):
@@ -57,6 +58,8 @@ class Page:
             self.frames.append(found)
         elif found.kind == 3:
             self.smooth = found
+        else:
+            self.topology = found
         return found
 
     async def until(self, tag, condition=lambda _: True, seconds=20.0, ack=True):
