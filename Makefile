@@ -12,6 +12,8 @@ JOBS ?= 2
 # What `make bench` runs, some ten minutes; JSON goes to target/bench, beside the text.
 BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 
+# The oldest Rust that builds the core.
+RUST := $(shell sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
 .PHONY: help install demo test test-rust test-python test-studio test-all lint format bench docs studio wasm clean
@@ -37,12 +39,13 @@ $(VENV)/bin/python:
 
 $(STAMP): $(VENV)/bin/python pyproject.toml Cargo.toml Cargo.lock $(RUST_SOURCES)
 	@command -v cargo >/dev/null || { echo "VoxSoft's core is written in Rust, and there is no 'cargo'. Install the Rust toolchain from https://rustup.rs" >&2; exit 1; }
+	@have=$$(rustc --version | cut -d' ' -f2); [ "$$(printf '%s\n' $(RUST) $$have | sort -V | head -1)" = $(RUST) ] || { echo "VoxSoft needs Rust $(RUST) or newer, and 'rustc' is $$have. Update it with: rustup update stable (distributions' packages may be older; https://rustup.rs has the newest)" >&2; exit 1; }
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1" "maturin>=1.9,<2"
 	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release
 	@touch $@
 
 demo: install
-	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo
+	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo --confirm 3
 
 test: install test-rust test-python test-studio
 

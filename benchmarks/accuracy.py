@@ -61,7 +61,7 @@ class Beam:
     def setup(self, material: Material, refine: int = 1) -> Setup:
         """The beam of 5 mm voxels, each cut into `refine` along each axis."""
         length, width, height = (f"{side:g} mm" for side in self.size)
-        beam = families.beam().with_parameters(length=length, width=width, height=height)
+        beam = families.paper_beam().with_parameters(length=length, width=width, height=height)
         probes = {
             f"s{station:g}": vs.Probe(
                 point=(station * mm, self.size[1] / 2 * mm, self.size[2] / 2 * mm)
@@ -73,7 +73,7 @@ class Beam:
             "probes": probes,
             "objectives": {},
         }
-        return Setup.of(beam.model_copy(update=changes), refine=refine)
+        return Setup.of(beam.replace(**changes), refine=refine)
 
 
 def rows_of(name: str) -> list[dict[str, str]]:
@@ -196,13 +196,13 @@ def fills(family: str) -> tuple[str, ...]:
 
 def filled(design: vs.Design, fill: str) -> vs.Design:
     """The design with cut cells filled one way."""
-    return design if fill == "binary" else design.model_copy(update={"fill": fill})
+    return design if fill == "binary" else design.replace(fill=fill)
 
 
 def with_material(design: vs.Design, material: Material) -> vs.Design:
     """A design of one part with another material."""
-    part = design.parts[0].model_copy(update={"material": material})
-    return design.model_copy(update={"parts": (part,)})
+    part = design.parts[0].replace(material=material)
+    return design.replace(parts=(part,))
 
 
 def stair_rows(report: Report, refines: tuple[int, ...]) -> None:
@@ -230,10 +230,10 @@ def stair_rows(report: Report, refines: tuple[int, ...]) -> None:
     spring = lattice()
     ten_times = vs.Lattice(edge=10 * spring.edge, bulk=10 * spring.bulk)
     parts = (
-        stiff.model_copy(update={"material": ten_times}),
-        soft.model_copy(update={"material": spring}),
+        stiff.replace(material=ten_times),
+        soft.replace(material=spring),
     )
-    value = rise(pneunet().model_copy(update={"parts": parts}), "tip", 2)
+    value = rise(pneunet().replace(parts=parts), "tip", 2)
     one_number(report, "PneuNet, tip, lattice 2.5 mm", value, reference)
 
 

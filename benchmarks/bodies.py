@@ -23,12 +23,12 @@ ROUNDING: Final = 1.01
 
 def beam(material: Material) -> vs.Design:
     """A cantilever of 100 x 10 x 10 mm under its weight: 80 voxels, the first 10 mm clamped."""
-    return _with_material(families.beam(), material)
+    return _with_material(families.paper_beam(), material)
 
 
 def cylinder(material: Material) -> vs.Design:
     """The paper's (5,7,1): radius, height and wall in voxels, 4 kPa in its chamber."""
-    return _with_material(families.cylinder(), material)
+    return _with_material(families.paper_cylinder(), material)
 
 
 def block(material: Material, across: int) -> vs.Design:
@@ -67,5 +67,5 @@ def require_rest(setup: Setup, result: vs.Result, tolerance: float) -> None:
 
 
 def _with_material(design: vs.Design, material: Material) -> vs.Design:
-    parts = [part.model_copy(update={"material": material}) for part in design.parts]
-    return design.model_copy(update={"parts": tuple(parts)})
+    parts = [part.replace(material=material) for part in design.parts]
+    return design.replace(parts=tuple(parts))

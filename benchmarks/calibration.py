@@ -37,7 +37,7 @@ SPREAD = 200
 
 def experiment(name: str) -> Experiment:
     """One of the paper's beams beside its photograph."""
-    beam = families.beam().with_values(f"parts.0.material=ecoflex-{name}")
+    beam = families.paper_beam().with_values(f"parts.0.material=ecoflex-{name}-lattice")
     return Experiment(beam, Measurement.read(DATA / f"ecoflex-{name}.csv"))
 
 
@@ -97,7 +97,7 @@ def measure_searches(report: Report) -> None:
 
 def measure_spread(report: Report) -> None:
     """A Monte Carlo of one beam: each candidate's own cost, and that lanes balance their forces."""
-    setup = Setup.of(families.beam())
+    setup = Setup.of(families.paper_beam())
     random = np.random.default_rng(SEED)
     edges, bulks = 10 ** random.uniform(3, 6, (2, SPREAD))
     materials = [vs.Lattice(edge=e, bulk=max(b, 2e3)) for e, b in zip(edges, bulks, strict=True)]

@@ -73,7 +73,7 @@ def modes(element: Element) -> Iterator[Row]:
     values = np.linalg.eigvalsh(Solver(element, body).system(0.0)[2].toarray()) / body.material[0]
     zero = int(np.sum(np.abs(values) < 1e-8))
     if zero != 6:
-        raise SystemExit(f"wrong answer: {element.name} has {zero} zero modes, 6 are due")
+        raise SystemExit(f"wrong answer: {element.name} has {zero} zero modes, expected 6")
     yield "zero modes", float(zero), ""
     yield "softest mode", float(values[6]), "μh"
 

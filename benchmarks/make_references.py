@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 import voxsoft as vs
-from voxsoft import metrics
+from voxsoft import geometry
 from voxsoft.comparison import discretization_error
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.outside import OutsideAnswer
@@ -38,17 +38,15 @@ ZERO = 1e-6
 def cylinder(wall: float, voxel: float) -> vs.Design:
     """The cylinder of the smooth references, as voxels."""
     edge = {"x": (0, 0), "y": (25 * mm, 25 * mm), "z": (35 * mm, 35 * mm)}
-    return families.cylinder(wall=wall).model_copy(
-        update={
-            "voxel_size": voxel,
-            "parts": (vs.Part(shape="body", material=SOFT),),
-            "probes": {
-                "center": vs.Probe(point=(0, 0, 35 * mm)),
-                "top": vs.Probe(z=(35 * mm, 35 * mm)),
-                "rim": vs.Probe(**edge),
-                "side": vs.Probe(point=(0, 25 * mm, 17.5 * mm)),
-            },
-        }
+    return families.paper_cylinder(wall=wall).replace(
+        voxel_size=voxel,
+        parts=(vs.Part(shape="body", material=SOFT),),
+        probes={
+            "center": vs.Probe(point=(0, 0, 35 * mm)),
+            "top": vs.Probe(z=(35 * mm, 35 * mm)),
+            "rim": vs.Probe(**edge),
+            "side": vs.Probe(point=(0, 25 * mm, 17.5 * mm)),
+        },
     )
 
 
@@ -56,14 +54,12 @@ def pneunet() -> vs.Design:
     """Six chambers with walls of one voxel of 2.5 mm on a layer ten times as stiff."""
     design = families.pneunet(chambers=6, width=15 * mm, height=20 * mm)
     layer, chambers = design.parts
-    return design.model_copy(
-        update={
-            "parts": (
-                layer.model_copy(update={"material": FIRM}),
-                chambers.model_copy(update={"material": SOFT}),
-            ),
-            "loads": (vs.Pressure(value=PNEUNET_PRESSURE),),
-        }
+    return design.replace(
+        parts=(
+            layer.replace(material=FIRM),
+            chambers.replace(material=SOFT),
+        ),
+        loads=(vs.Pressure(value=PNEUNET_PRESSURE),),
     )
 
 
@@ -166,14 +162,14 @@ def quantities(setup: Setup, moved: np.ndarray) -> dict[str, float]:
     rest = setup.mesh.vertices
     values = {}
     for name, place in setup.places.items():
-        mean = metrics.mean_displacement(rest, rest + moved, place.vertices, place.weights)
+        mean = geometry.mean_displacement(rest, rest + moved, place.vertices, place.weights)
         for axis, value in zip("xyz", mean, strict=True):
             values[f"{name}_u{axis}_mm"] = value * 1e3
         if len(place.vertices) > 4:
-            turned = metrics.mean_rotation(rest, rest + moved, place.vertices)
+            turned = geometry.mean_rotation(rest, rest + moved, place.vertices)
             values[f"{name}_rotation_deg"] = float(np.degrees(turned))
     cavity = setup.mesh.cavities[0]
-    grown = metrics.enclosed_volume(cavity.triangles, rest + moved) - cavity.volume
+    grown = geometry.enclosed_volume(cavity.triangles, rest + moved) - cavity.volume
     return values | {"cavity_growth_mm3": grown * 1e9}
 
 

@@ -11,6 +11,7 @@ the tip in the page is where the frame of the server says.
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
 import shutil
@@ -26,6 +27,8 @@ from typing import TYPE_CHECKING, Any
 
 from measure import Report
 from studio_wire import wire
+
+from voxsoft.design.families import family_text
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
@@ -45,6 +48,8 @@ FLAGS = [
 WINDOW, PATIENCE = 5.0, 120.0
 #: Bars of 2 mm voxels as (length, width) in voxels.
 BODIES = {2_000: (20, 10), 5_120: (20, 16), 20_000: (50, 20)}
+#: How far a hand goes round on the screen, and steps of the mouse for each second.
+CIRCLE, MOUSE = 60.0, 30
 MOVES = 9
 #: Between two moves of the slider, so that what follows a shape is over, in ms.
 REST = 1500
@@ -62,7 +67,7 @@ body = {{ kind = "box", size = ["= length", "{width} mm", "{width} mm"] }}
 
 [[parts]]
 shape = "body"
-material = "ecoflex-00-30"
+material = "ecoflex-00-30-lattice"
 
 [[clamps]]
 region = {{ x = [0, 0] }}
@@ -171,6 +176,44 @@ def frames(report: Report, browser: Browser, count: int, address: str) -> None:
             report.add(f"{count:,} voxels: substep of the server", float(step[1]) * scale, "ms")
 
 
+def pulled(report: Report, browser: Browser, name: str, address: str) -> None:
+    """Frames per second and the share of real time while a hand pulls a body around."""
+    with opened(browser, address) as (page, _):
+        page.get_by_role("button", name="Simulate", exact=True).click()
+        page.get_by_test_id("play").click()
+        until(page, "voxsoft.time > 0")
+        box = page.locator(".viewport canvas").bounding_box()
+        assert box is not None
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x, y - CIRCLE, steps=4)
+        page.get_by_test_id("grab").wait_for()
+        page.evaluate(
+            """() => {
+              const start = { clock: performance.now(), time: voxsoft.time };
+              let [count, last] = [0, voxsoft.frame];
+              const look = () => {
+                if (voxsoft.frame !== last) [count, last] = [count + 1, voxsoft.frame];
+                const clock = (performance.now() - start.clock) / 1000;
+                window.pulled = [count / clock, (voxsoft.time - start.time) / clock];
+                requestAnimationFrame(look);
+              };
+              look();
+            }"""
+        )
+        for step in range(round(WINDOW * MOUSE)):
+            angle = 2 * math.pi * step / MOUSE
+            page.mouse.move(x + CIRCLE * math.sin(angle), y - CIRCLE * math.cos(angle))
+            page.wait_for_timeout(1000 / MOUSE)
+        shown, share = page.evaluate("window.pulled")
+        page.mouse.up()
+        if shown == 0:
+            raise SystemExit(f"wrong answer: {name} does not move in the page")
+        report.add(f"{name}, pulled: frames shown", shown, "1/s")
+        report.add(f"{name}, pulled: simulated time over the clock's", share, "")
+
+
 def page_seconds(devtools: Any) -> float:
     """Processor time of the page's main thread [s]: its scripts, layout and paint, no drawing."""
     metrics = devtools.send("Performance.getMetrics")["metrics"]
@@ -258,6 +301,14 @@ def first_paint(report: Report, browser: Browser, address: str) -> None:
     report.add("first paint with content", statistics.median(times), "ms")
 
 
+def rubber_bodies() -> dict[str, str]:
+    """Bodies of silicone rubber, as design files."""
+    length, width = BODIES[5_120]
+    bar = BAR.format(length=2 * length, width=2 * width).replace("-lattice", "")
+    bar = bar.replace('method = "xpbd"\ndamping = "0.1 1/s"', "")
+    return {"pneunet template, rubber": family_text("pneunet"), "bar of 5,120 voxels, rubber": bar}
+
+
 def main() -> None:
     """Run everything."""
     report = Report("The studio in headless Chromium, drawn by software")
@@ -281,6 +332,11 @@ def main() -> None:
                     frames(report, browser, count, address)
                 if count == 2_000:
                     first_paint(report, browser, address)
+        for name, text in rubber_bodies().items():
+            design = Path(folder) / f"{name.split()[0]}.toml"
+            design.write_text(text, encoding="utf-8")
+            with served(design, Path(folder) / f"runs_{design.stem}") as address:
+                pulled(report, browser, name, address)
         browser.close()
     report.show()
 

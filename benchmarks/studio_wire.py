@@ -14,7 +14,7 @@ from urllib.parse import parse_qs, urlsplit
 
 from measure import Report
 
-from voxsoft.studio.protocol import PROTOCOL
+from voxsoft.studio.wire import PROTOCOL
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

@@ -98,7 +98,7 @@ def run(evaluate: object = None, executor: Executor | None = None) -> tuple[floa
     settings = {} if evaluate is None else {"evaluate": evaluate}
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
-        study = vs.Study(families.cylinder(), folder=folder, **settings)
+        study = vs.Study(families.paper_cylinder(), folder=folder, **settings)
         result = study.grid(workers=workers, executor=executor)
         return time.perf_counter() - start, result
 
@@ -118,7 +118,7 @@ def true_rises(result: StudyResult) -> dict[Size, float]:
         raise SystemExit(f"wrong answer: {result.counts}")
     rises = {}
     for trial in solved:
-        design = families.cylinder(**trial.parameters)
+        design = families.paper_cylinder(**trial.parameters)
         true = vs.simulate(design, method="statics", tolerance=TIGHT).metrics["rise"]
         error = abs(trial.objectives["rise"] - true) / abs(true)
         if not error < WITHIN:
@@ -154,7 +154,7 @@ def main() -> None:
     cold, result = run()
     rises = true_rises(result)
     textbook = Textbook(rises)
-    chambered = [families.cylinder(**t.parameters) for t in result.trials if t.status == "ok"]
+    chambered = [families.paper_cylinder(**t.parameters) for t in result.trials if t.status == "ok"]
 
     def loop() -> None:
         for design in chambered:

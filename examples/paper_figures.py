@@ -43,13 +43,13 @@ def gyroid() -> None:
 
 def cylinder() -> None:
     """The best actuator of the study, cut open under pressure."""
-    result = vs.simulate(families.cylinder())
+    result = vs.simulate(families.paper_cylinder())
     save(plot_body(result, section="y", title="4 kPa, cut open"), "cylinder")
 
 
 def calibration() -> None:
     """Figs. 3 and 4: the genetic algorithm at work, and the beam it ends with."""
-    measured = vs.Experiment(families.beam(), vs.Measurement.read(DATA))
+    measured = vs.Experiment(families.paper_beam(), vs.Measurement.read(DATA))
     answer = vs.calibrate(measured, "genetic", free_scale=True, seed=1)
     save(plot_fitness(answer), "calibration_fitness")
     save(plot_shape(answer), "calibration_shape")
@@ -58,7 +58,7 @@ def calibration() -> None:
 def study() -> None:
     """Fig. 6: three sizes and the rise as color."""
     with tempfile.TemporaryDirectory() as folder:
-        save(plot_scatter(vs.Study(families.cylinder(), folder=folder).grid()), "scatter")
+        save(plot_scatter(vs.Study(families.paper_cylinder(), folder=folder).grid()), "scatter")
 
 
 def cylinders() -> None:
@@ -67,13 +67,11 @@ def cylinders() -> None:
     print(f"E = {material.young() / 1e3:.1f} kPa, nu = {material.poisson():.2f}")
     for wall in (5, 10, 15):
         for voxel in (5.0, 2.5, 1.25):
-            design = families.cylinder(wall=wall * mm).model_copy(
-                update={
-                    "voxel_size": voxel * mm,
-                    "parts": (vs.Part(shape="body", material=material),),
-                    "probes": {"center": vs.Probe(point=(0, 0, 35 * mm))},
-                    "objectives": {},
-                }
+            design = families.paper_cylinder(wall=wall * mm).replace(
+                voxel_size=voxel * mm,
+                parts=(vs.Part(shape="body", material=material),),
+                probes={"center": vs.Probe(point=(0, 0, 35 * mm))},
+                objectives={},
             )
             rise = vs.simulate(design).metric("displacement", axis="z")
             print(f"wall {wall:2} mm, voxels {voxel:4} mm: {rise / mm:6.2f} mm")

@@ -4,7 +4,7 @@
 NO_DESIGN = [
     ("colour=red", "is not known here"),
     ("voxel_size=5", "has no unit"),
-    ("voxel_size=5 kPa", "a length is due"),
+    ("voxel_size=5 kPa", "expected a length"),
     ("voxel_size=-5 mm", "-5 mm"),
     ("voxel_size=0", "0"),
     ("voxel_size=1 um", "of memory"),
@@ -19,8 +19,8 @@ NO_DESIGN = [
 ]
 NOT_SOLVABLE = [
     ("clamps=[]", "nothing holds the body"),
-    ('clamps.0.region.z=["1 m", "2 m"]', "catches no vertex"),
-    ('probes.top.z=["1 m", "1 m"]', "catches no vertex"),
+    ('clamps.0.region.z=["1 m", "2 m"]', "touches nothing"),
+    ('probes.top.z=["1 m", "1 m"]', "touches nothing"),
     ("shapes.cavity.radius=1 mm", "no enclosed cavity"),
     ('constraints.light={metric = "mass", max = "30 mm"}', "mass is a mass"),
     ('constraints.light={metric = "mass", max = "30 g", axis = "z"}', "no direction"),

@@ -107,10 +107,8 @@ def setup(case: str, refine: int) -> Setup:
 
 def solve(beam: Setup, young: float) -> vs.Result:
     """The beam at rest with one modulus."""
-    part = beam.design.parts[0].model_copy(
-        update={"material": vs.NeoHookean(young=young, poisson=0.499)}
-    )
-    changed = Setup(beam.design.model_copy(update={"parts": (part,)}), beam.mesh)
+    part = beam.design.parts[0].replace(material=vs.NeoHookean(young=young, poisson=0.499))
+    changed = Setup(beam.design.replace(parts=(part,)), beam.mesh)
     result = vs.simulate(changed)
     assert result.status == "ok", result.message
     return result
@@ -152,9 +150,7 @@ def frequency(beam: Setup, result: vs.Result, mass: float) -> float:
     Inverse iteration with the tangent there, from the direction of gravity. The body and its loads
     are symmetric, so sideways modes do not mix in. The weight swings along on the edge.
     """
-    problem = Setup(
-        beam.design.model_copy(update={"parts": result.design.parts}), beam.mesh
-    ).problem
+    problem = Setup(beam.design.replace(parts=result.design.parts), beam.mesh).problem
     rest = result.mesh.vertices
     masses = problem.masses.copy()
     edge = (rest[:, 0] > -1e-6) & (rest[:, 2] > 30 * mm - 1e-6)

@@ -64,15 +64,15 @@ class Damping:
 
 def loaded(mass: float, material: vs.NeoHookean) -> vs.Design:
     """The beam with a mass in kg whose center is the upper edge of the tip."""
-    design = vs.load(DESIGN, weight=0.0).model_copy(update={"voxel_size": VOXEL})
+    design = vs.load(DESIGN, weight=0.0).replace(voxel_size=VOXEL)
     beam = vs.Part(shape="beam", material=material)
     if mass == 0.0:
-        return design.model_copy(update={"parts": (beam,)})
+        return design.replace(parts=(beam,))
     rows = vs.Box(size=(2 * VOXEL, 30 * mm, VOXEL), corner=(-VOXEL, 0, 30 * mm - VOXEL))
     # The inner row replaces one of the beam: what both hold beyond that is the weight.
     density = material.density / 2 + mass / (2 * ROW)
-    heavy = vs.Part(shape=rows, material=material.model_copy(update={"density": density}))
-    return design.model_copy(update={"parts": (heavy, beam)})
+    heavy = vs.Part(shape=rows, material=material.replace(density=density))
+    return design.replace(parts=(heavy, beam))
 
 
 def coarse(young: float) -> float:
@@ -123,7 +123,7 @@ def dampings(elastic: list[float]) -> list[Damping]:
             f"a branch of {branch:.3f} s",
             "",
             0.16,
-            lambda rubber, g: rubber.model_copy(update={"prony": (PronyTerm(g=g, tau=branch),)}),
+            lambda rubber, g: rubber.replace(prony=(PronyTerm(g=g, tau=branch),)),
             lambda _: {},
         ),
     ]

@@ -61,7 +61,7 @@ class Fit:
 
 @cache
 def _experiment(name: str, refine: int) -> tuple[Experiment, Setup]:
-    beam = families.beam().with_values(f"parts.0.material=ecoflex-{name}")
+    beam = families.paper_beam().with_values(f"parts.0.material=ecoflex-{name}-lattice")
     experiment = Experiment(beam, Measurement.read(DATA / f"ecoflex-{name}.csv"))
     return experiment, Setup.of(beam, refine=refine)
 
@@ -71,8 +71,8 @@ def shape(name: str, young: float, refine: int = 1) -> Floats:
     """The nine points of a beam of some modulus as a photograph would show them, (9, 2), m."""
     experiment, setup = _experiment(name, refine)
     material = vs.NeoHookean(young=young, poisson=0.499)
-    part = setup.design.parts[0].model_copy(update={"material": material})
-    design = setup.design.model_copy(update={"parts": (part,)})
+    part = setup.design.parts[0].replace(material=material)
+    design = setup.design.replace(parts=(part,))
     result = vs.simulate(Setup(design, setup.mesh))
     assert result.status == "ok", result.message
     # The corners of whole voxels come first or last; find them by where they are.
@@ -140,7 +140,7 @@ def cylinder(young: float, *, rigid_caps: bool, voxel: float = 5 * mm) -> float:
     """
     radius, height, wall = (size * mm for size in CYLINDER)
     soft = vs.NeoHookean(young=young, poisson=0.499)
-    design = families.cylinder(radius=radius, height=height, wall=wall)
+    design = families.paper_cylinder(radius=radius, height=height, wall=wall)
     parts = [vs.Part(shape="body", material=soft)]
     shapes = dict(design.shapes)
     if rigid_caps:
@@ -158,7 +158,7 @@ def cylinder(young: float, *, rigid_caps: bool, voxel: float = 5 * mm) -> float:
         "probes": {"top": vs.Probe(point=(0, 0, height))},
         "objectives": {},
     }
-    result = vs.simulate(design.model_copy(update=changes))
+    result = vs.simulate(design.replace(**changes))
     assert result.status == "ok", result.message
     return float(result.probes["top"][2]) / mm
 

@@ -23,13 +23,15 @@ Examples
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
+
+from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
     from voxsoft.calibration import Calibration, Experiment, Measurement, calibrate
     from voxsoft.comparison import Comparison, compare
     from voxsoft.design import (
+        Chamber,
         Clamp,
         Constraint,
         Design,
@@ -71,10 +73,11 @@ if TYPE_CHECKING:
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
-_HOMES: Final = {
+_HOMES = {
     "voxsoft.calibration": ("Calibration", "Experiment", "Measurement", "calibrate"),
     "voxsoft.comparison": ("Comparison", "compare"),
     "voxsoft.design": (
+        "Chamber",
         "Clamp",
         "Constraint",
         "Design",
@@ -111,27 +114,79 @@ _HOMES: Final = {
         "load_card",
     ),
     "voxsoft.mesh": ("Mesh",),
+    "voxsoft.shapes": (
+        "IWP",
+        "AnyShape",
+        "Array",
+        "Bcc",
+        "Bend",
+        "Blend",
+        "Box",
+        "Capsule",
+        "Cone",
+        "Cubic",
+        "Cylinder",
+        "Difference",
+        "Ellipsoid",
+        "Expression",
+        "Fcc",
+        "Function",
+        "Grade",
+        "Gyroid",
+        "HalfSpace",
+        "Intersection",
+        "Mirror",
+        "Neovius",
+        "Octet",
+        "Offset",
+        "PolarArray",
+        "Prism",
+        "Revolve",
+        "Rotate",
+        "RoundedBox",
+        "Scale",
+        "SchwarzD",
+        "SchwarzP",
+        "Shape",
+        "Shell",
+        "Sphere",
+        "Taper",
+        "Torus",
+        "Translate",
+        "TriangleMesh",
+        "Tube",
+        "Twist",
+        "Union",
+        "atan2",
+        "cos",
+        "exp",
+        "grid_bounds",
+        "inside",
+        "log",
+        "maximum",
+        "minimum",
+        "random_shape",
+        "sin",
+        "sqrt",
+        "tan",
+        "voxelize",
+        "x",
+        "y",
+        "z",
+    ),
     "voxsoft.simulation": ("Result", "check", "gradient", "simulate", "simulate_many"),
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),
 }
-_HOME_OF: Final = {name: home for home, names in _HOMES.items() for name in names}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+_get, __dir__ = lazy_names(__name__, _HOME_OF)
+
+__all__ = sorted(_HOME_OF)
 
 
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - any public object
+def __getattr__(name: str) -> object:
     if name == "__version__":
         from importlib.metadata import version  # as slow to load as all else here together
 
         return version("voxsoft")
-    if name.startswith("_"):
-        raise AttributeError(name)
-    home = import_module(_HOME_OF.get(name, "voxsoft.shapes"))
-    if not hasattr(home, name):
-        raise AttributeError(f"module 'voxsoft' has no attribute '{name}'")
-    value = getattr(home, name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *_HOME_OF, *import_module("voxsoft.shapes").__all__})
+    return _get(name)

@@ -1,7 +1,7 @@
 """Types of the private Rust module."""
 
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +78,17 @@ def mesh_quality(
     edges: NDArray[np.int32],
     triangles: NDArray[np.int32],
 ) -> tuple[float, float, float, float, int, bool, int, NDArray[np.int32]]: ...
+def penetration(
+    rest: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    tets: NDArray[np.int32],
+    triangles: NDArray[np.int32],
+    sheets: NDArray[np.int32],
+) -> tuple[
+    NDArray[np.uint32],
+    list[tuple[float, list[float], list[list[float]], list[int], bool]],
+    NDArray[np.int32],
+]: ...
 
 _Ring = list[tuple[float, float]]
 
@@ -276,6 +287,24 @@ class Problem:
         progress: Callable[[int, float, float], None] | None = None,
     ) -> dict[str, Any]: ...
 
+class Fields:
+    """Stress and strain of a problem's body; `blocks` says which block each element is."""
+
+    def __init__(self, problem: Problem) -> None: ...
+    @property
+    def blocks(self) -> NDArray[np.uint32]: ...
+    @property
+    def volumes(self) -> NDArray[np.float64]: ...
+    def measure(self, positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Stress (e, 6), von_mises (e,), stretches (e, 3), energy_density, volume_ratio (e,)."""
+
+    def at_vertices(self, positions: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+        """Stress (n, 6), von_mises, max_stretch, energy_density (n,)."""
+
+    def stretch_slope(
+        self, positions: NDArray[np.float64], element: int
+    ) -> NDArray[np.float64]: ...
+
 class Display:
     """A surface or tetrahedra of a body, packed into the messages of the studio."""
 
@@ -329,7 +358,12 @@ class Live:
         deterministic: bool = False,
     ) -> None: ...
     @property
+    def method(self) -> Literal["explicit", "implicit"]: ...
+    @property
     def substep(self) -> float: ...
+    def prefer_step(self, seconds: float) -> None:
+        """Ask for steps of another length; explicit ones are as long as they can be."""
+
     def advance(self, substeps: int) -> dict[str, Any]: ...
     def advance_for(self, seconds: float, max_substeps: int = ...) -> dict[str, Any]: ...
     def set_load(self, load: int, factor: float | None) -> None: ...

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import time
-from pathlib import Path
+from collections.abc import Iterator
 from typing import Final
 
-#: Used where the operating system does not say (Windows, some containers) [bytes].
-UNKNOWN_MEMORY = 8 << 30
+import psutil
 
+from voxsoft._cgroups import free_in_groups
 
 #: Seconds for which an answer holds: asking takes as long as meshing a small body.
 _LASTING: Final = 0.2
@@ -23,10 +22,11 @@ class _Reading:
 
 
 def memory_limit() -> int:
-    """Return the bytes that can be used without swapping, as far as the system says.
+    """Return the bytes that can be used without swapping or being stopped.
 
-    Linux tells what is available; other Unix systems only what is installed, of which half is
-    taken; elsewhere it is :data:`UNKNOWN_MEMORY`.
+    The least of what the machine has available, what the control groups of a container or a
+    scheduler leave (:func:`voxsoft._cgroups.free_in_groups`), and what the process may still take
+    (``ulimit -v`` and ``ulimit -d``).
 
     Examples
     --------
@@ -40,16 +40,36 @@ def memory_limit() -> int:
 
 
 def _read() -> int:
+    groups = free_in_groups()
+    bounds = [psutil.virtual_memory().available, *_free_to_process()]
+    return max(0, min(bounds if groups is None else [*bounds, groups]))
+
+
+def _free_to_process() -> Iterator[int]:
+    """What the limits of the process leave: of its address space, and of its data."""
     try:
-        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
-            if line.startswith("MemAvailable:"):
-                return int(line.split()[1]) * 1024
-    except OSError:
-        pass
-    try:
-        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
-    except (AttributeError, OSError, ValueError):
-        return UNKNOWN_MEMORY
+        import resource
+    except ImportError:  # Windows
+        return
+    used = psutil.Process().memory_info()
+    for kind, taken in ((resource.RLIMIT_AS, used.vms), (resource.RLIMIT_DATA, used.data)):
+        limit, _ = resource.getrlimit(kind)
+        if limit != resource.RLIM_INFINITY:
+            yield limit - taken
+
+
+def shortage(due: float) -> str:
+    """Say that so many bytes are more than there are; empty where they fit.
+
+    Examples
+    --------
+    >>> shortage(0), shortage(1e30).partition(", ")[0]
+    ('', 'needs about 1,000,000,000,000,000,000,000 GB of memory')
+    """
+    free = memory_limit()
+    if due <= free:
+        return ""
+    return f"needs about {gigabytes(due)} of memory, more than the limit of {gigabytes(free)}"
 
 
 def gigabytes(size: float) -> str:

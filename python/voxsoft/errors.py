@@ -6,8 +6,37 @@ Errors that correspond to a standard exception inherit it too, so ``except Value
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
-from typing import NamedTuple, Self
+from typing import Final, NamedTuple, Self
+
+#: Text that somebody wrote is quoted up to this length, and whole messages are this long at most.
+_LONGEST_QUOTE: Final = 120
+_LONGEST: Final = 2_000
+
+
+def brief(text: str) -> str:
+    """Shorten what a message quotes, and a message: a formula may have 40,000 characters.
+
+    Examples
+    --------
+    >>> brief(f'in "{"1+" * 20_000}1": too long')
+    'in "1+1+1+1+1+1+1+1+1+1+1+1+1+1+1+ ... +1+1+1+1+1+1" (40,001 characters): too long'
+    """
+    return _cut(_QUOTED.sub(_cut_quote, text), _LONGEST, _LONGEST - 200)
+
+
+def _cut_quote(match: re.Match[str]) -> str:
+    if len(match[1]) <= _LONGEST_QUOTE:
+        return match[0]
+    return f'"{_cut(match[1], 0, 30)}" ({len(match[1]):,} characters)'
+
+
+def _cut(text: str, longest: int, start: int) -> str:
+    return text if len(text) <= longest else f"{text[:start]} ... {text[-12:]}"
+
+
+_QUOTED: Final = re.compile(r'"([^"]*)"')
 
 
 class Problem(NamedTuple):
@@ -52,6 +81,7 @@ class VoxSoftError(Exception):
     """
 
     def __init__(self, where: str, what: str = "", hint: str = "") -> None:
+        where, what, hint = brief(where), brief(what), brief(hint)
         self.where, self.what, self.hint = where, what, hint
         self.problems: tuple[Problem, ...] = (Problem(where, what, hint),)
         super().__init__(where, what, hint)
@@ -67,7 +97,7 @@ class VoxSoftError(Exception):
           a: is missing
           b: is negative
         """
-        every = tuple(problems)
+        every = tuple(Problem(*map(brief, problem)) for problem in problems)
         error = cls(*every[0])
         error.problems = every
         return error
@@ -135,6 +165,16 @@ class FileError(VoxSoftError, OSError):
 
     def __str__(self) -> str:
         return VoxSoftError.__str__(self)
+
+
+class OutputError(FileError):
+    """A file or folder that cannot be written: no room, no permission, a file in the way."""
+
+
+class StorageError(StudyError, OutputError):
+    """The storage of a study that cannot be written or does not answer."""
+
+    __str__ = VoxSoftError.__str__
 
 
 class MissingPackageError(VoxSoftError, ImportError):

@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft import _core
-from voxsoft._memory import memory_limit
+from voxsoft._memory import memory_limit, shortage
 from voxsoft.errors import MeshError
-from voxsoft.metrics import enclosed_volume
+from voxsoft.geometry import enclosed_volume
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +37,8 @@ class MeshCavity:
     void_parts : ndarray of float64, shape (k,)
         The part of each that belongs to the cavity; negative where the voxel holds more material
         than it has room for.
+    name : str
+        What the design calls it; empty where it has no name.
     """
 
     triangles: NDArray[np.int32] = field(repr=False)
@@ -46,6 +48,7 @@ class MeshCavity:
         default_factory=lambda: np.zeros((0, 4), np.int32), repr=False
     )
     void_parts: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0), repr=False)
+    name: str = ""
 
     def __post_init__(self) -> None:
         for name in ("triangles", "void_tets"):
@@ -59,7 +62,8 @@ class MeshCavity:
         if not isinstance(other, MeshCavity):
             return NotImplemented
         arrays = ("triangles", "void_tets", "void_parts")
-        return (self.volume, self.area) == (other.volume, other.area) and all(
+        mine, its = ((each.volume, each.area, each.name) for each in (self, other))
+        return mine == its and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
         )
 
@@ -329,6 +333,9 @@ class Mesh:
         >>> Voxels.from_array([[[1, 1]]], voxel_size=0.5).mesh().quality.watertight
         True
         """
+        if short := shortage(len(self.tets) * _QUALITY_BYTES_PER_TET):
+            what = f"counting the quality of {len(self.tets):,} tets {short}"
+            raise MeshError("mesh.quality", what, "make the voxels larger")
         counted = _core.mesh_quality(self.vertices, self.tets, self.edges, self.triangles)
         volume, smallest, largest, area, euler, conforming, open_edges, nonmanifold = counted
         return MeshQuality(
@@ -342,6 +349,9 @@ class Mesh:
             nonmanifold_edges=tuple((int(a), int(b)) for a, b in nonmanifold),
         )
 
+
+#: Measured on a million voxels: 90.
+_QUALITY_BYTES_PER_TET = 120
 
 _DTYPES: dict[str, type[np.generic]] = {
     "vertices": np.float64,

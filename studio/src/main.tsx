@@ -1,7 +1,10 @@
 import { createRoot } from "react-dom/client";
 import { ServerEngine } from "./engine/server";
+import { tellFits } from "./panes/calibrate/tell";
 import { watchJob } from "./panes/jobs/watch";
 import { App } from "./shell/App";
+import { forgetLayouts } from "./shell/Dock";
+import { PageFence } from "./shell/Fence";
 import { watchAddress, watchTheme } from "./store/page";
 import { connect } from "./store/session";
 import "./theme.css";
@@ -10,6 +13,11 @@ import "./controls/controls.css";
 watchTheme();
 watchAddress();
 watchJob();
+tellFits();
 const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 connect(new ServerEngine(`${scheme}//${location.host}/ws`));
-createRoot(document.getElementById("root") as HTMLElement).render(<App />);
+createRoot(document.getElementById("root") as HTMLElement).render(
+  <PageFence resetLayout={forgetLayouts}>
+    <App />
+  </PageFence>,
+);

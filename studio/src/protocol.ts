@@ -1,9 +1,105 @@
 // Written by `python -m voxsoft.studio.typescript`; change python/voxsoft/studio instead.
 
+/** Page and server must speak the same. */
 export const PROTOCOL = 1;
 
 /** Frames that the server sends before it waits for an `ack`. */
 export const CREDITS = 2;
+
+/** Largest file that the server takes, bytes. */
+export const LARGEST_UPLOAD = 67108864;
+
+/** First four bytes of a binary message. */
+export const MAGIC = 826693718;
+
+/** Length of the head of a binary message, bytes. */
+export const HEADER = 64;
+
+/** Bit of a triangle's tag that says that it faces a cavity. */
+export const CAVITY = 128;
+
+/** Speeds of time: simulated seconds for each of the clock. */
+export const PACES = [1.0, 0.5, 0.2, 0.1, 0.02, 0.005] as const;
+
+/** Why the server closes a websocket; from 4000 on the codes are the studio's own. */
+export const CloseCode = {
+  "TRY_AGAIN": 1013,
+  "OTHER_PROTOCOL": 4000,
+  "NO_HELLO": 4001,
+  "WRONG_MESSAGES": 4002,
+} as const;
+
+/** What a binary message holds. */
+export const MessageKind = {
+  "TOPOLOGY": 1,
+  "FRAME": 2,
+  "SMOOTH": 3,
+} as const;
+
+/** What is said of a frame beside its numbers. */
+export const FrameFlag = {
+  "PAUSED": 1,
+  "DIVERGED": 2,
+  "AT_REST": 4,
+} as const;
+
+/** What a topology describes. */
+export const TopologyFlag = {
+  "SURFACE": 1,
+  "SHRUNK_TETS": 2,
+} as const;
+
+/** Kinds: SI unit, unit of bare numbers, exponents. */
+export const KINDS = {
+  "length": {"si": "m", "written": "mm", "called": "a length", "dimension": [1, 0, 0, 0]},
+  "area": {"si": "m^2", "written": "mm^2", "called": "an area", "dimension": [2, 0, 0, 0]},
+  "volume": {"si": "m^3", "written": "mL", "called": "a volume", "dimension": [3, 0, 0, 0]},
+  "pressure": {"si": "Pa", "written": "kPa", "called": "a pressure", "dimension": [-1, 1, -2, 0]},
+  "modulus": {"si": "Pa", "written": "kPa", "called": "a pressure", "dimension": [-1, 1, -2, 0]},
+  "density": {"si": "kg/m^3", "written": "kg/m^3", "called": "a density", "dimension": [-3, 1, 0, 0]},
+  "mass": {"si": "kg", "written": "g", "called": "a mass", "dimension": [0, 1, 0, 0]},
+  "force": {"si": "N", "written": "N", "called": "a force", "dimension": [1, 1, -2, 0]},
+  "acceleration": {"si": "m/s^2", "written": "m/s^2", "called": "an acceleration", "dimension": [1, 0, -2, 0]},
+  "time": {"si": "s", "written": "s", "called": "a time", "dimension": [0, 0, 1, 0]},
+  "rate": {"si": "1/s", "written": "1/s", "called": "a rate", "dimension": [0, 0, -1, 0]},
+  "speed": {"si": "m/s", "written": "m/s", "called": "a speed", "dimension": [1, 0, -1, 0]},
+  "angle": {"si": "rad", "written": "deg", "called": "an angle", "dimension": [0, 0, 0, 1]},
+  "stiffness": {"si": "N/m", "written": "N/m", "called": "a stiffness", "dimension": [0, 1, -2, 0]},
+  "compliance": {"si": "m/N", "written": "m/N", "called": "a compliance", "dimension": [0, -1, 2, 0]},
+  "volume compliance": {"si": "m^3/Pa", "written": "m^3/Pa", "called": "a volume compliance", "dimension": [4, -1, 2, 0]},
+  "energy": {"si": "J", "written": "J", "called": "an energy", "dimension": [2, 1, -2, 0]},
+  "number": {"si": "1", "written": "", "called": "a plain number", "dimension": [0, 0, 0, 0]},
+} as const;
+
+/** Units of daily use: SI units in one, and exponents. */
+export const COMMON_UNITS = {
+  "um": [1e-06, [1, 0, 0, 0]],
+  "mm": [0.001, [1, 0, 0, 0]],
+  "cm": [0.01, [1, 0, 0, 0]],
+  "m": [1.0, [1, 0, 0, 0]],
+  "inch": [0.0254, [1, 0, 0, 0]],
+  "mg": [1e-06, [0, 1, 0, 0]],
+  "g": [0.001, [0, 1, 0, 0]],
+  "kg": [1.0, [0, 1, 0, 0]],
+  "ms": [0.001, [0, 0, 1, 0]],
+  "s": [1.0, [0, 0, 1, 0]],
+  "mN": [0.001, [1, 1, -2, 0]],
+  "N": [1.0, [1, 1, -2, 0]],
+  "kN": [1000.0, [1, 1, -2, 0]],
+  "Pa": [1.0, [-1, 1, -2, 0]],
+  "kPa": [1000.0, [-1, 1, -2, 0]],
+  "MPa": [1000000.0, [-1, 1, -2, 0]],
+  "GPa": [1000000000.0, [-1, 1, -2, 0]],
+  "bar": [100000.0, [-1, 1, -2, 0]],
+  "psi": [6894.757293168361, [-1, 1, -2, 0]],
+  "mJ": [0.001, [2, 1, -2, 0]],
+  "J": [1.0, [2, 1, -2, 0]],
+  "mL": [1e-06, [3, 0, 0, 0]],
+  "L": [0.001, [3, 0, 0, 0]],
+  "deg": [0.017453292519943295, [0, 0, 0, 1]],
+  "rad": [1.0, [0, 0, 0, 1]],
+  "Hz": [1.0, [0, 0, -1, 0]],
+} as const;
 
 export type Triple = [number, number, number];
 
@@ -56,11 +152,16 @@ export interface RedoCommand {
   seq: number;
 }
 
-/** Write the document to its file, or to another. */
+/**
+ * Write the document to its file, or to another: a name in its folder, or a whole path.
+ *
+ * A file of another document is replaced only with `overwrite`.
+ */
 export interface SaveCommand {
   t: "save";
   seq: number;
   path?: string | null;
+  overwrite?: boolean;
 }
 
 /** Let time run. */
@@ -176,6 +277,13 @@ export interface AckCommand {
   t: "ack";
   seq: number;
   frame: number;
+}
+
+/** Keep what is on the screen as a run folder, with its live loads and pulls. */
+export interface KeepCommand {
+  t: "keep";
+  seq: number;
+  name?: string | null;
 }
 
 /**
@@ -383,6 +491,7 @@ export interface Metric {
   kind: string;
   needs_probe: boolean;
   needs_cavity: boolean;
+  takes_percentile: boolean;
 }
 
 /** A quantity that colors the body; `signed` ones have zero in the middle of their range. */
@@ -448,13 +557,18 @@ export interface Diagnostic {
   hint: string;
 }
 
-/** The document as it stands; `design` is that of the last text that was good (or null). */
+/**
+ * The document as it stands; `design` is that of the last text that was good (or null).
+ *
+ * `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+ */
 export interface DocumentEvent {
   t: "document";
   rev: number;
   text: string;
   name: string;
   path: string | null;
+  folder: string;
   dirty: boolean;
   valid: boolean;
   parameters: Parameter[];
@@ -465,8 +579,9 @@ export interface DocumentEvent {
   can_redo: boolean;
 }
 
-/** An enclosed space: volume in m³, area in m². */
+/** An enclosed space: its name or an empty text, volume in m³, area in m². */
 export interface Cavity {
+  name: string;
   volume: number;
   area: number;
   center: Triple;
@@ -478,12 +593,13 @@ export interface Leak {
   point: Triple;
 }
 
-/** What a check of the body found. */
+/** What a check found; `at` is a point of the unloaded body in m where it is seen. */
 export interface Finding {
   severity: "error" | "note" | "warning";
   where: string;
   what: string;
   hint: string;
+  at: Triple | null;
 }
 
 /** A clamp: how many vertices it holds, their center, and some of them. */
@@ -494,12 +610,17 @@ export interface BodyClamp {
   points: Triple[];
 }
 
-/** A load with the range of its slider; value / factor is the number to show with `unit`. */
+/**
+ * A load with the range of its slider; value / factor is the number to show with `unit`.
+ *
+ * `kind` is that of the load in a design, `quantity` what its size is.
+ */
 export interface BodyLoad {
   index: number;
   kind: string;
   label: string;
   value: number;
+  quantity: string;
   unit: string;
   factor: number;
   min: number;
@@ -533,7 +654,8 @@ export interface BodyLayer {
 /**
  * A new body: its topology follows as a binary message with the same id.
  *
- * `smooth` says that the smooth surface of the shapes follows as well (kind 3).
+ * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
+ * shapes follows as well (kind 3).
  */
 export interface BodyEvent {
   t: "body";
@@ -547,7 +669,7 @@ export interface BodyEvent {
   voxel_size: number;
   cavities: Cavity[];
   leaks: Leak[];
-  mass: number;
+  mass: number | null;
   volume: number;
   bounds: [Triple, Triple];
   findings: Finding[];
@@ -601,6 +723,63 @@ export interface StatEvent {
   progress: number | null;
   loads: number[];
   grabs: GrabState[];
+}
+
+/** A probe and how far it moved, m. */
+export interface MovedProbe {
+  name: string;
+  displacement: Triple;
+}
+
+/** A metric of the body as it stands, SI; `kind` tells its unit. */
+export interface MetricValue {
+  name: string;
+  value: number | null;
+  kind: string;
+}
+
+/** A chamber: volumes unloaded and now in m³, pressure in Pa. */
+export interface Chamber {
+  name: string;
+  rest_volume: number;
+  volume: number;
+  pressure: number;
+}
+
+/**
+ * The numbers of the state that `frame` shows, and what is doubtful about it.
+ *
+ * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
+ */
+export interface EquilibriumEvent {
+  t: "equilibrium";
+  topology: number;
+  frame: number;
+  status: string;
+  sentence: string;
+  residual: string;
+  seconds: number;
+  probes: MovedProbe[];
+  metrics: MetricValue[];
+  chambers: Chamber[];
+  largest_strain: number;
+  warnings: Finding[];
+}
+
+/** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */
+export interface OverlapPlace {
+  depth: number;
+  rest: Triple;
+  now: Triple;
+}
+
+/** Where the body is in itself as it is shown, the deepest place first; none where it is not. */
+export interface OverlapEvent {
+  t: "overlap";
+  topology: number;
+  depth: number;
+  sentence: string;
+  places: OverlapPlace[];
 }
 
 /**
@@ -848,6 +1027,12 @@ export interface SavedEvent {
   path: string;
 }
 
+/** A file that saving would replace: the page asks, and saves again with `overwrite`. */
+export interface FileExistsEvent {
+  t: "file_exists";
+  path: string;
+}
+
 /** What could not be done, and what to try. `seq` is the command's, or 0. */
 export interface ErrorEvent {
   t: "error";
@@ -888,6 +1073,7 @@ export type AnyCommand =
   | PickCommand
   | ProbeCommand
   | AckCommand
+  | KeepCommand
   | JobStartCommand
   | JobPauseCommand
   | JobResumeCommand
@@ -907,6 +1093,8 @@ export type AnyEvent =
   | DocumentEvent
   | BodyEvent
   | StatEvent
+  | EquilibriumEvent
+  | OverlapEvent
   | PlotEvent
   | PickedEvent
   | JobEvent
@@ -921,5 +1109,6 @@ export type AnyEvent =
   | MeasuredEvent
   | ExportedEvent
   | SavedEvent
+  | FileExistsEvent
   | ErrorEvent
   | LogEvent;

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { nextPace, PACES, paceFor, paceName, RealTimeFactor } from "../src/engine/pace";
+import { nextPace, paceFor, paceName, RealTimeFactor } from "../src/engine/pace";
+import { PACES } from "../src/protocol";
 
 describe("the pace of time", () => {
   it("is real time for what lasts, and slower for what does not", () => {

@@ -4,7 +4,7 @@ import { Core } from "../src/engine/core";
 import type { Draft } from "../src/engine/engine";
 import { decode, type Frame, positionIn } from "../src/engine/frames";
 import { type Notes, Player } from "../src/engine/player";
-import type { AnyEvent, BodyEvent, StatEvent } from "../src/protocol";
+import type { AnyEvent, BodyEvent, OverlapEvent, StatEvent } from "../src/protocol";
 
 const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.meta.url)));
 
@@ -30,6 +30,7 @@ const BODY: BodyEvent = {
   loads: [
     {
       ...{ index: 0, kind: "gravity", label: "gravity", value: 9.81, unit: "m/s²", factor: 1 },
+      quantity: "acceleration",
       ...{ min: 0, max: 20, at: [0.015, 0.005, 0.005], direction: [0, 0, -1] },
     },
   ],
@@ -221,4 +222,22 @@ describe("slow motion", () => {
     expect(stat().state).toBe("past");
     expect(stat().time).toBeCloseTo(0.005, 3);
   });
+});
+
+it("tells where the body is in itself as it is shown first, until it moves", async () => {
+  const overlap: OverlapEvent = {
+    ...{ t: "overlap", topology: 4, depth: 0.001, sentence: "walls overlap" },
+    places: [{ depth: 0.001, rest: [0, 0, 0], now: [0, 0, 0] }],
+  };
+  const run = (await Core.load(file("../public/voxsoft.wasm"))).open(file("beam.scene"));
+  const heard: AnyEvent[] = [];
+  const notes = { ...NOTES, overlap };
+  const shown = new Player(run, notes, { event: (one) => heard.push(one), binary() {} });
+  const told = () => heard.filter((one) => one.t === "overlap");
+  shown.greet();
+  expect(told()).toEqual([overlap]);
+  shown.take({ t: "step", seq: 1 });
+  shown.take({ t: "step", seq: 2 });
+  expect(told()).toHaveLength(2);
+  expect(told()[1]).toMatchObject({ topology: 4, sentence: "", places: [] });
 });

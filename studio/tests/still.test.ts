@@ -1,5 +1,4 @@
 import { describe, expect, it } from "vitest";
-import type { Frame } from "../src/engine/frames";
 import { commonRange, stillOf } from "../src/view/still/fetchStill";
 
 const MAGIC = 0x31465856;
@@ -60,7 +59,8 @@ describe("a body at rest", () => {
 });
 
 it("shares one range of colors among all bodies", () => {
-  const of = (min: number, max: number) => ({ min, max }) as Frame;
-  expect(commonRange([of(0, 2), of(-1, 1)])).toEqual([-1, 2]);
-  expect(commonRange([])).toBeNull();
+  const one = stillOf(joined(topology(), frame(5, 2)));
+  const other = stillOf(joined(topology(), frame(5, 3), frame(6, 9)));
+  expect(commonRange([one, other], 5)).toEqual({ low: 0, high: 3, clipped: false });
+  expect(commonRange([one, other], 7)).toBeNull();
 });

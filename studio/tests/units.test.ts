@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 import {
+  cleaned,
   formatEnergy,
   formatNumber,
   formatQuantity,
@@ -44,13 +45,13 @@ describe("parseQuantity", () => {
   it.each([
     ["", "mm", "no number"],
     ["wide", "mm", "no number"],
-    ["5 kPa", "mm", "a length is due"],
+    ["5 kPa", "mm", "expected a length"],
     ["5 furlongs", "mm", "no unit"],
     ["1,000 mm", "mm", "two things"],
     ["1e999", "mm", "out of range"],
-    ["2*5 kPa", "mm", "a pressure; a length is due"],
-    ["5 mm * 2 mm", "mm", "an area; a length is due"],
-    ["4 mm / 2 mm", "mm", "a plain number; a length is due"],
+    ["2*5 kPa", "mm", "a pressure; expected a length"],
+    ["5 mm * 2 mm", "mm", "an area; expected a length"],
+    ["4 mm / 2 mm", "mm", "a plain number; expected a length"],
     ["5 + 5 mm", "mm", "cannot be added: give the number a unit"],
     ["2*", "mm", "is not complete"],
     ["2*wall", "mm", '"wall" is not a parameter'],
@@ -83,4 +84,12 @@ describe("format", () => {
       expect(value(text, "mm")).toBeCloseTo(x, 10);
     }
   });
+});
+
+it("says zero where only rounding is left", () => {
+  expect(cleaned(1.16e-32, "J/m^3")).toBe(0);
+  expect(cleaned(-1.46e-13, "Pa")).toBe(0);
+  expect(cleaned(4.76e-14, "N")).toBe(0);
+  expect(cleaned(1e-5, "m")).toBe(1e-5);
+  expect(cleaned(1e-30, "1/s")).toBe(1e-30);
 });

@@ -1,11 +1,11 @@
 """Many candidates at a time against one by one: relaxation, statics, and a search on top."""
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 from voxsoft import Force, Gravity, Lattice, Region, calibrate, simulate, simulate_many
 from voxsoft.calibration import Experiment, Measurement
-from voxsoft.design import families
 from voxsoft.simulation import Setup
 
 #: From a beam that hardly bends to one that hangs straight down.
@@ -17,8 +17,8 @@ def beam(**parameters):
 
 
 def with_material(design, material):
-    parts = tuple(part.model_copy(update={"material": material}) for part in design.parts)
-    return design.model_copy(update={"parts": parts})
+    parts = tuple(part.replace(material=material) for part in design.parts)
+    return design.replace(parts=parts)
 
 
 @pytest.mark.parametrize("method", ["xpbd", "statics"])
@@ -41,15 +41,15 @@ def test_lanes_find_what_single_solvers_do(method):
 def test_parts_of_the_loads_are_those_of_lighter_designs():
     """Weight and a force at the tip, both scaled, against designs with these values."""
     push = Force(region=Region(x=(0.1, 0.1)), value=(0.0, 0.004, -0.002))
-    design = beam().model_copy(update={"loads": (Gravity(), push)})
+    design = beam().replace(loads=(Gravity(), push))
     factors = (0.25, 1.0, -0.5)
     found = simulate_many(design, load_factors=factors)
     for factor, candidate in zip(factors, found, strict=True):
         loads = (
             Gravity(value=factor * 9.81),
-            push.model_copy(update={"value": tuple(factor * f for f in push.value)}),
+            push.replace(value=tuple(factor * f for f in push.value)),
         )
-        lighter = design.model_copy(update={"loads": loads})
+        lighter = design.replace(loads=loads)
         alone = simulate(lighter, method="statics")
         assert candidate.way == "lanes"
         # Both are converged to 1e-8 of the load.

@@ -198,6 +198,7 @@ def test_calibrate_prints_the_object_and_writes_a_card():
     assert {"ecoflex-00-30.toml", "fitness.png", "shape.png", "profile.png", "shapes.csv"} <= names
 
 
+@pytest.mark.slow
 def test_calibrate_along_gradients_finds_the_modulus_of_a_made_up_beam():
     """A process of its own; the data are from the other solver, and carry no noise."""
     rubber = 'parts.0.material={model="neo-hookean", young="%s kPa", poisson=0.49}'
@@ -264,8 +265,7 @@ def test_export_of_a_run():
         ([CYLINDER, "a.csv"], "holds no result"),
         ([CYLINDER, "a.stl", "--deformed"], "holds no result"),
         ([CYLINDER, "a.vtu", "--unit", "mm"], "always in m"),
-        ([CYLINDER, "a.stl", "--unit", "kPa"], "a length is due"),
-        ([CYLINDER, "nowhere/a.stl"], "cannot be written"),
+        ([CYLINDER, "a.stl", "--unit", "kPa"], "expected a length"),
         ([".", "a.stl"], "no run folder"),
     ],
 )

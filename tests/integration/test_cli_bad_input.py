@@ -150,7 +150,7 @@ def test_a_mesh_with_a_hole_is_checked_with_a_warning():
     write_cube("open.stl", faces=11)
     outcome = call("check", "open.stl", "--unit", "mm", "--voxel-size", "2 mm")
     assert outcome.exit_code == 0
-    assert "the surface has holes: 3 of 18 edges" in outcome.stderr
+    assert "the surface is open: a hole of 3 edges, 20 mm wide" in outcome.stderr
 
 
 def test_a_mesh_without_inside_is_not_valid():
@@ -165,7 +165,7 @@ def test_a_mesh_without_inside_is_not_valid():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--unit", "kPa"], "a length is due"),
+        (["--unit", "kPa"], "expected a length"),
         (["--unit", "mm", "--voxel-size", "2"], "has no unit"),
         (["--unit", "mm", "--voxel-size", "0 mm"], "no size"),
         (["--unit", "mm", "--voxel-size", "1 um"], "more than the limit of"),

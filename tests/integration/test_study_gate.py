@@ -14,8 +14,6 @@ from study_families import FALL, block, patient
 from voxsoft.study import Gate, Study
 
 SPACE = {"x": (0.0, 0.2, 0.1), "y": (1, 6)}
-#: A few looks of the workers at a closed gate, seconds.
-LOOKS = 0.3
 
 
 def until(condition):
@@ -55,12 +53,17 @@ class Running:
     def end(self):
         self._thread.join(60)
         assert not self._thread.is_alive()
-        return self.result
+        return getattr(self, "result", None)
 
 
 @pytest.fixture
 def running(tmp_path):
-    return Running(tmp_path)
+    study = Running(tmp_path)
+    yield study
+    # A study that a failed test leaves at its gate would hold up all that come after.
+    study.release()
+    study.gate.open()
+    study.end()
 
 
 def test_trials_that_have_begun_end_and_no_other_begins(running):
@@ -72,7 +75,7 @@ def test_trials_that_have_begun_end_and_no_other_begins(running):
     running.release()
     until(lambda: running.gate.begun == 0)
     until(lambda: running.stored() == 2)
-    time.sleep(LOOKS)
+    until(lambda: running.gate.waiting == 2)
     assert (running.begun(), running.stored()) == (2, 2)
     running.gate.open()
     assert running.end().counts["ok"] == 18
@@ -86,9 +89,11 @@ def test_workers_that_are_killed_at_a_closed_gate_cost_nothing(running):
     running.gate.close()
     running.release()
     until(lambda: running.stored() == 2)
-    for child in multiprocessing.active_children():
+    killed = multiprocessing.active_children()
+    for child in killed:
         os.kill(child.pid, signal.SIGKILL)
-    time.sleep(LOOKS)
+    # A new pool may have started already, and waits at the gate too.
+    until(lambda: not set(killed) & set(multiprocessing.active_children()))
     assert running.begun() == 2
     running.gate.open()
     assert running.end().counts["ok"] == 18

@@ -95,6 +95,7 @@ def _session_lives(group):
     return True
 
 
+@pytest.mark.slow
 def test_a_study_that_is_killed_again_and_again_still_ends(start, tmp_path):
     for count in (7, 31, 70):
         process = start()
@@ -136,7 +137,7 @@ def test_a_full_disk_names_the_file_and_what_was_finished_stays(start):
 
     full = start(preexec_fn=small_disk)
     output, errors = full.communicate(timeout=120)
-    assert "StudyError" in errors
+    assert "StorageError" in errors
     assert "study.journal: cannot be written" in errors
     done = len(output.split())
     assert 10 < done < 110

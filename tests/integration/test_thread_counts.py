@@ -4,10 +4,10 @@ import os
 import subprocess
 import sys
 
+import lattice_families as families
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import families
 from voxsoft.errors import StudyError
 
 #: Voxels of a shape, a lattice by relaxation and a rubber by multigrid, each large enough for

@@ -22,8 +22,12 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [DOCS / "start.md", *sorted(DOCS.glob("tutorials/*.md")), *sorted(DOCS.glob("how-to/*.md"))]
+#: Pages whose Python is also run as a script: readers paste it, and workers import it then.
+SCRIPTS = {DOCS / "start.md", *DOCS.glob("tutorials/*.md"), DOCS / "how-to" / "dask.md"}
+#: Pages that take a quarter of a minute or more; the way of a new user is always run.
+LONG = {"compare.md", "dask.md", "export.md", "layers-and-fibers.md", "material-card.md"}
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
-KNOWN = {"python", "console", "text", "toml", "csv", "sh"}
+KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
 #: What a long command says of its progress when it has no terminal; a page leaves it out.
 PROGRESS = re.compile(r"^\w+: \d+/\d+, .*\n", re.MULTILINE)
 OUTPUT = doctest.OutputChecker()
@@ -97,11 +101,33 @@ def run_page(page):
             Path(block.title).write_text(block.text, encoding="utf-8")
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))
+def run_script(page):
+    """Run the Python of a page as one script, as readers paste it, in a process of its own."""
+    blocks = [block.text for block in blocks_of(page) if block.language == "python"]
+    if not blocks:
+        return
+    Path("pasted.py").write_text("\n".join(blocks), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, "pasted.py"],
+        env=shell_environment() | {"MPLBACKEND": "agg"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, f"{page.name} as a script\n{done.stderr}"
+
+
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(page, marks=[pytest.mark.slow] * (page.name in LONG)) for page in PAGES],
+    ids=lambda page: str(page.relative_to(DOCS)),
+)
 def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     run_page(page)
+    if page in SCRIPTS:
+        run_script(page)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))

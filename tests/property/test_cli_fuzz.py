@@ -18,10 +18,10 @@ from voxsoft.cli.app import app
 ROOT = Path(__file__).parents[2]
 DESIGN = (ROOT / "examples" / "beam.toml").read_bytes()
 DATA = (ROOT / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv").read_bytes()
-CODES = {0, 2, 3, 4}
+CODES = {0, 2, 3, 4, 5}
 
 THOROUGH = settings(
-    max_examples=int(os.environ.get("VOXSOFT_FUZZ", "20")),
+    max_examples=int(os.environ.get("VOXSOFT_FUZZ", "8")),
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
 )

@@ -57,8 +57,8 @@ def test_stress_is_the_derivative_of_the_energy(material, stretch, mode):
 @given(MATERIALS, st.permutations(range(3)), STRETCHES, STRETCHES)
 def test_gradient_and_hessian_belong_to_the_energy(material, order, first, second):
     stretches = np.array([first, second, 1.0 / (first * second)])[list(order)]
-    if not np.isfinite(material.energy(stretches)):
-        return  # beyond the limit of a Gent material
+    if isinstance(material, vs.Gent):  # whose derivatives grow without bound towards its limit
+        assume(np.sum(stretches**2) - 3.0 < 0.5 * material.jm)
     step = 1e-4
     gradient, hessian = material.log_gradient(stretches), material.log_hessian(stretches)
     np.testing.assert_allclose(hessian, hessian.T, rtol=1e-12)
@@ -67,8 +67,6 @@ def test_gradient_and_hessian_belong_to_the_energy(material, order, first, secon
         along = np.zeros(3)
         along[a], along[b] = 1.0, -1.0
         ahead, behind = stretches * np.exp(step * along), stretches * np.exp(-step * along)
-        if not np.isfinite(material.energy(ahead) + material.energy(behind)):
-            continue
         slope = (material.energy(ahead) - material.energy(behind)) / (2.0 * step)
         scale = np.abs(gradient).max() + np.abs(hessian).max()
         # Second order in the step: 1e-8 times (power of the energy)², at most 16².

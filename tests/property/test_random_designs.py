@@ -22,7 +22,7 @@ def random_design(seed):
         voxel_size=EXTENT / int(rng.integers(COARSEST, FINEST + 1)),
         parts=[
             Part(shape=random_shape(rng), material=material)
-            for material in ("ecoflex-00-30", "ecoflex-00-50")[: rng.integers(1, 3)]
+            for material in ("ecoflex-00-30-lattice", "ecoflex-00-50-lattice")[: rng.integers(1, 3)]
         ],
         clamps=[Clamp(region=Region(z=("-inf", 0)))],
         loads=[Gravity()],
@@ -90,7 +90,7 @@ def run_block(block):
 
 
 @pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(20))
+@pytest.mark.parametrize("block", range(4))
 def test_random_designs_become_sound_meshes(block):
     counts = run_block(block)
     # An empty part is a valid find, but a block of them would test nothing.
@@ -99,7 +99,7 @@ def test_random_designs_become_sound_meshes(block):
 
 @pytest.mark.slow
 @pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(20, 100))
+@pytest.mark.parametrize("block", range(4, 100))
 def test_many_more_random_designs_become_sound_meshes(block):
     counts = run_block(block)
     assert np.count_nonzero(counts) > BLOCK / 2

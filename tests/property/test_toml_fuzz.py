@@ -19,7 +19,7 @@ TEXTS = [path.read_bytes() for path in EXAMPLES]
 DOCUMENTS = [tomllib.loads(text.decode()) for text in TEXTS]
 
 # VOXSOFT_FUZZ=100000 tries longer than a test run should.
-TRIES = int(os.environ.get("VOXSOFT_FUZZ", "300"))
+TRIES = int(os.environ.get("VOXSOFT_FUZZ", "100"))
 THOROUGH = settings(
     max_examples=TRIES,
     deadline=None,

@@ -15,9 +15,11 @@ import pytest
 import websockets
 from own_loop import run
 
-from voxsoft.studio.protocol import PROTOCOL
 from voxsoft.studio.server import StudioServer
+from voxsoft.studio.wire import PROTOCOL
 
+#: Seconds after which what has not come never will, however busy the machine is.
+PATIENCE = 120.0
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -40,7 +42,7 @@ class Page:
     async def send_raw(self, data):
         await self._socket.send(data)
 
-    async def receive(self, seconds=20.0):
+    async def receive(self, seconds=PATIENCE):
         """The next message: an event as a namespace, or a binary message as its header."""
         message = await asyncio.wait_for(self._socket.recv(), seconds)
         if isinstance(message, bytes):
@@ -62,7 +64,7 @@ class Page:
             self.topology = found
         return found
 
-    async def until(self, tag, condition=lambda _: True, seconds=20.0, ack=True):
+    async def until(self, tag, condition=lambda _: True, seconds=PATIENCE, ack=True):
         """Read on until a message of a kind that meets a condition."""
         async with asyncio.timeout(seconds):
             while True:
@@ -72,7 +74,7 @@ class Page:
                 if message.t == tag and condition(message):
                     return message
 
-    async def shown(self, condition, seconds=20.0):
+    async def shown(self, condition, seconds=PATIENCE):
         """Read on until a statistic meets a condition and its frame has come; in any order."""
         stat = None
         async with asyncio.timeout(seconds):

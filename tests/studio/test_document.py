@@ -9,6 +9,7 @@ from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
 from voxsoft.studio.document import MOST_DOCUMENTS, DesignDocument
 from voxsoft.studio.edits import with_value
+from voxsoft.studio.opening import template_document
 from voxsoft.studio.positions import span_of
 
 CYLINDER = (Path(__file__).parents[2] / "examples" / "cylinder.toml").read_text()
@@ -28,7 +29,7 @@ def marked(text, found):
         ('value = "25 mm"', 'value = "40 mm"', "above max", '"40 mm"'),
         ('voxel_size = "5 mm"', "voxel_size = 5", "has no unit", "5"),
         ('"= radius - wall"', '"= radius - wal"', "wal", '"= radius - wal"'),
-        ('material = "ecoflex-00-30"', 'material = "ecoflx"', "ecoflx", '"ecoflx"'),
+        ('material = "ecoflex-00-30-lattice"', 'material = "ecoflx"', "ecoflx", '"ecoflx"'),
         ('kind = "pressure"', 'kind = "presure"', "presure", '"presure"'),
         ("region = { z = [0, 0] }", "region = { z = [0, 5] }", "5 has no unit", "5"),
         ('axis = "z" }', 'axis = "w" }', '"w" came', '"w"'),
@@ -214,8 +215,32 @@ def test_a_place_that_is_not_in_the_text_is_its_first_line():
 
 
 def test_a_relative_mesh_is_looked_for_beside_the_file(tmp_path):
-    text = families.family_text("beam").replace(
+    text = families.family_text("paper-beam").replace(
         "[shapes]", '[shapes]\nscan = { kind = "mesh", path = "scan.stl", unit = "mm" }', 1
     )
     opened = DesignDocument(text, "a.toml", folder=tmp_path)
     assert opened.design.shapes["scan"].path == str(tmp_path / "scan.stl")
+
+
+class TestWhatIsNotSaved:
+    def test_a_document_that_was_just_opened_is_not_edited(self, tmp_path):
+        opened = template_document("sphere", tmp_path)
+        assert not opened.edited
+        opened.replace(opened.text + "# mine\n")
+        assert opened.edited
+        opened.undo()
+        assert not opened.edited
+        # A draft that was brought back differs from something that nobody knows any more.
+        assert DesignDocument(opened.text, "sphere.toml", restored=True).edited
+
+    def test_it_is_called_and_saved_by_the_name_that_its_design_was_given(self, tmp_path):
+        opened = template_document("sphere", tmp_path)
+        assert opened.event().name == "sphere.toml"
+        assert opened.event().folder == str(tmp_path)
+        opened.edit(["name"], "my chamber")
+        assert opened.event().name == "my-chamber.toml"
+        written = opened.save(Path(opened.title))
+        assert written == tmp_path / "my-chamber.toml"
+        assert written.read_text() == opened.text
+        opened.edit(["name"], "another")
+        assert opened.event().name == "my-chamber.toml"

@@ -6,16 +6,16 @@ import json
 import re
 from pathlib import Path
 
+import lattice_families as families
 import pytest
 from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
-from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
 from voxsoft.studio.html import page_of
 
-CYLINDER = families.family_text("cylinder")
+CYLINDER = families.family_text("paper-cylinder")
 
 
 def scene_of(page):
@@ -118,3 +118,13 @@ def test_a_missing_viewer_is_said(monkeypatch, tmp_path):
     monkeypatch.setattr("voxsoft.studio.html.TEMPLATE", tmp_path / "viewer.html")
     with pytest.raises(FileError, match="make studio"):
         families.beam().show()
+
+
+def test_a_page_knows_where_the_body_is_in_itself_at_first():
+    pushed = vs.load(Path(__file__).parents[1] / "data" / "pushed.toml")
+    notes = notes_of(vs.simulate(pushed).show().text)
+    assert notes["overlap"]["sentence"].endswith("contact is not simulated")
+    assert notes["overlap"]["topology"] == notes["body"]["topology"]
+    assert notes_of(pushed.show().text)["overlap"] is None
+    apart = vs.simulate(pushed.with_values("push=9 mm"))
+    assert notes_of(apart.show().text)["overlap"] is None

@@ -5,13 +5,13 @@ import shutil
 import signal
 from pathlib import Path
 
+import lattice_families as families
 import own_loop
 import pytest
 
-from voxsoft.design import families
 from voxsoft.study import Study
 
-BEAM = families.family_text("beam")
+BEAM = families.family_text("paper-beam")
 DATA = Path(__file__).parents[2] / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv"
 
 
@@ -132,6 +132,7 @@ def test_a_restart_of_the_server_costs_no_trial(make_studio, tmp_path):
     assert (folder / "study.journal").read_bytes().startswith(kept)
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_is_said_and_its_trials_are_kept(studio):
     async def scenario():
         async with studio.page() as page:

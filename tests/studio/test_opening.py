@@ -2,11 +2,12 @@
 
 import signal
 
+import pytest
 from own_loop import run
 
 from voxsoft.design import families
 
-CYLINDER = families.family_text("cylinder")
+CYLINDER = families.family_text("paper-cylinder")
 RADIUS = ["parameters", "radius", "value"]
 
 
@@ -91,3 +92,18 @@ def test_a_server_that_is_killed_has_kept_what_was_typed(make_studio, in_own_pro
             assert "22 mm" in next(e for e in page.log if e["t"] == "document")["text"]
 
     run(look())
+
+
+@pytest.mark.parametrize("name", ["/etc/passwd", "notes.txt", "a\0b.toml", ""])
+def test_only_design_files_are_shown(make_studio, tmp_path, name):
+    (tmp_path / "notes.txt").write_text("a secret\n")
+    studio = make_studio(arm_and_leg(tmp_path)[0])
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.send("open", what="file", name=str(tmp_path / name) if name else "")
+            error = await page.until("error")
+            assert "design" in error.what or "cannot be read" in error.what
+            assert "secret" not in str(error)
+
+    run(scenario())

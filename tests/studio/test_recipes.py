@@ -5,9 +5,9 @@ import shlex
 import subprocess
 import sys
 
+import lattice_families as families
 import pytest
 
-from voxsoft.design import families
 from voxsoft.errors import FileError
 from voxsoft.studio.commands import CalibrateSpec, MeasuredData, RunSpec, SpaceRange, StudySpec
 from voxsoft.studio.recipes import recipe_of
@@ -22,7 +22,7 @@ OWN_RANGES = {
 }
 
 
-def task_in(folder, spec, family="cylinder", tables=()):
+def task_in(folder, spec, family="paper-cylinder", tables=()):
     folder.mkdir(parents=True)
     text = families.family_text(family)
     task = Task(folder.name, folder.name, text, str(folder), spec, list(tables))
@@ -69,12 +69,13 @@ def test_a_study_is_done_again_with_the_same_best(tmp_path, sampler):
     assert again(recipe, tmp_path / "out")["best"]["parameters"] == best["parameters"]
 
 
+@pytest.mark.slow
 def test_a_calibration_is_done_again_with_the_same_constants(tmp_path):
     spec = CalibrateSpec(
         data=[MeasuredData(name="tip.csv")], method="cma-es", generations=2, population=4
     )
     folder = tmp_path / "runs" / "fit"
-    task_in(folder, spec, "beam", [Table("tip.csv", TABLE)])
+    task_in(folder, spec, "paper-beam", [Table("tip.csv", TABLE)])
     do(folder)
     told = json.loads((folder / "summary.json").read_text())
     recipe = recipe_of(folder)
@@ -82,6 +83,7 @@ def test_a_calibration_is_done_again_with_the_same_constants(tmp_path):
     assert again(recipe, tmp_path / "out")["parameters"] == told["parameters"]
 
 
+@pytest.mark.slow
 def test_a_run_is_done_again_with_the_same_rise(tmp_path):
     folder = tmp_path / "runs" / "one"
     task_in(folder, RunSpec(solver={"method": "xpbd"}))

@@ -46,7 +46,18 @@ def test_a_change_without_an_origin_is_refused(studio):
     assert httpx.post(url, content=b"", headers={"origin": studio.origin}).status_code == 200
 
 
-@pytest.mark.parametrize("path", ["/assets/..%2f..%2fserver.py", "/..%2fapp.py", "/assets/x.js"])
+NO_FILES = ["/assets/..%2f..%2fserver.py", "/..%2fapp.py", "/assets/x.js", "/assets/%00", "/%00"]
+NO_FILES += [
+    f"/assets/{'a' * 300}",
+    f"/{'a' * 5000}",
+    "/assets/%ff",
+    "/thumbnail/%00",
+    "/download/%00",
+]
+NO_FILES += [f"/thumbnail/{'a' * 300}", "/thumbnail/..%2f..", "/assets/" + "a/" * 1000]
+
+
+@pytest.mark.parametrize("path", NO_FILES, ids=lambda path: path[:30])
 def test_only_the_bundle_is_served(studio, path):
     answer = get(studio, path, cookie=f"voxsoft_studio_{studio.port}={studio.token}")
     assert answer.status_code == 404

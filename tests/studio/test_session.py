@@ -8,6 +8,7 @@ import socket
 import tomllib
 
 import httpx
+import lattice_families as families
 import numpy as np
 import pytest
 import websockets
@@ -16,11 +17,11 @@ from hypothesis import strategies as st
 from own_loop import run
 
 import voxsoft as vs
-from voxsoft.design import families
 from voxsoft.simulation import simulate
-from voxsoft.studio.protocol import PROTOCOL
+from voxsoft.studio.app import MOST_WRONG
+from voxsoft.studio.wire import PROTOCOL, CloseCode
 
-CYLINDER = families.family_text("cylinder")
+CYLINDER = families.family_text("paper-cylinder")
 
 
 def positions_of(frame):
@@ -43,7 +44,7 @@ def test_a_tab_is_shown_the_design_and_its_body(studio):
             _, frame = await page.shown(lambda s: s.state == "paused")
             smooth = page.smooth or await page.until("smooth")
         points, triangles = smooth.n, smooth.seq
-        assert len(smooth.bytes) == 64 + 12 * points + 12 * triangles
+        assert len(smooth.bytes) == 64 + 12 * points + 12 * triangles + -(-triangles // 4) * 4
         assert np.ptp(np.frombuffer(smooth.bytes, "<f4", 3 * points, 64)[2::3]) == pytest.approx(
             0.035, abs=1e-5
         )
@@ -292,7 +293,7 @@ def test_two_tabs_see_the_same_and_have_views_of_their_own(studio):
 def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
     async def scenario():
         async with studio.page() as page:
-            await page.until("topology")
+            await page.until("topology", ack=False)
             await page.send("step", n=500)
             last = await page.until("stat", lambda s: s.state == "at-rest", ack=False)
             await page.quiet()
@@ -328,7 +329,42 @@ def test_another_version_of_the_protocol_is_refused_in_words(studio):
             assert "reload the page" in error.hint
             with pytest.raises(websockets.ConnectionClosed) as closed:
                 await page.until("document")
-            assert closed.value.rcvd.code == 4000
+            assert closed.value.rcvd.code == CloseCode.OTHER_PROTOCOL
+
+    run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("first", "code"),
+    [
+        ('{"t": "play", "seq": 1}', CloseCode.OTHER_PROTOCOL),
+        ("ünïcödé " * 100, CloseCode.WRONG_MESSAGES),
+        ('{"t": "%s"}' % ("x" * 500), CloseCode.WRONG_MESSAGES),
+    ],
+    ids=["no hello", "no json", "a long answer"],
+)
+def test_who_says_no_hello_is_told_why_it_is_sent_away(studio, first, code):
+    async def scenario():
+        async with studio.page(hello=False) as page:
+            await page.send_raw(first)
+            assert (await page.until("error")).where == "hello"
+            with pytest.raises(websockets.ConnectionClosed) as closed:
+                await page.until("document")
+            assert closed.value.rcvd.code == code
+            assert closed.value.rcvd.reason
+
+    run(scenario())
+
+
+def test_many_wrong_messages_end_the_visit_in_words(studio):
+    async def scenario():
+        async with studio.page() as page:
+            for _ in range(MOST_WRONG):
+                await page.send_raw("{")
+            with pytest.raises(websockets.ConnectionClosed) as closed:
+                await page.until("saved")
+            assert closed.value.rcvd.code == CloseCode.WRONG_MESSAGES
+            assert f"{MOST_WRONG} messages in a row" in closed.value.rcvd.reason
 
     run(scenario())
 
@@ -587,5 +623,27 @@ def test_a_panic_of_the_core_is_said_and_the_next_body_comes(studio, monkeypatch
             assert "index out of bounds" in document.diagnostics[0]["what"]
             await page.send("undo")
             await page.until("body", lambda b: b.voxels == 300)
+
+    run(scenario())
+
+
+def test_a_file_of_another_design_is_replaced_only_when_that_is_meant(studio, tmp_path):
+    other = tmp_path / "other.toml"
+    other.write_text("# mine\n")
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.send("open", what="template", name="sphere")
+            document = await page.until("document", lambda d: d.name == "sphere.toml")
+            assert (document.path, document.folder, document.dirty) == (None, str(tmp_path), False)
+            await page.send("save", path="other.toml")
+            assert (await page.until("file_exists")).path == str(other)
+            assert other.read_text() == "# mine\n"
+            await page.send("save", path="other.toml", overwrite=True)
+            assert (await page.until("saved")).path == str(other)
+            assert "sphere" in other.read_text()
+            # Its own file is not asked about.
+            await page.send("save", path="other.toml")
+            assert (await page.until("saved")).path == str(other)
 
     run(scenario())

@@ -3,22 +3,24 @@
 import struct
 import threading
 
+import lattice_families as families
 import numpy as np
 import pytest
 
-from voxsoft.design import families
 from voxsoft.studio import mesher
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas, Moment
-from voxsoft.studio.catalog import DISPLACEMENT
+from voxsoft.studio.catalog import FIELDS
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.pictures import Pictures
 from voxsoft.studio.playback import Playback
-from voxsoft.studio.surface import CAVITY, Surface
+from voxsoft.studio.surface import Surface
 from voxsoft.studio.tab import Tab
+from voxsoft.studio.wire import CAVITY
 from voxsoft.voxels import Voxels
 
+DISPLACEMENT = next(field.id for field in FIELDS if field.name == "displacement")
 UNMOVED = Moment(frame=0, flags=1, time=0.0, mover=None, positions=None)
 
 

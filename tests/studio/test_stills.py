@@ -6,12 +6,13 @@ import threading
 import tomllib
 
 import httpx
+import lattice_families as families
 import numpy as np
 import pytest
 from own_loop import run
 
 from voxsoft import files
-from voxsoft.design import Design, families
+from voxsoft.design import Design
 from voxsoft.simulation import simulate
 from voxsoft.studio import stills
 from voxsoft.study import Study
@@ -26,7 +27,7 @@ length = { value = "40 mm", min = "1 um", max = "60 mm" }
 body = { kind = "box", size = ["= length", "10 mm", "10 mm"] }
 [[parts]]
 shape = "body"
-material = "ecoflex-00-30"
+material = "ecoflex-00-30-lattice"
 [[clamps]]
 region = { x = [0, 0] }
 [[loads]]
@@ -190,7 +191,7 @@ def test_solving_ends_when_nobody_waits(studio, study, monkeypatch):
 
 def test_the_specimen_of_a_calibration_stands_where_its_stations_are(make_studio, tmp_path):
     beam = tmp_path / "beam.toml"
-    beam.write_text(families.family_text("beam"))
+    beam.write_text(families.family_text("paper-beam"))
     studio = make_studio(beam)
     spec = {
         "kind": "calibrate",
@@ -237,7 +238,7 @@ def test_the_specimen_of_a_calibration_stands_where_its_stations_are(make_studio
 def test_a_damaged_specimen_is_said(studio):
     folder = studio.session.runs / "fit"
     folder.mkdir(parents=True)
-    (folder / "design.toml").write_text(families.family_text("beam"))
+    (folder / "design.toml").write_text(families.family_text("paper-beam"))
     (folder / "shapes.csv").write_text("")
     assert "holds no shape of its specimen" in asked(studio, "fit").json()["what"]
     for content in (b"", b"PK", b"\x93NUMPY"):

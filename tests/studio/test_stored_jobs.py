@@ -3,12 +3,12 @@
 import os
 import signal
 
+import lattice_families as families
 import own_loop
 import pytest
 
 from voxsoft import files
 from voxsoft.calibration import Experiment, calibrate, read_measurement
-from voxsoft.design import families
 from voxsoft.errors import FileError
 from voxsoft.studio import events
 from voxsoft.studio.job_journal import JOURNAL, JobJournal, read_journal
@@ -33,7 +33,7 @@ def run(scenario):
 @pytest.fixture
 def beam(tmp_path):
     file = tmp_path / "beam.toml"
-    file.write_text(families.family_text("beam"))
+    file.write_text(families.family_text("paper-beam"))
     return file
 
 
@@ -52,6 +52,7 @@ async def shown(page, name):
     return [e for e in page.log[before:] if e["t"] in (*TOLD, "trials", "job", "error")]
 
 
+@pytest.mark.slow
 def test_a_past_calibration_is_told_as_it_was_also_under_another_name(make_studio, beam):
     first = make_studio(beam)
 
@@ -83,6 +84,7 @@ def test_a_past_calibration_is_told_as_it_was_also_under_another_name(make_studi
     assert renamed[-1]["card"] == live[-1]["card"]
 
 
+@pytest.mark.slow
 def test_a_calibration_that_was_stopped_or_killed_shows_its_generations(make_studio, beam):
     first = make_studio(beam)
 

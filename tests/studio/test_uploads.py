@@ -16,7 +16,8 @@ from voxsoft.studio.uploads import safe_name, unpack_folder
         ("C:\\Users\\me\\arm v2.STL", "arm-v2.stl"),
         (".hidden.csv", "hidden.csv"),
         ("\u202egpj.obj", "gpj.obj"),
-        ("a" * 300 + ".npy", "a" * 80 + ".npy"),
+        ("a" * 300 + ".npy", "a" * 120 + ".npy"),
+        ("con.csv", "_con.csv"),
     ],
 )
 def test_a_name_stays_in_its_folder(given, stored):

@@ -2,11 +2,12 @@
 
 import json
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 from voxsoft.calibration import Experiment, Measurement, calibrate
-from voxsoft.design import Design, families
+from voxsoft.design import Design
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.files.calibrations import write_calibration
 from voxsoft.files.cards import load_card_file
@@ -63,7 +64,7 @@ def squeezed():
             "name": "block",
             "voxel_size": "5 mm",
             "shapes": {"body": {"kind": "box", "size": ["10 mm", "10 mm", "10 mm"]}},
-            "parts": [{"shape": "body", "material": "ecoflex-00-30"}],
+            "parts": [{"shape": "body", "material": "ecoflex-00-30-lattice"}],
             "clamps": [{"region": {axis: [0, 0]}, "axes": axis} for axis in "xyz"],
             "loads": [
                 {

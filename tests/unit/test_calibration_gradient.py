@@ -2,13 +2,13 @@
 
 import json
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 from voxsoft.calibration import Experiment, Measurement, calibrate
 from voxsoft.calibration.misfit import Misfit
 from voxsoft.calibration.space import Space
-from voxsoft.design import families
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.files.calibrations import write_calibration
 from voxsoft.files.cards import load_card_file

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 from voxsoft.calibration import Experiment, Measurement, read_measurement
-from voxsoft.design import families
 from voxsoft.errors import FileError, MeasurementError
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "data" / "paper_beams"
@@ -125,7 +125,7 @@ def test_files_that_cannot_be_read(tmp_path):
 def test_values_of_python_are_checked_too():
     with pytest.raises(MeasurementError, match="arc 90 mm: dz is nan"):
         Measurement(quantities=["dz"], values=[[np.nan]], arcs=[0.09])
-    with pytest.raises(MeasurementError, match=r"shape \(1, 1\); a row for each of the 2"):
+    with pytest.raises(MeasurementError, match=r"shape \(1, 1\); expected 2 rows"):
         Measurement(quantities=["dz"], values=[[1.0]], arcs=[0.05, 0.09])
     with pytest.raises(MeasurementError, match="either arc positions or probes"):
         Measurement(quantities=["dz"], values=[[1.0]])

@@ -2,6 +2,7 @@
 
 import math
 
+import lattice_families as families
 import numpy as np
 import pytest
 
@@ -9,7 +10,6 @@ from voxsoft.calibration import Experiment, Measurement
 from voxsoft.calibration.methods import method_named
 from voxsoft.calibration.misfit import Misfit, best_scale
 from voxsoft.calibration.space import DEFAULT_BOUNDS, Space
-from voxsoft.design import families
 from voxsoft.errors import MaterialError, StudyError
 from voxsoft.materials import CompliantLattice, Lattice
 

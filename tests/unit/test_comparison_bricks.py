@@ -1,5 +1,6 @@
 """Bricks carry the same clamps, loads and cavities as the voxels they are split from."""
 
+import lattice_families as families
 import numpy as np
 import pytest
 
@@ -8,7 +9,6 @@ from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.calculix_deck import calculix_deck
 from voxsoft.comparison.calculix_output import read_printed
 from voxsoft.comparison.stretch_energy import stretch_derivatives, terms_of
-from voxsoft.design import families
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm

@@ -75,13 +75,13 @@ def test_points_after_the_break_are_left_out():
         ),
         (["strain", "voltage"], 'no column of stress among "strain", "voltage"'),
         (["strain", "stress"], "has no unit"),
-        (["strain", "stress_mm"], "a pressure is due"),
+        (["strain", "stress_mm"], "expected a pressure"),
         (["strain", "stress_blah"], 'no unit "blah"'),
         (["strain_mm", "stress_kPa"], "no unit of strain"),
         (["strain", "force_N"], "--area"),
         (["displacement_mm", "stress_kPa"], "--length"),
         (["displacement", "stress_kPa"], "--length|has no unit"),
-        (["true_strain", "true_stress_kPa"], "engineering quantities are due"),
+        (["true_strain", "true_stress_kPa"], "expected engineering quantities"),
     ],
 )
 def test_wrong_columns_are_said_in_words(heads, words):
@@ -153,3 +153,21 @@ def test_the_uncertainty_of_a_toe_is_its_scatter_over_specimens():
 
 def test_few_points_at_the_start_tell_no_toe():
     assert Curve(np.linspace(0.2, 3.0, 20), np.linspace(5e3, 60e3, 20)).toe() is None
+
+
+@pytest.mark.parametrize(
+    ("strain", "sign", "words"),
+    [
+        ((0.0, 1.0), -1.0, "stress is negative while strain grows to 1"),
+        ((-0.3, 0.0), -1.0, "stress is positive while strain falls to -0.3"),
+        ((-0.3, 1.0), -1.0, "while strain grows to 1"),
+    ],
+)
+def test_a_stress_of_the_wrong_sign_is_refused(strain, sign, words):
+    """A card of it would be a rubber that pushes where it should pull."""
+    stretch = 1.0 + np.linspace(*strain, 30)
+    stress = 20e3 * (stretch - stretch**-2)
+    with pytest.raises(MeasurementError, match=words + r".*turn the sign"):
+        Curve(stretch - 1.0, sign * stress)
+    # A load cell whose zero is off by more than all of the curve says nothing of its sign.
+    Curve(stretch - 1.0, stress - 1e6)

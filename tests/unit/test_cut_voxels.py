@@ -1,10 +1,10 @@
 """Voxels that the surface cuts: fractions, moments, voids, and what is made of them."""
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import families
 from voxsoft.design.cut_voxels import LEAST_FILLED, CutVoxels, fractions_of
 from voxsoft.errors import DesignError, MeshError, ShapeError, SimulationError
 from voxsoft.files import read_mesh, write_mesh
@@ -66,7 +66,7 @@ def test_overlapping_and_abutting_parts_are_not_counted_twice():
 
 def test_a_body_along_the_lattice_is_the_same_either_way():
     binary = families.beam()
-    fraction = binary.model_copy(update={"fill": "fraction"})
+    fraction = binary.replace(fill="fraction")
     cut = CutVoxels.of(fraction)
     assert cut.voxels.count == vs.voxels_of(binary).count
     assert cut.fractions == pytest.approx(1.0, abs=4e-4)  # its corners, as above
@@ -139,7 +139,7 @@ def test_voids_on_both_sides_of_a_wall_go_to_their_own_side():
 
 
 def test_other_parameters_on_the_same_voxels_vary_smoothly():
-    ball = families.sphere().model_copy(update={"fill": "fraction"})
+    ball = families.sphere().replace(fill="fraction")
     cut = CutVoxels.of(ball)
     radius = ball.parameters["radius"].value
     step = 1e-4 * radius
@@ -161,7 +161,7 @@ def test_other_parameters_on_the_same_voxels_vary_smoothly():
 
 
 def test_refined_voxels_are_filled_anew():
-    ball = families.sphere().model_copy(update={"fill": "fraction"})
+    ball = families.sphere().replace(fill="fraction")
     fine = vs.mesh_of(ball, refine=2)
     assert fine.voxel_size == ball.voxel_size / 2
     assert np.unique(np.round(fine.fractions, 6)).size > 20
@@ -170,13 +170,11 @@ def test_refined_voxels_are_filled_anew():
 
 
 def test_a_clamp_and_a_probe_at_a_surface_inside_a_voxel():
-    short = families.beam(length="98 mm").model_copy(
-        update={
-            "fill": "fraction",
-            "clamps": (vs.Clamp(region=vs.Region(x=(98 * mm, 98 * mm))),),
-            "probes": {"top": vs.Probe(z=(10 * mm, 10 * mm)), "end": vs.Probe(x=(0, 0))},
-            "objectives": {},
-        }
+    short = families.beam(length="98 mm").replace(
+        fill="fraction",
+        clamps=(vs.Clamp(region=vs.Region(x=(98 * mm, 98 * mm))),),
+        probes={"top": vs.Probe(z=(10 * mm, 10 * mm)), "end": vs.Probe(x=(0, 0))},
+        objectives={},
     )
     setup = Setup.of(short)
     held = setup.mesh.vertices[setup.clamped[0]]
@@ -192,7 +190,7 @@ def test_a_region_on_a_side_does_not_catch_the_vertices_of_cut_sides():
 
 
 def test_masses_and_metrics_take_the_fractions():
-    ball = families.sphere().model_copy(update={"fill": "fraction", "objectives": {}})
+    ball = families.sphere().replace(fill="fraction", objectives={})
     setup = Setup.of(ball)
     material = ball.material_of(ball.parts[0])
     assert setup.problem.mass == pytest.approx(material.density * setup.mesh.volume)
@@ -202,11 +200,8 @@ def test_masses_and_metrics_take_the_fractions():
 
 
 def test_pressure_works_on_the_cavity_with_its_voids():
-    ball = hollow_ball(1.6, 2.7, 1.0).model_copy(
-        update={
-            "loads": (vs.Pressure(value=100.0),),
-            "clamps": (vs.Clamp(region=vs.Region(z=(-2.7, -2.7))),),
-        }
+    ball = hollow_ball(1.6, 2.7, 1.0).replace(
+        loads=(vs.Pressure(value=100.0),), clamps=(vs.Clamp(region=vs.Region(z=(-2.7, -2.7))),)
     )
     setup = Setup.of(ball)
     rng = np.random.default_rng(1)
@@ -253,7 +248,7 @@ def test_the_default_fill_is_not_part_of_the_identity():
 def test_outside_codes_and_seals_say_no():
     from voxsoft.comparison.bricks import BrickModel
 
-    ball = Setup.of(hollow_ball(1.1, 2.6, 1.0).model_copy(update={"clamps": _held()}))
+    ball = Setup.of(hollow_ball(1.1, 2.6, 1.0).replace(clamps=_held()))
     with pytest.raises(SimulationError, match="partly filled"):
         BrickModel.of(ball)
 

@@ -142,13 +142,13 @@ def test_own_materials_come_before_cards():
     ("document", "where", "words"),
     [
         (changed("voxel_size", 5), "voxel_size", "has no unit"),
-        (changed("voxel_size", "5 kPa"), "voxel_size", "a length is due"),
+        (changed("voxel_size", "5 kPa"), "voxel_size", "expected a length"),
         (changed("voxel_size", "0 mm"), "voxel_size", "not positive"),
         (changed("voxel_size", "= wal"), "voxel_size", '"wal" is not a parameter'),
         (changed("voxel_size", "= wall*wall"), "voxel_size", "gives an area"),
         (changed("voxl_size", "5 mm"), "voxl_size", "is not known here"),
         (changed("schema", "voxsoft/9"), "schema", "voxsoft/1"),
-        (changed("parts", []), "parts", "at least 1 are due"),
+        (changed("parts", []), "parts", "expected at least 1"),
         (changed("parts", 0, "materal", "x"), "parts[0].materal", "is not known here"),
         (changed("parts", 0, "material", "ecoflex"), "parts[0].material", 'no material "ecoflex"'),
         (changed("parts", 0, "shape", "bod"), "parts[0].shape", 'no shape "bod"'),
@@ -229,7 +229,7 @@ def test_values_outside_their_range_are_refused():
         design.with_parameters(wall="1 mm")
     with pytest.raises(DesignError, match='did you mean "radius"'):
         design.with_parameters(radios=5 * mm)
-    with pytest.raises(DesignError, match="a length is due"):
+    with pytest.raises(DesignError, match="expected a length"):
         design.with_parameters(radius="5 kPa")
 
 
@@ -253,7 +253,7 @@ def test_plain_si_numbers_need_a_kind_in_python():
         shapes={"body": {"kind": "box", "size": ["= length", 0.01, 0.01]}},
     )
     assert design.with_parameters(length=0.05).shapes["body"].size == (0.05, 0.01, 0.01)
-    with pytest.raises(DesignError, match="plain number; a length is due"):
+    with pytest.raises(DesignError, match="plain number; expected a length"):
         beam(parameters={"mu": 0.005}, voxel_size="= mu")
 
 
@@ -389,7 +389,7 @@ def test_designs_travel_between_processes():
 
 
 def test_designs_are_immutable():
-    with pytest.raises(ValueError, match="frozen"):
+    with pytest.raises(ValueError, match="does not change"):
         Design.from_document(CYLINDER).name = "other"
 
 
@@ -420,7 +420,7 @@ def test_formulas_may_stand_for_whole_numbers():
     document = {**FULL, "materials": {}}
     assert Design.from_document(document).solver.substeps == 3
     document["solver"] = {"substeps": "= count/2"}
-    assert problems(document)[0].what.endswith("a whole number is due")
+    assert problems(document)[0].what.endswith("expected a whole number")
 
 
 def test_unit_errors_do_not_escape_as_pydantic_errors():

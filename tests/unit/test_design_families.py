@@ -6,7 +6,9 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.errors import DesignError
+from voxsoft.materials import Hyperelastic
 from voxsoft.shapes import voxelize
+from voxsoft.simulation import check
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -22,9 +24,33 @@ def test_a_family_is_valid_all_over_its_ranges(name):
                 assert changed.parameters[parameter].value == pytest.approx(bound, rel=1e-11)
 
 
+@pytest.mark.parametrize(
+    ("example", "family"),
+    [
+        ("beam", "paper-beam"),
+        ("cylinder", "paper-cylinder"),
+        ("finger", "finger"),
+        ("pneunet", "pneunet"),
+        ("sphere", "sphere"),
+    ],
+)
+def test_the_example_is_the_family(example, family):
+    assert (EXAMPLES / f"{example}.toml").read_text() == families.family_text(family)
+
+
+@pytest.mark.parametrize("name", ["beam", "cylinder"])
+def test_the_paper_has_its_lattice_in_the_shape_of_the_family(name):
+    paper, family = families.family(f"paper-{name}"), families.family(name)
+    assert paper.document["shapes"] == family.document["shapes"]
+    assert [part.material for part in paper.parts] == ["ecoflex-00-30-lattice"]
+    assert [part.material for part in family.parts] == ["ecoflex-00-30"]
+
+
 @pytest.mark.parametrize("name", families.FAMILIES)
-def test_the_example_is_the_family(name):
-    assert (EXAMPLES / f"{name}.toml").read_text() == families.family_text(name)
+def test_a_family_is_rubber_and_opens_without_a_warning(name):
+    design = families.family(name)
+    assert all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
+    assert check(design).findings == ()
 
 
 def test_beam_stations_divide_the_free_length():

@@ -8,6 +8,7 @@ import threading
 import time
 from contextlib import suppress
 
+import lattice_families as families
 import numpy as np
 import pytest
 from pydantic import BaseModel, model_serializer
@@ -15,7 +16,6 @@ from pydantic import BaseModel, model_serializer
 import voxsoft as vs
 from voxsoft import _core
 from voxsoft._interrupt import Interrupts
-from voxsoft.design import families
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
 

@@ -5,7 +5,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.errors import DesignError
-from voxsoft.metrics import enclosed_volume
+from voxsoft.geometry import enclosed_volume
 from voxsoft.simulation import Setup, check, simulate
 from voxsoft.units import GPa, kPa, mm
 
@@ -139,7 +139,7 @@ def test_a_sealed_chamber_can_be_inflated():
 @pytest.mark.parametrize(
     ("region", "what"),
     [
-        (vs.Region(z=(1.0, 1.0)), r"layers\[0\].region: catches no vertex"),
+        (vs.Region(z=(1.0, 1.0)), r"layers\[0\].region: touches nothing"),
         (vs.Region(x=(0, 0), y=(0, 0)), r"layers\[0\].region: holds no face"),
     ],
 )
@@ -173,7 +173,7 @@ def test_every_way_leads_to_the_rest_of_statics(material, way):
     design = block(beam, [silk], voxel_size=4 * mm, parts=[part])
     still = simulate(design, method="statics")
     moved = simulate(design, method="xpbd", tolerance=1e-5, **way)
-    bare = simulate(design.model_copy(update={"layers": ()}), method="statics")
+    bare = simulate(design.replace(layers=()), method="statics")
     assert (still.status, moved.status) == ("ok", "ok")
     assert moved.solver["way"] == ("dynamics" if way else "relaxation")
 

@@ -3,12 +3,12 @@
 import struct
 import threading
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 import voxsoft as vs
 from voxsoft import _core
-from voxsoft.design import families
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
 

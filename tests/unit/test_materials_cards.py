@@ -11,14 +11,33 @@ from voxsoft.materials.coupon import read_curve
 
 ROOT = Path(__file__).parents[2]
 FOLDER = ROOT / "python" / "voxsoft" / "materials" / "cards"
-CARDS = [vs.load_card(name) for name in card_names()]
+EVERY = [vs.load_card(name) for name in card_names()]
+CARDS = [card for card in EVERY if not card.same_as]
+PLAIN = [card for card in EVERY if card.same_as]
 HYPERELASTIC = [card for card in CARDS if isinstance(card.material, Hyperelastic)]
 
 
 def test_every_file_is_a_card_of_that_name():
-    files = {file.stem for file in FOLDER.rglob("*.toml")}
-    assert files == set(card_names())
+    files = {file.stem for file in FOLDER.rglob("*.toml")} - {"plain-names"}
+    assert files == {card.name for card in CARDS}
     assert len(HYPERELASTIC) > 20
+
+
+@pytest.mark.parametrize("card", PLAIN, ids=lambda card: card.name)
+def test_a_plain_name_is_rubber_and_says_which_and_why(card):
+    stood_for = vs.load_card(card.same_as)
+    assert isinstance(card.material, Hyperelastic)
+    assert card.material == stood_for.material
+    assert (card.source, card.caution) == (stood_for.source, stood_for.caution)
+    assert stood_for.name.startswith(f"{card.name}-")
+    alternatives = [other for other in CARDS if other.name.startswith(f"{card.name}-")]
+    rubbers = [other for other in alternatives if isinstance(other.material, Hyperelastic)]
+    assert len(card.choice) > 100 or len(rubbers) == 1 or card.name == "dragon-skin-fx-pro"
+
+
+def test_only_names_that_say_so_are_lattices():
+    for card in EVERY:
+        assert (card.material.model == "lattice") == card.name.endswith("-lattice")
 
 
 @pytest.mark.parametrize("card", CARDS, ids=lambda card: card.name)

@@ -5,6 +5,7 @@ import errno
 import meshio
 import numpy as np
 import pytest
+from forms import NAMES
 
 from voxsoft.errors import FileError
 from voxsoft.files.meshes import read_mesh, read_mesh_file, write_mesh
@@ -21,6 +22,20 @@ def two_chambers():
 
 
 REGIONS = {"base": np.array([0, 1, 2, 8]), "tip-2": np.array([100, 7])}
+
+
+@pytest.mark.parametrize("suffix", [".vtu", ".msh", ".inp"])
+def test_regions_of_any_name_are_kept(tmp_path, suffix):
+    names = [*NAMES, "part-1", "CAVITY-1", "All-Nodes", "Plain", "tip_left", "tip_left-2"]
+    regions = {name: [number] for number, name in enumerate(names)}
+    mesh, path = two_chambers(), tmp_path / f"mesh{suffix}"
+    write_mesh(path, mesh, regions=regions)
+    read = read_mesh_file(path)
+    assert {name: found.tolist() for name, found in read.regions.items()} == regions
+    assert len(read.mesh.cavities) == 2
+    assert set(read.mesh.tet_part.tolist()) == {1, 2}
+    if suffix != ".vtu":
+        assert path.read_bytes().isascii()
 
 
 def faces(triangles):
@@ -124,6 +139,16 @@ def test_files_of_other_programs_are_read(tmp_path):
     )
 
 
+@pytest.mark.parametrize("suffix", [".mesh", ".vtk", ".vol", ".avs", ".su2"])
+def test_tetrahedra_of_every_format_of_meshio_are_taken(tmp_path, suffix):
+    mesh, path = two_chambers(), tmp_path / f"other{suffix}"
+    meshio.write(path, meshio.Mesh(mesh.vertices, [("tetra", mesh.tets)]))
+    read = read_mesh(path)
+    assert np.array_equal(read.tets, mesh.tets)
+    np.testing.assert_allclose(read.vertices, mesh.vertices, rtol=1e-12)
+    assert len(read.cavities) == 2
+
+
 @pytest.mark.parametrize("suffix", [".vtu", ".msh", ".inp"])
 @pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.9, 0.999])
 def test_truncated_files_are_named(tmp_path, suffix, share, capsys):
@@ -170,7 +195,7 @@ def test_flat_tets_of_a_file_are_named_with_the_file(tmp_path):
         ),
         ("mesh.vtu", {"point_data": {"t": np.zeros(3)}}, r"point_data\['t'\] has shape \(3,\)"),
         ("mesh.vtu", {"cell_data": {"t": ["a"]}}, "cell_data"),
-        ("mesh.vtu", {"regions": {"two words": [0]}}, "'two words' cannot name a region"),
+        ("mesh.vtu", {"regions": {"a\0b": [0]}}, "holds a control character"),
         ("mesh.vtu", {"regions": {"far": [10**6]}}, "must hold vertex indices from 0 to"),
         ("mesh.vtu", {"regions": {"none": []}}, "region 'none' has no vertex"),
         ("missing/mesh.vtu", {}, "cannot be written: No such file"),

@@ -2,6 +2,7 @@
 
 import io
 
+import lattice_families as families
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -9,7 +10,7 @@ from matplotlib.image import imread
 
 import voxsoft as vs
 from voxsoft.calibration import Experiment, Measurement, calibrate
-from voxsoft.design import Objective, families
+from voxsoft.design import Objective
 from voxsoft.errors import MeshError, StudyError
 from voxsoft.plot import (
     plot_body,
@@ -127,7 +128,7 @@ def test_parts_have_colors_of_their_own():
     ("options", "words"),
     [
         ({"field": "displacment"}, "known are part, plain"),
-        ({"field": [1.0, 2.0]}, "a number for each of 660 vertices"),
+        ({"field": [1.0, 2.0]}, "one number for each of 660 vertices"),
         ({"field": np.full(660, np.nan)}, "no finite number"),
         ({"section": ("x", -1.0)}, "leaves nothing"),
     ],

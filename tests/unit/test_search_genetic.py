@@ -130,7 +130,7 @@ def test_impossible_fitness_names_the_individual(bad):
 
 
 def test_fitness_of_another_shape_is_refused():
-    with pytest.raises(StudyError, match=r"\(2,\); one number for each of the 3"):
+    with pytest.raises(StudyError, match=r"\(2,\); expected one number for each of the 3"):
         Genetic(genes=2, population=3, elites=1).tell([1.0, 2.0])
 
 

@@ -50,7 +50,7 @@ def test_difference_with_another_shape_is_a_solid():
     [
         ("x + radius", '"radius" is not known'),
         ("x +", "the text ends"),
-        ("2 x", "an operator or the end is due"),
+        ("2 x", "expected an operator or the end"),
         ("__import__('os')", "is not known"),
         ("sin(x, y)", "takes one argument"),
         ("", "the text ends"),

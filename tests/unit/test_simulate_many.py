@@ -1,5 +1,6 @@
 """Many candidates at a time: what goes through lanes, what does not, and what is refused."""
 
+import lattice_families as families
 import numpy as np
 import pytest
 
@@ -14,7 +15,6 @@ from voxsoft import (
     simulate,
     simulate_many,
 )
-from voxsoft.design import families
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Ensemble, Setup
 
@@ -22,7 +22,7 @@ SOFT, STIFF = Lattice(edge="20 kPa", bulk="60 kPa"), Lattice(edge="60 kPa", bulk
 
 
 def short_beam(**changes):
-    return families.beam().with_parameters(length="40 mm").model_copy(update=changes)
+    return families.beam().with_parameters(length="40 mm").replace(**changes)
 
 
 def test_a_candidate_does_not_depend_on_its_company():
@@ -46,22 +46,22 @@ def test_two_lists_are_taken_in_pairs():
     "changes",
     [
         {"floor": Floor(z=-1.0)},
-        {"solver": families.beam().solver.model_copy(update={"method": "xpbd"})},
-        {"solver": families.beam().solver.model_copy(update={"damping": "critical"})},
+        {"solver": families.beam().solver.replace(method="xpbd")},
+        {"solver": families.beam().solver.replace(damping="critical")},
     ],
 )
 def test_what_lanes_do_not_know_is_solved_alone(changes):
     design = short_beam(**changes)
     found = simulate_many(design, [SOFT, STIFF])
     assert [candidate.way for candidate in found] == ["alone", "alone"]
-    parts = tuple(part.model_copy(update={"material": STIFF}) for part in design.parts)
-    expected = simulate(design.model_copy(update={"parts": parts}))
+    parts = tuple(part.replace(material=STIFF) for part in design.parts)
+    expected = simulate(design.replace(parts=parts))
     assert np.array_equal(found[1].positions, expected.positions)
 
 
 def test_loads_are_scaled_for_those_solved_alone_too():
     """Relaxation to 1e-5 of the load, beside lanes: some 1e-4 of the sag of a slender beam."""
-    relaxed = short_beam(solver=families.beam().solver.model_copy(update={"method": "xpbd"}))
+    relaxed = short_beam(solver=families.beam().solver.replace(method="xpbd"))
     alone = simulate_many(relaxed, [SOFT, STIFF], load_factors=[0.5, 2.0])
     lanes = simulate_many(short_beam(), [SOFT, STIFF], load_factors=[0.5, 2.0])
     for one, other in zip(alone, lanes, strict=True):
@@ -81,7 +81,7 @@ def test_squat_bodies_are_left_to_relaxation():
     setup = Setup.of(short_beam())
     assert Ensemble.of(setup) is not None
     side = 0.05
-    part = setup.design.parts[0].model_copy(update={"shape": Box(size=(side, side, side))})
+    part = setup.design.parts[0].replace(shape=Box(size=(side, side, side)))
     cube = short_beam(
         parts=(part,), probes={}, objectives={}, clamps=(Clamp(region=Region(z=(0, 0))),)
     )
@@ -97,7 +97,7 @@ def test_bad_input_is_named():
     with pytest.raises(SimulationError, match=r"load_factors\[1\]: is nan"):
         simulate_many(design, load_factors=[1.0, np.nan])
     first = design.parts[0]
-    second = first.model_copy(update={"shape": Box(size=(0.01, 0.01, 0.02)), "material": STIFF})
+    second = first.replace(shape=Box(size=(0.01, 0.01, 0.02)), material=STIFF)
     two = short_beam(parts=(second, first), loads=(Gravity(),))
     with pytest.raises(DesignError, match="are of several materials"):
         simulate_many(two, [SOFT])

@@ -13,7 +13,8 @@ import pandas as pd
 import pytest
 from study_families import FALL, SPACE, block, bowl, moody, score, slow, two_sided
 
-from voxsoft.design import Design, families
+from voxsoft.design import Design
+from voxsoft.design.families import cylinder
 from voxsoft.errors import DesignError, MissingPackageError, StudyError
 from voxsoft.study import Outcome, Study
 
@@ -159,7 +160,7 @@ def test_a_family_that_refuses_parameters_fails_that_trial_only(make, threads):
 
 def test_a_family_that_returns_no_design_is_a_mistake(tmp_path, threads):
     study = Study(lambda y: None, {"y": (1, 3)}, FALL, folder=tmp_path / "study")
-    with pytest.raises(TypeError, match="returned None; a Design is due"):
+    with pytest.raises(TypeError, match="returned None; expected a Design"):
         study.grid(executor=threads)
 
 
@@ -259,8 +260,8 @@ def test_another_definition_in_the_same_folder_is_refused(make, threads):
 
 def test_a_changed_design_in_the_same_folder_is_refused(tmp_path):
     folder = tmp_path / "study"
-    Study(folder=folder)
-    document = families.cylinder().document
+    Study(cylinder(), folder=folder)
+    document = cylinder().document
     document["loads"][0]["value"] = "5 kPa"
     with pytest.raises(StudyError, match=r"family\.loads"):
         Study(Design.from_document(document), folder=folder)
@@ -349,7 +350,7 @@ def test_tables_go_to_files_and_back(make, threads, tmp_path):
 def test_parquet_without_pyarrow_names_the_command(make, threads, tmp_path, monkeypatch):
     result = make({"y": [5]}).grid(executor=threads)
     monkeypatch.setattr("voxsoft.study.result.find_spec", lambda name: None)
-    with pytest.raises(MissingPackageError, match=r'pip install "voxsoft\[parquet\]"'):
+    with pytest.raises(MissingPackageError, match=r"pip install pyarrow"):
         result.to_parquet(tmp_path / "trials.parquet")
 
 
@@ -389,8 +390,8 @@ def test_an_empty_study_has_a_result(make):
     ("call", "message"),
     [
         (lambda s: s.optimize("tpee", 5), 'sampler: "tpee" is not known.*did you mean "tpe"'),
-        (lambda s: s.optimize("tpe", 0), "budget: at least 1"),
-        (lambda s: s.optimize("tpe", 5, batch=0), "batch: at least 1"),
+        (lambda s: s.optimize("tpe", 0), "budget: expected at least 1"),
+        (lambda s: s.optimize("tpe", 5, batch=0), "batch: expected at least 1"),
         (lambda s: s.grid(workers=0), "workers: 0 is not possible"),
         (lambda s: s.result().ranked_by("fal"), 'did you mean "fall"'),
     ],
@@ -407,7 +408,7 @@ def test_a_grid_over_a_range_without_a_step_is_refused_before_anything_runs(make
 
 
 def test_a_function_needs_a_space_and_objectives(tmp_path):
-    with pytest.raises(StudyError, match="space: is due"):
+    with pytest.raises(StudyError, match="space: is missing"):
         Study(block, None, FALL, folder=tmp_path)
     with pytest.raises(StudyError, match="objectives: are missing"):
         Study(block, SPACE, folder=tmp_path)

@@ -2,10 +2,10 @@
 
 from concurrent.futures import ThreadPoolExecutor
 
+import lattice_families as families
 import pytest
 
 from voxsoft import Study
-from voxsoft.design import families
 from voxsoft.errors import StudyError
 
 SPACE = {"stiff": ("3 kPa", "40 kPa"), "second": ("1 kPa", "10 kPa")}

@@ -1,10 +1,10 @@
 """The space of a study: what a user may type, and what is refused."""
 
+import lattice_families as families
 import pytest
 from optuna.distributions import CategoricalDistribution, FloatDistribution, IntDistribution
 from study_families import block
 
-from voxsoft.design import families
 from voxsoft.errors import StudyError
 from voxsoft.study import Choices, Range
 from voxsoft.study.space import read_space, space_of

@@ -67,7 +67,7 @@ def test_text_with_a_unit_is_read_in_si(text, kind, value):
     ("text", "kind", "words"),
     [
         ("5", "length", ['"5" has no unit', 'write "5 mm"']),
-        ("5 kPa", "length", ["is a pressure", "a length is due"]),
+        ("5 kPa", "length", ["is a pressure", "expected a length"]),
         ("5 mm^2", "length", ["an area"]),
         ("5 furlongz", "length", ['no unit "furlongz"']),
         ("5 degC", "number", ["not a mechanical unit"]),

@@ -3,10 +3,10 @@
 import csv
 from pathlib import Path
 
+import lattice_families as families
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import families
 from voxsoft.units import kPa, mm
 
 REFERENCE = Path(__file__).parents[1] / "data" / "cylinders_4kPa_smooth.csv"
@@ -24,13 +24,11 @@ def reference():
 
 
 def rise(wall, voxel):
-    design = families.cylinder(wall=wall * mm).model_copy(
-        update={
-            "voxel_size": voxel,
-            "parts": (vs.Part(shape="body", material=MATERIAL),),
-            "probes": {"center": vs.Probe(point=(0, 0, 35 * mm))},
-            "objectives": {},
-        }
+    design = families.cylinder(wall=wall * mm).replace(
+        voxel_size=voxel,
+        parts=(vs.Part(shape="body", material=MATERIAL),),
+        probes={"center": vs.Probe(point=(0, 0, 35 * mm))},
+        objectives={},
     )
     result = vs.simulate(design)
     assert result.status == "ok"

@@ -8,12 +8,12 @@ modulus reaches 4.6, 4.4 and 2.1 mm, and 1.3, 1.0 and 0.7 mm with the scale of t
 import sys
 from pathlib import Path
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 from voxsoft.calibration import Experiment, Measurement, calibrate
 from voxsoft.calibration.misfit import best_scale
-from voxsoft.design import families
 from voxsoft.materials import load_card
 from voxsoft.simulation import simulate
 
@@ -25,14 +25,14 @@ FREE_SCALE = dict(zip(NAMES, (1.5e-3, 1.2e-3, 0.9e-3), strict=True))
 
 def experiment(name):
     data = ROOT / "examples" / "data" / "paper_beams" / f"ecoflex-{name}.csv"
-    beam = families.beam().with_values(f"parts.0.material=ecoflex-{name}")
+    beam = families.beam().with_values(f"parts.0.material=ecoflex-{name}-lattice")
     return Experiment(beam, Measurement.read(data))
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_shipped_card_reproduces_its_beam(name):
     """The card's moduli and scale, simulated afresh, give the error that the card states."""
-    tested, card = experiment(name), load_card(f"ecoflex-{name}")
+    tested, card = experiment(name), load_card(f"ecoflex-{name}-lattice")
     simulated = tested.seen_at(simulate(tested.setup, tolerance=1e-6).positions)
     measured = tested.measurement.values
     scale = best_scale(simulated, measured)
@@ -45,7 +45,7 @@ def test_shipped_card_reproduces_its_beam(name):
 
 def test_cards_say_that_bulk_is_not_identified():
     for name in NAMES:
-        card = load_card(f"ecoflex-{name}")
+        card = load_card(f"ecoflex-{name}-lattice")
         assert "only bounded from above" in card.calibration["bulk_interval"]
         assert "bulk is not identified" in card.caution
 

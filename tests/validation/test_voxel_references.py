@@ -3,11 +3,11 @@
 import csv
 from pathlib import Path
 
+import lattice_families as families
 import pytest
 
 import voxsoft as vs
 from voxsoft.comparison import discretization_error
-from voxsoft.design import families
 from voxsoft.units import kPa, mm
 
 DATA = Path(__file__).parents[1] / "data" / "voxel_references.csv"
@@ -24,15 +24,13 @@ def reference(wall, quantity):
 
 
 def rises(wall, refine):
-    design = families.cylinder(wall=wall * mm).model_copy(
-        update={
-            "parts": (vs.Part(shape="body", material=RUBBER),),
-            "probes": {
-                "center": vs.Probe(point=(0, 0, 35 * mm)),
-                "top": vs.Probe(z=(35 * mm, 35 * mm)),
-            },
-            "objectives": {},
-        }
+    design = families.cylinder(wall=wall * mm).replace(
+        parts=(vs.Part(shape="body", material=RUBBER),),
+        probes={
+            "center": vs.Probe(point=(0, 0, 35 * mm)),
+            "top": vs.Probe(z=(35 * mm, 35 * mm)),
+        },
+        objectives={},
     )
     result = vs.simulate(design, method="statics", refine=refine)
     assert result.status == "ok"

@@ -215,7 +215,7 @@ def test_what_cannot_be_a_fiber_or_a_rigid_part():
     with pytest.raises(MaterialError, match="modulus: -1 kPa is not positive"):
         vs.Fiber(direction=(1, 0, 0), modulus=-1 * kPa)
     fibers = [vs.Fiber(direction=(1, 0, 0), modulus=1 * kPa)]
-    lattice = vs.Part(shape=box(), material="ecoflex-00-30", fibers=fibers)
+    lattice = vs.Part(shape=box(), material="ecoflex-00-30-lattice", fibers=fibers)
     with pytest.raises(DesignError, match=r"parts\[0\].fibers: need a hyperelastic"):
         simulate(bar([lattice]))
     with pytest.raises(DesignError, match="parts: all are rigid"):

@@ -1,9 +1,9 @@
 """Derivatives by parameters of the shape, through the filled parts of cut voxels."""
 
+import lattice_families as families
 import pytest
 
 from voxsoft import Objective, gradient, simulate
-from voxsoft.design import families
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import DesignError
 

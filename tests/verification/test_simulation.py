@@ -1,10 +1,10 @@
 """Simulations against closed forms, balance of forces, and each other."""
 
+import lattice_families as families
 import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import families
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Setup, simulate
 from voxsoft.units import kPa, mm
@@ -167,7 +167,7 @@ def test_table_1_collapses_the_beam_with_true_masses():
 def test_a_history_ramps_a_load_over_real_time():
     ramp = vs.History(time=(0.0, 0.5), factor=(0.0, 1.0))
     design = families.beam(length="50 mm")
-    slow = design.model_copy(update={"loads": (vs.Gravity(history=ramp),)})
+    slow = design.replace(loads=(vs.Gravity(history=ramp),))
     result = simulate(slow, end_time=3.0, damping=20.0, record_interval=0.1)
     assert result.status == "ok"
     assert result.time == pytest.approx(3.0)

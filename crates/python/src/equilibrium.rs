@@ -8,8 +8,8 @@ use numpy::{
 use pyo3::exceptions::{PyArithmeticError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voxsoft_solid::State;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Load, State};
 use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings};
 use voxsoft_xpbd::{Answer, Status};
 
@@ -115,7 +115,7 @@ pub fn equilibrium<'py>(
         (answer, watch)
     })?;
     let stable = answer.stable;
-    let (factor, limit) = (answer.factor, answer.limit);
+    let (factor, reached, limit) = (answer.factor, answer.reached, answer.limit);
     let path: Vec<[f64; 4]> = answer
         .path
         .iter()
@@ -138,7 +138,7 @@ pub fn equilibrium<'py>(
         voxsoft_statics::Status::Cancelled => "cancelled",
     };
     let mut state = State::at_rest(inner.body());
-    state.positions = answer.positions;
+    state.positions.clone_from(&answer.positions);
     let common = Answer {
         state,
         status: Status::AtRest,
@@ -148,13 +148,14 @@ pub fn equilibrium<'py>(
         substep: 0.0,
         breakdown: None,
     };
-    let report = problem.report(py, common, watch, f64::INFINITY)?;
+    let factor_of = |load: &Load| answer.factor_of(load);
+    let report = problem.report(py, common, watch, &factor_of)?;
     report.set_item("status", status)?;
     if let voxsoft_statics::Status::OutOfMemory(bytes) = status_of_path {
         report.set_item("needed_bytes", bytes)?;
     }
     report.set_item("factor", factor)?;
-    report.set_item("reached", answer.reached)?;
+    report.set_item("reached", reached)?;
     report.set_item("limit", limit)?;
     report.set_item("stable", stable)?;
     report.set_item("path", from_rows(py, &path))?;

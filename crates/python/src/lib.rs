@@ -1,9 +1,11 @@
 //! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
 use pyo3::prelude::*;
 
+mod contact;
 mod ensemble;
 mod equilibrium;
 mod errors;
+mod fields;
 mod gate;
 mod live;
 mod materials;
@@ -20,6 +22,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
+    module.add_class::<fields::PyFields>()?;
     module.add_class::<live::PyDisplay>()?;
     module.add_class::<live::PyLive>()?;
     module.add_function(wrap_pyfunction!(live::pack_scene, module)?)?;
@@ -32,5 +35,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(mesh::mesh_tets, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_pieces, module)?)?;
     module.add_function(wrap_pyfunction!(mesh::mesh_quality, module)?)?;
+    module.add_function(wrap_pyfunction!(contact::penetration, module)?)?;
     Ok(())
 }

@@ -1,5 +1,5 @@
 //! `_core.Live` and `_core.Display`: a run that goes on between calls, and what is shown of it.
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
@@ -9,10 +9,10 @@ use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
 use voxsoft_frames::{Display, Field, FrameHead};
-use voxsoft_scene::Scene;
+use voxsoft_scene::{Scene, stepper};
 use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Problem, State};
-use voxsoft_xpbd::{Damping, Dynamics, Live, LiveStatus, Look};
+use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, State, Stepper};
+use voxsoft_xpbd::{Damping, Dynamics};
 
 use crate::gate;
 use crate::simulate::{PyProblem, from_rows, rows, to_python};
@@ -130,13 +130,13 @@ impl PyDisplay {
 #[pyclass(frozen, name = "Live", module = "voxsoft._core")]
 pub struct PyLive {
     surface: PyDisplay,
-    live: Mutex<Live>,
+    live: Mutex<Box<dyn Stepper>>,
 }
 
 impl PyLive {
     /// Locks in the calling thread, never in one of the pool: that could take up another call of the same
     /// run while it waits in a loop, and would wait for itself.
-    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Live>> {
+    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Box<dyn Stepper>>> {
         let message = "an earlier call of this run panicked; please report it";
         self.live
             .lock_py_attached(py)
@@ -147,27 +147,31 @@ impl PyLive {
     fn with<T: Send>(
         &self,
         py: Python<'_>,
-        work: impl FnOnce(&mut Live) -> T + Send,
+        work: impl FnOnce(&mut dyn Stepper) -> T + Send,
     ) -> PyResult<T> {
         let mut guard = self.lock(py)?;
-        let live = &mut *guard;
+        let live = guard.as_mut();
         Ok(py.detach(|| work(live)))
     }
 
     fn report<'py>(
         &self,
         py: Python<'py>,
-        go_on: impl Fn(&AtomicBool) -> bool + Sync,
+        go_on: impl Fn() -> bool + Sync,
         substeps: u32,
     ) -> PyResult<Bound<'py, PyDict>> {
         let started = Instant::now();
         let mut guard = self.lock(py)?;
-        let live = &mut *guard;
+        let live = guard.as_mut();
         let (look, taken) = gate::run(py, |cancel| {
             let mut taken = 0;
-            let look = live.advance_while(substeps, &mut || {
+            let look = live.advance_while(substeps, &mut |ask| {
+                let stop = cancel.load(Ordering::Relaxed);
+                if ask == Ask::Within {
+                    return !stop;
+                }
                 taken += 1;
-                go_on(cancel)
+                !stop && go_on()
             });
             (look, taken)
         })?;
@@ -237,7 +241,7 @@ impl PyLive {
         };
         let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;
         let problem = Arc::clone(&surface.problem);
-        let live = gate::run(py, |_| Live::new(Problem::clone(&problem), settings))?;
+        let live = gate::run(py, |_| stepper(Problem::clone(&problem), settings))?;
         Ok(Self {
             surface,
             live: Mutex::new(live),
@@ -246,13 +250,30 @@ impl PyLive {
 
     #[getter]
     fn substep(&self, py: Python<'_>) -> PyResult<f64> {
-        self.with(py, |live| live.substep())
+        self.with(py, |live| live.step())
+    }
+
+    /// "explicit" or "implicit".
+    #[getter]
+    fn method(&self, py: Python<'_>) -> PyResult<&'static str> {
+        self.with(py, |live| match live.method() {
+            Method::Explicit => "explicit",
+            Method::Implicit => "implicit",
+        })
+    }
+
+    /// Asks for steps of another length in s; explicit ones are as long as they can be.
+    fn prefer_step(&self, py: Python<'_>, seconds: f64) -> PyResult<()> {
+        if !(seconds > 0.0 && seconds.is_finite()) {
+            let message = format!("seconds must be above zero, got {seconds}");
+            return Err(PyValueError::new_err(message));
+        }
+        self.with(py, |live| live.prefer_step(seconds))
     }
 
     /// Takes as many substeps, fewer at rest or after a breakdown.
     fn advance<'py>(&self, py: Python<'py>, substeps: u32) -> PyResult<Bound<'py, PyDict>> {
-        let go_on = |cancel: &AtomicBool| !cancel.load(Ordering::Relaxed);
-        self.report(py, go_on, substeps)
+        self.report(py, || true, substeps)
     }
 
     /// Takes substeps for so many seconds of the clock, at least one and no more than asked.
@@ -267,9 +288,7 @@ impl PyLive {
             PyValueError::new_err(format!("seconds must be zero or more, got {seconds}"))
         })?;
         let started = Instant::now();
-        let go_on =
-            |cancel: &AtomicBool| started.elapsed() < budget && !cancel.load(Ordering::Relaxed);
-        self.report(py, go_on, max_substeps)
+        self.report(py, || started.elapsed() < budget, max_substeps)
     }
 
     /// Makes a load `factor` times its final value; `None` gives it its history back.
@@ -298,7 +317,7 @@ impl PyLive {
     fn grabs(&self, py: Python<'_>) -> PyResult<Vec<PyGrab>> {
         self.with(py, |live| {
             let positions = &live.state().positions;
-            let one = |(number, grab): &(u32, voxsoft_xpbd::Grab)| {
+            let one = |(number, grab): &(u32, Grab)| {
                 let position = positions[grab.vertex as usize];
                 let stretch = norm(sub(grab.anchor, position));
                 let force = grab.force(position);
@@ -309,7 +328,7 @@ impl PyLive {
     }
 
     fn reset(&self, py: Python<'_>) -> PyResult<()> {
-        self.with(py, Live::reset)
+        self.with(py, |live| live.reset())
     }
 
     #[pyo3(signature = (positions, time=0.0))]

@@ -5,7 +5,7 @@ use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyRe
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voxsoft_solid::balance::{balance, total_load};
+use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Body, Clamp, Filling, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial,
@@ -349,7 +349,7 @@ impl PyProblem {
                 watch.see(now, cancel)
             })
         })?;
-        self.report(py, answer, watch, f64::INFINITY)
+        self.report(py, answer, watch, &|load| load.history.at(f64::INFINITY))
     }
 
     #[pyo3(signature = (*, time_step, substeps, iterations, damping, retardation, end_time, max_time, tolerance,
@@ -395,7 +395,7 @@ impl PyProblem {
             })
         })?;
         let time = answer.state.time;
-        self.report(py, answer, watch, time)
+        self.report(py, answer, watch, &|load| load.history.at(time))
     }
 }
 
@@ -431,19 +431,20 @@ impl PyProblem {
         Ok(positions)
     }
 
+    /// What Python is told of an answer, its reactions under loads with these factors.
     pub(crate) fn report<'py>(
         &self,
         py: Python<'py>,
         answer: Answer,
         watch: Watch,
-        time: f64,
+        factor_of: &dyn Fn(&Load) -> f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         if let Some(raised) = watch.raised {
             return Err(raised);
         }
         let positions = &answer.state.positions;
-        let balance = balance(&self.problem, positions, time);
-        let (load, load_moment) = total_load(&self.problem, positions, time);
+        let balance = balance_under(&self.problem, positions, factor_of);
+        let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let report = PyDict::new(py);
         let status = match answer.status {
             Status::AtRest => "at-rest",

@@ -21,8 +21,9 @@
 mod read;
 mod write;
 
-use voxsoft_solid::{Body, Clamp, Floor, Load, Material, Mesh, Problem, ProblemError};
-use voxsoft_xpbd::Dynamics;
+use voxsoft_solid::{Body, Clamp, Floor, Load, Material, Mesh, Problem, ProblemError, Stepper};
+use voxsoft_statics::{Implicit, ImplicitSettings};
+use voxsoft_xpbd::{Dynamics, Live};
 
 pub use read::SceneError;
 
@@ -54,6 +55,24 @@ pub struct Scene {
     pub triangles: Vec<[u32; 3]>,
     /// A tag for each triangle.
     pub tags: Vec<u8>,
+}
+
+/// What moves a problem live.
+///
+/// Bodies with hyperelastic voxels take implicit steps: their stiff change of volume would ask for explicit ones of
+/// microseconds. Bodies of springs and layers alone take the substeps that their frequency allows, and so does any
+/// body whose substeps are asked for.
+pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
+    if problem.body().bricks().is_empty() || settings.substeps.is_some() {
+        return Box::new(Live::new(problem, settings));
+    }
+    let settings = ImplicitSettings {
+        damping: settings.damping,
+        retardation: settings.retardation,
+        tolerance: settings.tolerance,
+        ..ImplicitSettings::default()
+    };
+    Box::new(Implicit::new(problem, settings))
 }
 
 impl Scene {

@@ -48,8 +48,8 @@ pub(crate) struct Part<F: Function> {
 
 /// A subexpression of one coordinate, computed once for each cell layer along that axis.
 ///
-/// A call of a sine from compiled code costs as much as forty multiplications, and a periodic
-/// surface has six in each cell: with tables there are three per layer instead.
+/// A call of a sine from compiled code costs as much as forty multiplications, and a wave along three
+/// axes has six in each cell: with tables there are three per layer instead.
 pub(crate) struct Table {
     pub variable: VarIndex,
     pub axis: usize,

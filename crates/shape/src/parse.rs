@@ -45,7 +45,9 @@ pub fn parse(text: &str) -> Result<Expr, ParseError> {
     match parser.peek() {
         None => Ok(expr),
         Some(')') => Err(parser.error("this ')' closes nothing")),
-        Some(found) => Err(parser.error(&format!("'{found}' came; an operator or the end is due"))),
+        Some(found) => {
+            Err(parser.error(&format!("'{found}' came; expected an operator or the end")))
+        }
     }
 }
 
@@ -147,8 +149,8 @@ impl Parser {
             }
             Some(c) if c.is_ascii_digit() || c == '.' => self.number(),
             Some(c) if c.is_alphabetic() || c == '_' => self.name(),
-            Some(c) => Err(self.error(&format!("'{c}' came; a number, a name or '(' is due"))),
-            None => Err(self.error("the text ends; a number, a name or '(' is due")),
+            Some(c) => Err(self.error(&format!("'{c}' came; expected a number, a name or '('"))),
+            None => Err(self.error("the text ends; expected a number, a name or '('")),
         }
     }
 
@@ -156,7 +158,7 @@ impl Parser {
         if self.take(")") {
             Ok(())
         } else {
-            Err(self.error("')' is due"))
+            Err(self.error("expected ')'"))
         }
     }
 
@@ -217,7 +219,7 @@ impl Parser {
 
     fn call(&mut self, name: &str, start: usize) -> Result<Expr, ParseError> {
         if !self.take("(") {
-            return Err(self.error(&format!("'(' is due after {name}")));
+            return Err(self.error(&format!("expected '(' after {name}")));
         }
         let mut arguments = vec![self.sum()?];
         while self.take(",") {
@@ -297,7 +299,7 @@ mod tests {
                 .contains("\"radius\" is not known")
         );
         assert_eq!(problem("x +").position, 4);
-        assert_eq!(problem("(x").message, "')' is due");
+        assert_eq!(problem("(x").message, "expected ')'");
         assert_eq!(problem("x)").message, "this ')' closes nothing");
         assert_eq!(
             problem("atan2(x)").message,
@@ -307,7 +309,7 @@ mod tests {
         assert!(
             problem("x y")
                 .message
-                .contains("an operator or the end is due")
+                .contains("expected an operator or the end")
         );
         assert!(problem(&"(".repeat(1000)).message.contains("nested deeper"));
         assert!(problem(&"x+".repeat(20_000)).message.contains("at most"));

@@ -198,14 +198,15 @@ fn for_each_tile<F: MathFunction, T>(
 mod tests {
     use super::*;
     use crate::operators::intersection;
-    use crate::periodic::Surface;
+    use crate::parse;
     use crate::primitives;
 
     /// What a processor without the instructions of the machine code gets.
     #[test]
     fn the_interpreter_finds_what_machine_code_finds() {
         let ball = primitives::sphere([0.0; 3], 0.02).unwrap();
-        let gyroid = Surface::Gyroid.solid(&0.008.into(), 0.1).unwrap();
+        let waves = "sin(x/a)*cos(y/a) + sin(y/a)*cos(z/a) + sin(z/a)*cos(x/a)";
+        let gyroid = Shape::unknown(parse(&waves.replace('a', "0.0013")).unwrap());
         let shape = intersection(&[ball, gyroid]).unwrap();
         let lattice = Lattice {
             origin: [-0.021; 3],

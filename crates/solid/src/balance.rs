@@ -1,7 +1,7 @@
 //! Balance of forces: the residual that tells rest from motion, reactions and moments.
 
 use crate::vector::{Vec3, add, axpy, cross};
-use crate::{Problem, elastic};
+use crate::{Load, Problem, elastic};
 
 /// A strain that counts as none: ten times the rounding of a coordinate a thousand voxels away,
 /// in units of the voxel, would be 1e-12; measured strains are never better known than 1e-5.
@@ -52,8 +52,17 @@ impl Balance {
 
 /// The balance of a body at `positions` under its loads at `time` (s).
 pub fn balance(problem: &Problem, positions: &[Vec3], time: f64) -> Balance {
+    balance_under(problem, positions, &|load| load.history.at(time))
+}
+
+/// The balance of a body at `positions` with a factor of the caller's on each load.
+pub fn balance_under(
+    problem: &Problem,
+    positions: &[Vec3],
+    factor_of: &dyn Fn(&Load) -> f64,
+) -> Balance {
     let mut external = vec![[0.0; 3]; positions.len()];
-    problem.add_loads(positions, time, &mut external);
+    problem.add_scaled_loads(positions, factor_of, &mut external);
     let mut net = external.clone();
     elastic::add_forces(problem.body(), positions, &mut net);
     balance_of_forces(problem, positions, &external, net)
@@ -115,8 +124,14 @@ pub fn rests_on_floor(
 /// Whether the kinetic energy (J) is below `tolerance` times the elastic energy at `positions`, or
 /// times that of a [`NEGLIGIBLE_STRAIN`].
 pub fn is_still(problem: &Problem, positions: &[Vec3], kinetic: f64, tolerance: f64) -> bool {
+    let elastic = elastic::energy(problem.body(), positions);
+    is_still_with(problem, elastic, kinetic, tolerance)
+}
+
+/// The same for callers that know the elastic energy (J).
+pub fn is_still_with(problem: &Problem, elastic: f64, kinetic: f64, tolerance: f64) -> bool {
     let negligible = NEGLIGIBLE_STRAIN.powi(2) * problem.body().unit_strain_energy();
-    kinetic <= tolerance * elastic::energy(problem.body(), positions).max(negligible)
+    kinetic <= tolerance * elastic.max(negligible)
 }
 
 /// The volume in m³ enclosed by triangles whose normals point out of the solid, into the cavity.
@@ -132,8 +147,17 @@ pub fn cavity_volume(triangles: &[[u32; 3]], positions: &[Vec3]) -> f64 {
 
 /// The external force (N) and moment about the origin (N m) of all loads.
 pub fn total_load(problem: &Problem, positions: &[Vec3], time: f64) -> (Vec3, Vec3) {
+    total_load_under(problem, positions, &|load| load.history.at(time))
+}
+
+/// The same with a factor of the caller's on each load.
+pub fn total_load_under(
+    problem: &Problem,
+    positions: &[Vec3],
+    factor_of: &dyn Fn(&Load) -> f64,
+) -> (Vec3, Vec3) {
     let mut external = vec![[0.0; 3]; positions.len()];
-    problem.add_loads(positions, time, &mut external);
+    problem.add_scaled_loads(positions, factor_of, &mut external);
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for (f, x) in external.iter().zip(positions) {
         axpy(&mut force, 1.0, *f);

@@ -1,5 +1,7 @@
 //! The hyperelastic voxel: a cube of eight nodes that neither locks nor has zero-energy modes.
 //!
+//! Long because its formula is derived here.
+//!
 //! # Kinematics
 //!
 //! The map of a cube of side `h` is `x(ξ) = x₀ + h/2 (f₁ξ + f₂η + f₃ζ + p₁ηζ + p₂ζξ + p₃ξη + p₄ξηζ)` with
@@ -31,8 +33,8 @@
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
 
-pub use crate::brick_energy::{BrickStrain, BrickStress, Filling};
-use crate::brick_energy::{Modes, Rotated, SHAPE};
+pub use crate::brick_energy::{BrickStrain, BrickStress, Filling, Pressure};
+use crate::brick_energy::{Modes, Parted, Rotated, SHAPE};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::hyperelastic::symmetric::{to_matrix, to_sym};
 use crate::matrix::{
@@ -40,9 +42,6 @@ use crate::matrix::{
     solve_spd, transpose,
 };
 use crate::vector::{Vec3, add, axpy, scale, sub};
-
-/// A voxel pressed below this part of its volume counts as that part where its stress is asked.
-pub(crate) const LEAST_VOLUME: f64 = 1e-3;
 
 /// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 const CORNERS: usize = 8;
@@ -71,6 +70,58 @@ pub struct Brick {
     pub fraction: f64,
     /// Where in the cube the material is.
     pub filling: Filling,
+}
+
+/// Which tangent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tangent {
+    /// The Hessian of the energy.
+    Exact,
+    /// Without what stress adds to it: of a state that a long step has swollen, whose pressure is spurious.
+    Stressless,
+}
+
+/// What a voxel answers with over a step, besides its elastic deviatoric stress `s`: the change of its volume, and
+/// a viscous stress `share s + stress`. Both have a potential.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Within {
+    /// The answer to its change of volume.
+    pub pressure: Pressure,
+    /// The viscous share of `s`.
+    pub share: f64,
+    /// The viscous stress that does not depend on the end of the step.
+    pub stress: BrickStress,
+}
+
+impl Within {
+    /// The elastic answer alone.
+    pub fn elastic(material: &HyperelasticMaterial) -> Self {
+        Self {
+            pressure: Pressure::of(material),
+            share: 0.0,
+            stress: BrickStress::ZERO,
+        }
+    }
+
+    fn stress_of(&self, parts: &Parted) -> BrickStress {
+        parts
+            .other
+            .plus_scaled(1.0 + self.share, &parts.deviatoric)
+            .plus_scaled(1.0, &self.stress)
+    }
+}
+
+/// What [`Brick::respond`] gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrickResponse {
+    /// The elastic energy in J, with `p²/2K` for the change of volume.
+    pub elastic: f64,
+    /// The potential of the forces in J.
+    pub potential: f64,
+    /// The pressure in Pa, positive in tension.
+    pub pressure: f64,
+    /// The forces on the corners in N.
+    pub forces: [Vec3; CORNERS],
 }
 
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
@@ -132,6 +183,29 @@ impl Brick {
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
     }
 
+    /// How the mean deformation gradient depends on each corner: `F₀ = Σ x ⊗ g`, `g` in 1/m.
+    pub(crate) fn gradients(&self) -> [(u32, Vec3); CORNERS] {
+        let factor = 1.0 / (4.0 * self.side);
+        std::array::from_fn(|corner| {
+            let gradient = std::array::from_fn(|axis| factor * SIGNS[axis][corner]);
+            (self.vertices[corner], gradient)
+        })
+    }
+
+    /// The smallest ratio of the volume now to that at rest, of the points over which the energy is the mean.
+    pub fn smallest_volume_ratio(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+    ) -> f64 {
+        let state = Rotated::of(&self.modes(positions), self.filling);
+        state
+            .points(material.thinning())
+            .iter()
+            .map(|stretch| determinant(&to_matrix(stretch)))
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of
     /// [`Brick::forces`]; bending modes have no part in it.
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
@@ -143,8 +217,7 @@ impl Brick {
         let couple = multiply(&stress, &stretch);
         let y = solve_spd(&spin_matrix(&stretch), axial(&couple));
         let own = plus(&couple, -1.0, &multiply(&cross_matrix(y), &stretch));
-        // A voxel pressed flat keeps a stress.
-        let volume = determinant(&stretch).max(LEAST_VOLUME);
+        let volume = determinant(&stretch);
         let turned = multiply(
             &multiply(&state.rotation, &own),
             &transpose(&state.rotation),
@@ -160,6 +233,34 @@ impl Brick {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let stress = state.gradient(material);
         self.spread_stress(&state, &stress, material)
+    }
+
+    /// The response to `positions` within a step, energy and forces at once.
+    pub fn respond(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        within: &Within,
+    ) -> BrickResponse {
+        let state = Rotated::of(&self.modes(positions), self.filling);
+        let parts = state.response(material, within.pressure);
+        let work = within.stress.along(&state.stretch, &state.hourglass);
+        BrickResponse {
+            elastic: self.volume() * parts.elastic,
+            potential: self.volume()
+                * ((1.0 + within.share) * parts.deviatoric_energy + parts.other_energy + work),
+            pressure: parts.pressure,
+            forces: self.spread_stress(&state, &within.stress_of(&parts), material),
+        }
+    }
+
+    /// The deviatoric stress at `positions`, which viscous stress follows.
+    pub fn deviatoric_stress(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+    ) -> BrickStress {
+        Rotated::of(&self.modes(positions), self.filling).deviatoric(material)
     }
 
     /// Adds forces on the corners to those on all vertices.
@@ -198,7 +299,7 @@ impl Brick {
         let other = state.with_strain(strain);
         let (now, then) = (state.strain().row(), strain.row());
         let change = times(
-            &other.hessian(material),
+            &other.hessian(material, 1.0, Pressure::of(material), 1.0),
             &std::array::from_fn(|k| now[k] - then[k]),
         );
         let stress = other.gradient(material).plus(&change);
@@ -249,13 +350,32 @@ impl Brick {
         positions: &[Vec3],
         strain: Option<&BrickStrain>,
     ) -> BrickMatrix {
+        let within = Within::elastic(material);
+        self.stiffness_within(material, positions, strain, &within, Tangent::Exact)
+    }
+
+    /// The same within a step, and with the stress that is there or without it.
+    pub fn stiffness_within(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        strain: Option<&BrickStrain>,
+        within: &Within,
+        tangent: Tangent,
+    ) -> BrickMatrix {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
         );
-        let gradient = other.gradient(material);
-        let hessian = other.hessian(material);
+        let (gradient, curvature) = match tangent {
+            Tangent::Stressless => (BrickStress::ZERO, 0.0),
+            Tangent::Exact => {
+                let parts = other.response(material, within.pressure);
+                (within.stress_of(&parts), 1.0)
+            }
+        };
+        let hessian = other.hessian(material, 1.0 + within.share, within.pressure, curvature);
         let stress = to_matrix(&gradient.stress);
         let stretch = to_matrix(&state.stretch);
         let spin = spin_matrix(&stretch);

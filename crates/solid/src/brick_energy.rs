@@ -1,6 +1,9 @@
 //! The energy of a voxel in its rotated frame, with gradient and Hessian; the formula stands in
 //! [`crate::brick`].
+//!
+//! Long because energy, gradient and Hessian are one derivation, term by term.
 
+use crate::brick_thickness::Thickness;
 use crate::hyperelastic::symmetric::{
     Sym, determinant_response, isochoric, isochoric_stress, to_sym,
 };
@@ -62,6 +65,43 @@ pub struct BrickStrain {
     pub(crate) hourglass: [Vec3; 3],
 }
 
+/// How a voxel answers to its change of volume: `k (J − 1 + shift)`, positive in tension.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressure {
+    /// `k` in Pa: the bulk modulus, or less.
+    pub stiffness: f64,
+    /// The shift, zero for the material itself.
+    pub shift: f64,
+}
+
+impl Pressure {
+    /// That of a material.
+    pub fn of(material: &HyperelasticMaterial) -> Self {
+        Self {
+            stiffness: material.bulk(),
+            shift: 0.0,
+        }
+    }
+
+    /// The pressure (Pa) at a ratio of volumes.
+    pub fn at(self, volume: f64) -> f64 {
+        self.stiffness * (volume - 1.0 + self.shift)
+    }
+}
+
+/// The energy per rest volume and its gradient, in two parts: that which viscous stress follows, and the rest.
+pub(crate) struct Parted {
+    /// The elastic energy of the material at that pressure.
+    pub elastic: f64,
+    pub deviatoric_energy: f64,
+    pub deviatoric: BrickStress,
+    /// That of the mean change of volume and of the bilinear mode, whose gradient is left out below.
+    pub other_energy: f64,
+    pub other: BrickStress,
+    /// The pressure in Pa, positive in tension.
+    pub pressure: f64,
+}
+
 impl BrickStrain {
     /// All coordinates in one row.
     pub(crate) fn row(&self) -> [f64; SHAPE] {
@@ -78,6 +118,13 @@ impl BrickStress {
         stress: [0.0; 6],
         hourglass: [[0.0; 3]; 3],
     };
+
+    /// The work per rest volume (J/m³) along a strain.
+    pub(crate) fn along(&self, stretch: &Sym, hourglass: &[Vec3; 3]) -> f64 {
+        let own = self.hourglass.as_flattened().iter();
+        let bent: f64 = own.zip(hourglass.as_flattened()).map(|(s, p)| s * p).sum();
+        dot6(&self.stress, stretch) + bent
+    }
 
     /// `self + factor other`.
     #[must_use]
@@ -151,6 +198,27 @@ impl Rotated {
             thickness,
             bending: [first, second],
         }
+    }
+
+    /// The stretches at the six points over which the energy is the mean.
+    pub fn points(&self, thinning: f64) -> [Sym; 6] {
+        let Filling { shift, spread } = self.filling;
+        let variations = AXES.map(|axes| self.variation(axes, thinning).h);
+        let mut center = self.stretch;
+        for (shift, h) in shift.iter().zip(&variations) {
+            for k in 0..6 {
+                center[k] += shift * h[k];
+            }
+        }
+        std::array::from_fn(|point| {
+            let m = point / 2;
+            let reach = if point % 2 == 0 {
+                spread[m]
+            } else {
+                -spread[m]
+            };
+            std::array::from_fn(|k| center[k] + reach * variations[m][k])
+        })
     }
 
     /// The two face centres of an axis.
@@ -287,6 +355,38 @@ impl Rotated {
         value
     }
 
+    /// Energy and gradient at once, the part that does not come from the mean change of volume apart.
+    pub fn response(&self, material: &HyperelasticMaterial, pressure: Pressure) -> Parted {
+        let thinning = material.thinning();
+        let bulk = material.bulk();
+        let mean = self.mean(thinning, false, |at| stress_only(material, at));
+        let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
+        let mut energy = mean.value;
+        for fiber in material.fibers() {
+            energy += fiber::energy(fiber, &self.stretch);
+            fiber::add_stress(fiber, &self.stretch, &mut deviatoric.stress);
+        }
+        for (n, i, j) in AXES {
+            let p = &self.hourglass;
+            let (first, second) = (p[j][i], p[i][j]);
+            let trace = ((1.0 - thinning) * self.filling.spread[n]).powi(2) * bulk / 3.0;
+            energy += trace * (first + second).powi(2) / 2.0;
+            deviatoric.hourglass[j][i] += trace * (first + second);
+            deviatoric.hourglass[i][j] += trace * (first + second);
+        }
+        let volume = self.volume(thinning, false);
+        let value = pressure.at(volume.value);
+        let bilinear = material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>();
+        Parted {
+            elastic: energy + bilinear + 0.5 * value * value / bulk,
+            deviatoric_energy: energy,
+            deviatoric,
+            other_energy: bilinear + 0.5 * value * value / pressure.stiffness,
+            other: BrickStress::ZERO.plus(&volume.gradient.map(|slope| value * slope)),
+            pressure: value,
+        }
+    }
+
     pub fn gradient(&self, material: &HyperelasticMaterial) -> BrickStress {
         let volume = self.volume(material.thinning(), false);
         let pressure = material.bulk() * (volume.value - 1.0);
@@ -313,7 +413,16 @@ impl Rotated {
     }
 
     /// The Hessian by `S` and `p̂` (rows 0–5 and `6 + 3 mode + axis`).
-    pub fn hessian(&self, material: &HyperelasticMaterial) -> [[f64; SHAPE]; SHAPE] {
+    ///
+    /// The part that does not come from the mean change of volume counts `share` times, that which comes from its
+    /// curvature `curvature` times.
+    pub fn hessian(
+        &self,
+        material: &HyperelasticMaterial,
+        share: f64,
+        pressure: Pressure,
+        curvature: f64,
+    ) -> [[f64; SHAPE]; SHAPE] {
         let thinning = material.thinning();
         let bulk = material.bulk();
         let volume = self.volume(thinning, true);
@@ -322,9 +431,9 @@ impl Rotated {
             .hessian;
         for (k, row) in hessian.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {
-                *entry += bulk
-                    * (volume.gradient[k] * volume.gradient[l]
-                        + (volume.value - 1.0) * volume.hessian[k][l]);
+                *entry = share * *entry
+                    + pressure.stiffness * volume.gradient[k] * volume.gradient[l]
+                    + curvature * pressure.at(volume.value) * volume.hessian[k][l];
             }
         }
         let mut center = [[0.0; 6]; 6];
@@ -333,10 +442,10 @@ impl Rotated {
         }
         for k in 0..6 {
             for l in 0..6 {
-                hessian[k][l] += center[k][l];
+                hessian[k][l] += share * center[k][l];
             }
         }
-        let trace = bulk * (1.0 - thinning).powi(2) / 3.0;
+        let trace = share * bulk * (1.0 - thinning).powi(2) / 3.0;
         for (n, i, j) in AXES {
             let trace = trace * self.filling.spread[n].powi(2);
             let places = [place(j, i), place(i, j)];
@@ -351,7 +460,7 @@ impl Rotated {
 }
 
 /// An axis and the other two.
-type Axes = (usize, usize, usize);
+pub(crate) type Axes = (usize, usize, usize);
 
 /// The row of the hourglass coordinate `axis` of a mode.
 fn place(mode: usize, axis: usize) -> usize {
@@ -385,46 +494,6 @@ fn stress_only(material: &HyperelasticMaterial, at: &Sym) -> Response {
         value,
         stress,
         ..Response::default()
-    }
-}
-
-/// A stretch along a voxel's axis below which thickness ratios go on smoothly: a voxel pressed flat
-/// must not ask for infinite thinning.
-const LEAST_STRETCH: f64 = 0.2;
-
-/// A positive stand-in for a stretch along an axis, with derivatives: `x` itself, and a parabola that
-/// joins it below [`LEAST_STRETCH`].
-fn positive(x: f64) -> [f64; 3] {
-    if x >= LEAST_STRETCH {
-        [x, 1.0, 0.0]
-    } else {
-        [
-            (LEAST_STRETCH + x * x / LEAST_STRETCH) / 2.0,
-            x / LEAST_STRETCH,
-            1.0 / LEAST_STRETCH,
-        ]
-    }
-}
-
-/// The ratios `Sₙₙ/Sᵢᵢ` and `Sₙₙ/Sⱼⱼ`: a stretched voxel thins in proportion to its present shape.
-struct Thickness {
-    first: f64,
-    second: f64,
-    n: [f64; 3],
-    i: [f64; 3],
-    j: [f64; 3],
-}
-
-impl Thickness {
-    fn of(stretch: &Sym, (n, i, j): Axes) -> Self {
-        let [n, i, j] = [n, i, j].map(|axis| positive(stretch[axis]));
-        Self {
-            first: n[0] / i[0],
-            second: n[0] / j[0],
-            n,
-            i,
-            j,
-        }
     }
 }
 

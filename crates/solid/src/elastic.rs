@@ -2,6 +2,7 @@
 
 use crate::batches::in_order;
 use crate::body::{Body, Edge, Tet};
+use crate::brick::{Tangent, Within};
 use crate::matrix::cross_matrix;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
@@ -123,6 +124,47 @@ pub fn energy(body: &Body, positions: &[Vec3]) -> f64 {
     (edges + tets) / 2.0 + bricks + membranes
 }
 
+/// The response to `positions` within a step: the elastic energy and the potential of the forces in J; adds the
+/// forces in N and sets the `pressures` of hyperelastic voxels in Pa.
+pub fn respond(
+    body: &Body,
+    positions: &[Vec3],
+    within: &[Within],
+    forces: &mut [Vec3],
+    pressures: &mut [f64],
+) -> (f64, f64) {
+    let other = add_other_forces(body, positions, forces);
+    let (mut elastic, mut potential) = (other, other);
+    let bricks = body.bricks();
+    in_order(
+        bricks.len(),
+        FORCE_BATCH,
+        |i| bricks[i].respond(body.material_of(&bricks[i]), positions, &within[i]),
+        |i, response| {
+            elastic += response.elastic;
+            potential += response.potential;
+            pressures[i] = response.pressure;
+            bricks[i].add_to(&response.forces, forces);
+        },
+    );
+    (elastic, potential)
+}
+
+/// Energy and forces of everything but hyperelastic voxels.
+fn add_other_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) -> f64 {
+    add_constraint_forces(body, positions, forces);
+    let edges = body.edges().iter();
+    let edges = edges.map(|edge| edge.stiffness * edge.evaluate(positions).0.powi(2));
+    let tets = body.tets().iter();
+    let tets = tets.map(|tet| tet.stiffness * tet.evaluate(positions).0.powi(2));
+    let mut energy = (edges.sum::<f64>() + tets.sum::<f64>()) / 2.0;
+    for membrane in body.membranes() {
+        energy += membrane.energy(positions);
+        membrane.add_forces(positions, forces);
+    }
+    energy
+}
+
 /// Adds the elastic forces in N, minus the gradient of [`energy`].
 pub fn add_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
     add_constraint_forces(body, positions, forces);
@@ -164,18 +206,57 @@ pub fn add_element_forces(body: &Body, positions: &[Vec3], forces: &mut [Vec3]) 
 /// Hands the stiffness matrix (N/m), the Hessian of [`energy`], to `visit` piece by piece: the
 /// vertices of a piece, and its dense row-major matrix with rows and columns `3 place + axis`.
 pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: &mut dyn FnMut(&[u32], &[f64])) {
+    visit_constraint_stiffness(body, positions, Tangent::Exact, visit);
+    visit_brick_stiffness(body, positions, visit);
+    visit_membrane_stiffness(body, positions, visit);
+}
+
+/// The same within a step, with the stress that is there or without it.
+pub fn visit_tangent(
+    body: &Body,
+    positions: &[Vec3],
+    within: &[Within],
+    tangent: Tangent,
+    visit: &mut dyn FnMut(&[u32], &[f64]),
+) {
+    visit_constraint_stiffness(body, positions, tangent, visit);
+    let bricks = body.bricks();
+    in_order(
+        bricks.len(),
+        STIFFNESS_BATCH,
+        |i| {
+            let material = body.material_of(&bricks[i]);
+            bricks[i].stiffness_within(material, positions, None, &within[i], tangent)
+        },
+        |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
+    );
+    visit_membrane_stiffness(body, positions, visit);
+}
+
+fn visit_constraint_stiffness(
+    body: &Body,
+    positions: &[Vec3],
+    tangent: Tangent,
+    visit: &mut dyn FnMut(&[u32], &[f64]),
+) {
+    let change = (tangent == Tangent::Stressless).then_some(0.0);
     for edge in body.edges() {
-        visit(&edge.vertices, edge.hessian(positions, None).as_flattened());
+        let matrix = edge.hessian(positions, change);
+        visit(&edge.vertices, matrix.as_flattened());
     }
     for tet in body.tets() {
-        visit(&tet.vertices, tet.hessian(positions, None).as_flattened());
+        visit(&tet.vertices, tet.hessian(positions, change).as_flattened());
     }
-    visit_brick_stiffness(body, positions, visit);
+}
+
+fn visit_membrane_stiffness(
+    body: &Body,
+    positions: &[Vec3],
+    visit: &mut dyn FnMut(&[u32], &[f64]),
+) {
     for membrane in body.membranes() {
-        visit(
-            &membrane.vertices(),
-            membrane.stiffness(positions, None).as_flattened(),
-        );
+        let matrix = membrane.stiffness(positions, None);
+        visit(&membrane.vertices(), matrix.as_flattened());
     }
 }
 

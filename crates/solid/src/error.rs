@@ -55,7 +55,7 @@ pub enum ProblemError {
         vertices: [u32; 3],
     },
     /// A direction is not a unit vector.
-    #[error("{what}: a unit vector is due, its length is {length}")]
+    #[error("{what}: expected a unit vector, its length is {length}")]
     NotUnit {
         /// The vector's name.
         what: &'static str,

@@ -18,7 +18,11 @@ const C10: f64 = 12e3;
 fn body(material: Material) -> Body {
     let mut grid = Grid::empty([3, 3, 2], [0.0; 3], SIDE, u64::MAX).unwrap();
     grid.fill_box([0.0; 3], [3.0 * SIDE, 3.0 * SIDE, 2.0 * SIDE], 1);
-    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    body_of(&grid, material)
+}
+
+fn body_of(grid: &Grid, material: Material) -> Body {
+    let tets = tet_mesh(grid, u64::MAX).unwrap();
     let count = tets.tets.len();
     let mesh = Mesh {
         tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
@@ -222,4 +226,163 @@ fn vertices_average_their_own_voxels_only() {
     let fields = Fields::new(&body, far.iter().map(|&v| v as u32).collect());
     let values = fields.evaluate(&body, &state, Field::VonMises);
     assert!(values.iter().all(|&v| v > 0.1 * C10));
+}
+
+/// A voxel of a lattice that is turned inside out at a finite energy: no stress, and a count of it.
+#[test]
+fn an_inverted_voxel_has_no_stress() {
+    for body in [lattice(), rubber()] {
+        // The vertex in the middle of the layer is pushed through the face of a voxel beyond it.
+        let mut state = State::at_rest(&body);
+        let inside = |x: &Vec3| (0..3).all(|i| (x[i] - [1.0, 1.0, 1.0][i] * SIDE).abs() < 1e-9);
+        let middle = body.rest().iter().position(inside).unwrap();
+        let fields = Fields::of_all(&body);
+        let upright = fields.measure(&body, &state.positions);
+        assert!(
+            upright
+                .iter()
+                .all(|m| m.volume_ratio > 0.999 && m.stress[0][0].abs() < 1e-6)
+        );
+        for i in 0..3 {
+            state.positions[middle][i] += 3.0 * SIDE;
+        }
+        let measures = fields.measure(&body, &state.positions);
+        let inverted = measures.iter().filter(|m| m.volume_ratio <= 0.0);
+        assert!(inverted.clone().count() > 0);
+        for measure in &measures {
+            let is_none = measure.von_mises.is_nan() && measure.stress[1][2].is_nan();
+            assert_eq!(is_none, measure.volume_ratio <= 0.0);
+            assert!(measure.energy_density.is_finite() && measure.stretches[0].is_finite());
+        }
+        // A vertex of other voxels too has their mean; nothing is divided by next to nothing.
+        let smooth = fields.evaluate(&body, &state, Field::VonMises);
+        let most = measures.iter().map(|m| m.von_mises).fold(0.0, f64::max);
+        assert!(smooth.iter().all(|v| v.is_nan() || *v <= most));
+    }
+}
+
+/// A hair from flat: the stress is that of the formula, and only beyond zero it ends.
+#[test]
+fn stress_is_continuous_until_a_voxel_is_flat() {
+    for body in [lattice(), rubber()] {
+        let stress = |squash: f64| values(&body, &diagonal([1.0, 1.0, squash]), Field::VonMises)[0];
+        let (near, nearer) = (stress(0.011), stress(0.010));
+        assert!(near.is_finite() && (nearer / near - 1.0).abs() < 0.2);
+        assert!(stress(-0.01).is_nan());
+    }
+}
+
+#[test]
+fn volume_ratio_and_stretches_of_an_affine_deformation() {
+    for body in [lattice(), rubber()] {
+        let d = [1.3, 0.9, 0.7];
+        let f = diagonal(d);
+        let positions: Vec<Vec3> = body
+            .rest()
+            .iter()
+            .map(|x| rotate(apply(&f, *x), [0.6, 0.0, 0.8], 0.9))
+            .collect();
+        for measure in Fields::of_all(&body).measure(&body, &positions) {
+            assert!((measure.volume_ratio - d.iter().product::<f64>()).abs() < 1e-12);
+            for k in 0..3 {
+                assert!((measure.stretches[k] - d[k]).abs() < 1e-12);
+            }
+        }
+    }
+}
+
+/// Of positions that are carried off rigidly, what is left of strain and stress is rounding.
+#[test]
+fn rounding_is_told_as_zero() {
+    for body in [lattice(), rubber()] {
+        let rigid = diagonal([1.0; 3]);
+        for (field, zero) in [
+            (Field::VonMises, 0.0),
+            (Field::Pressure, 0.0),
+            (Field::EnergyDensity, 0.0),
+            (Field::Stretch, 1.0),
+        ] {
+            assert!(
+                values(&body, &rigid, field).iter().all(|&v| v == zero),
+                "{field:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_slope_of_a_stretch_is_that_of_differences() {
+    for body in [lattice(), rubber()] {
+        let fields = Fields::of_all(&body);
+        let mut positions: Vec<Vec3> = body.rest().to_vec();
+        for (index, x) in positions.iter_mut().enumerate() {
+            x[index % 3] += 0.1 * SIDE * (index as f64).sin();
+        }
+        let slope = fields.stretch_slope(&body, &positions, 4);
+        let step = 1e-5 * SIDE;
+        for vertex in 0..positions.len() {
+            for axis in 0..3 {
+                let mut at = |offset: f64| {
+                    let before = positions[vertex][axis];
+                    positions[vertex][axis] += offset;
+                    let stretch = fields.measure(&body, &positions)[4].stretches[0];
+                    positions[vertex][axis] = before;
+                    stretch
+                };
+                let difference = (at(step) - at(-step)) / (2.0 * step);
+                // Second differences of a stretch times the step squared: 1e-10 of 1/SIDE.
+                assert!((slope[vertex][axis] - difference).abs() < 1e-8 / SIDE);
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_of_elements_are_those_of_the_mesh() {
+    for material in [0, 1] {
+        let body = if material == 0 { lattice() } else { rubber() };
+        let mut grid = Grid::empty([3, 3, 2], [0.0; 3], SIDE, u64::MAX).unwrap();
+        grid.fill_box([0.0; 3], [3.0 * SIDE, 3.0 * SIDE, 2.0 * SIDE], 1);
+        let tets = tet_mesh(&grid, u64::MAX).unwrap();
+        let mesh = Mesh {
+            tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+            tet_block: (0..tets.tets.len() as u32).map(|t| t / 5).collect(),
+            ..Mesh::default()
+        };
+        let mut blocks = Fields::of_all(&body).blocks(&body, &mesh);
+        blocks.sort_unstable();
+        assert!(blocks.into_iter().eq(0..18));
+    }
+}
+
+#[cfg(feature = "threads")]
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let mut grid = Grid::empty([12, 12, 8], [0.0; 3], SIDE, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [12.0 * SIDE, 12.0 * SIDE, 8.0 * SIDE], 1);
+    let material = LatticeMaterial::from_moduli(EDGE, BULK, 1000.0).unwrap();
+    let body = body_of(&grid, material.into());
+    let positions: Vec<Vec3> = body
+        .rest()
+        .iter()
+        .map(|x| [x[0] + 0.1 * x[1] * x[2] / SIDE, x[1] * 1.1, x[2]])
+        .collect();
+    let fields = Fields::of_all(&body);
+    let all = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build()
+            .unwrap()
+            .install(|| fields.measure(&body, &positions))
+    };
+    let state = |threads: usize| {
+        let state = State {
+            positions: positions.clone(),
+            ..State::at_rest(&body)
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let pool = pool.build().unwrap();
+        pool.install(|| fields.evaluate(&body, &state, Field::VonMises))
+    };
+    assert_eq!(all(1), all(4));
+    assert_eq!(state(1), state(3));
 }

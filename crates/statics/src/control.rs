@@ -190,7 +190,7 @@ fn tangent_at(
 /// Follows the path by arc length to the full load.
 pub(crate) fn follow_arc(path: &mut Path<'_, '_>, settings: &Settings, steps: u32) -> Ending {
     let unit = path_unit(path);
-    let first = settings.first_step.min(0.2);
+    let first = settings.first_step;
     let (status, limit) = match walk(path, settings, steps, first, unit, 1.0) {
         Ok(limit) if path.point.pressure >= 1.0 => {
             let full = Point::all(1.0);

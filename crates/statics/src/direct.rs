@@ -53,6 +53,16 @@ pub(crate) enum DirectFactor {
 impl DirectSystem {
     /// The pattern for a problem whose coordinates `held` do not move.
     pub fn new(problem: &Problem, held: &[[bool; 3]], means: Means) -> Result<Self, FactorError> {
+        Self::with_symmetry(problem, held, means, problem.is_conservative())
+    }
+
+    /// The same for a tangent that the caller says is symmetric, or not.
+    pub fn with_symmetry(
+        problem: &Problem,
+        held: &[[bool; 3]],
+        means: Means,
+        symmetric: bool,
+    ) -> Result<Self, FactorError> {
         let body = problem.body();
         let count = body.rest().len();
         let neighbors = adjacency(problem, count);
@@ -117,7 +127,7 @@ impl DirectSystem {
             offsets,
             symbolic: None,
             symbolic_lu: None,
-            symmetric: problem.is_conservative(),
+            symmetric,
         };
         if system.symmetric {
             // Rows are numbered in the order of elimination already. `SymmetricOrdering::Identity` would
@@ -176,6 +186,22 @@ impl DirectSystem {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
+        self.assemble_pieces(jump, residual, |add| {
+            match strains {
+                Some(strains) => strains.visit_stiffness(problem.body(), positions, add),
+                None => elastic::visit_stiffness(problem.body(), positions, add),
+            }
+            problem.visit_load_stiffness(positions, factor_of, add);
+        });
+    }
+
+    /// The same for pieces of stiffness that `visit` hands over, as [`elastic::visit_stiffness`] does.
+    pub fn assemble_pieces(
+        &mut self,
+        jump: Option<&[Vec3]>,
+        residual: &mut [f64],
+        visit: impl FnOnce(&mut dyn FnMut(&[u32], &[f64])),
+    ) {
         let Self {
             rows,
             column_starts,
@@ -223,11 +249,57 @@ impl DirectSystem {
                 }
             }
         };
-        match strains {
-            Some(strains) => strains.visit_stiffness(problem.body(), positions, &mut add),
-            None => elastic::visit_stiffness(problem.body(), positions, &mut add),
+        visit(&mut add);
+    }
+
+    /// A Cholesky factor of the assembled tangent plus a diagonal, on free coordinates, if the sum is
+    /// positive definite.
+    pub fn factor_lifted(&self, diagonal: &[f64]) -> Result<DirectFactor, FactorError> {
+        let mut values = self.values.clone();
+        for (column, lift) in diagonal.iter().enumerate() {
+            let entries = self.column_starts[column]..self.column_starts[column + 1];
+            let place = self.row_indices[entries.clone()].partition_point(|&row| row < column);
+            values[entries.start + place] += lift;
         }
-        problem.visit_load_stiffness(positions, factor_of, &mut add);
+        if !values.iter().all(|v| v.is_finite()) {
+            return Err(FactorError::Singular);
+        }
+        let symbolic = self.symbolic.as_ref().ok_or(FactorError::Singular)?;
+        self.cholesky(symbolic, &values)
+    }
+
+    fn cholesky(
+        &self,
+        symbolic: &SymbolicCholesky<usize>,
+        values: &[f64],
+    ) -> Result<DirectFactor, FactorError> {
+        let mut entries = vec![0.0; symbolic.len_val()];
+        let par = Par::Seq;
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default());
+        let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
+        symbolic
+            .factorize_numeric_llt::<f64>(
+                &mut entries,
+                self.matrix(values),
+                Side::Lower,
+                LltRegularization::default(),
+                par,
+                MemStack::new(&mut buffer),
+                Default::default(),
+            )
+            .map_err(|_| FactorError::NotPositive)?;
+        Ok(DirectFactor::Cholesky(entries))
+    }
+
+    /// How many entries a Cholesky factor has; zero where there is none.
+    pub fn factor_entries(&self) -> usize {
+        self.symbolic.as_ref().map_or(0, SymbolicCholesky::len_val)
+    }
+
+    /// The row of a coordinate, if it is free.
+    pub fn row_of(&self, vertex: usize, axis: usize) -> Option<usize> {
+        let row = self.rows[3 * vertex + axis];
+        (row != HELD).then_some(row as usize)
     }
 
     /// Factorises the assembled tangent plus `shift` times its diagonal.
@@ -249,24 +321,11 @@ impl DirectSystem {
                 Lu::try_new_with_symbolic(symbolic, matrix).map_err(|_| FactorError::Singular)?;
             return Ok(DirectFactor::General(Box::new(lu)));
         };
+        if positive {
+            return self.cholesky(symbolic, values);
+        }
         let mut entries = vec![0.0; symbolic.len_val()];
         let par = Par::Seq;
-        if positive {
-            let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(par, Default::default());
-            let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
-            symbolic
-                .factorize_numeric_llt::<f64>(
-                    &mut entries,
-                    matrix,
-                    Side::Lower,
-                    LltRegularization::default(),
-                    par,
-                    MemStack::new(&mut buffer),
-                    Default::default(),
-                )
-                .map_err(|_| FactorError::NotPositive)?;
-            return Ok(DirectFactor::Cholesky(entries));
-        }
         let scratch = symbolic.factorize_numeric_ldlt_scratch::<f64>(par, Default::default());
         let mut buffer = MemBuffer::try_new(scratch).map_err(|_| FactorError::Memory(0))?;
         symbolic

@@ -5,6 +5,7 @@
 //!   off, and arc length or volume control where a load has a limit.
 //! - [`adjoint()`] gives the derivative of a number that depends on the equilibrium, without solving for
 //!   it again.
+//! - [`Implicit`] moves a problem through time by implicit steps, while someone pulls at it.
 //! - [`Ensemble`] finds the equilibria of many variants of one lattice body at a time, one in each lane of
 //!   the processor.
 //!
@@ -41,6 +42,7 @@ mod control;
 mod direct;
 mod ensemble;
 mod equilibrium;
+mod implicit;
 mod iterative;
 mod multigrid;
 mod ordering;
@@ -52,6 +54,7 @@ mod volume;
 
 pub use adjoint::{AdjointError, adjoint};
 pub use ensemble::{Ensemble, Settled, Variant};
+pub use implicit::{Implicit, ImplicitSettings};
 pub use path::solve;
 pub use settings::{
     Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,

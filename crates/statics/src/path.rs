@@ -111,6 +111,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
             }
         },
         factor: 0.0,
+        dead_factor: 0.0,
         reached: 0.0,
         residual: f64::INFINITY,
         iterations: 0,
@@ -144,6 +145,7 @@ impl Path<'_, '_> {
         Answer {
             status: ending.status,
             factor: self.point.pressure,
+            dead_factor: self.point.dead,
             reached: ending.reached,
             residual,
             iterations: self.equilibrium.iterations,

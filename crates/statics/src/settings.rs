@@ -1,6 +1,9 @@
 use std::ops::ControlFlow;
 
+use voxsoft_solid::Load;
 use voxsoft_solid::vector::Vec3;
+
+use crate::point::Point;
 
 /// How a load path is followed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +46,8 @@ pub struct Settings {
     pub tolerance: f64,
     /// Newton iterations for one step of the path; more than this and the step is cut.
     pub max_iterations: u32,
-    /// The first step, as a part of the full load. One tries all of it at once.
+    /// The first step, as a part of the full load, of which one tries all at once; with
+    /// [`Control::ArcLength`] the first arc, in twentieths of the body's size.
     pub first_step: f64,
     /// Steps below this part of the full load are not tried.
     pub least_step: f64,
@@ -110,6 +114,8 @@ pub struct Answer {
     pub status: Status,
     /// The factor on loads at `positions`: one if all of the load is carried.
     pub factor: f64,
+    /// The same on loads that are no pressure, which [`Control::Volume`] holds while pressures vary.
+    pub dead_factor: f64,
     /// How much of the way that was asked for lies behind: of the load, or with [`Control::Volume`] of
     /// the growth in volume. One at the end of it.
     pub reached: f64,
@@ -125,6 +131,17 @@ pub struct Answer {
     pub limit: Option<f64>,
     /// Whether the equilibrium at `positions` is stable.
     pub stable: bool,
+}
+
+impl Answer {
+    /// The factor on a load at the positions that were reached.
+    pub fn factor_of(&self, load: &Load) -> f64 {
+        let point = Point {
+            dead: self.dead_factor,
+            pressure: self.factor,
+        };
+        point.factor_of()(load)
+    }
 }
 
 /// What an observer is told.

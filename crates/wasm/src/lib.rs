@@ -1,9 +1,9 @@
 //! The core in a page: a scene opened, run and shown through plain exports.
 //!
 //! No generated glue: numbers go in as arguments, bytes through linear memory. `studio/src/engine/core.ts` is
-//! the typed side. Everything runs one constraint at a time with plain arithmetic, so that positions have
-//! the same bits as those of the native core's deterministic way (Ogden and Gent materials excepted,
-//! whose powers and logarithms are the platform's).
+//! the typed side. Explicit steps take one constraint at a time with plain arithmetic, so that positions have
+//! the same bits as those of the native core's deterministic way. Implicit steps, which bodies with hyperelastic
+//! voxels take, factorize with whatever the processor has, and agree to rounding.
 //!
 //! | export | what it does |
 //! |---|---|
@@ -15,6 +15,7 @@
 //! | `vx_notes(run) → length` | the writer's notes, UTF-8 |
 //! | `vx_vertices(run)`, `vx_loads(run)` | how many there are |
 //! | `vx_shown(run) → length` | the body vertices of the surface's points, u32 each |
+//! | `vx_implicit(run) → yes`, `vx_prefer_step(run, seconds)` | whether steps solve for their end, and how long they should be |
 //! | `vx_advance(run, substeps) → length` | takes substeps; the answer is [`STATS`] numbers f64: status (0 moving, 1 at rest, 2 diverged), time, substep, substeps, back-offs, residual, elastic, kinetic, vertex of the breakdown or −1 |
 //! | `vx_set_load(run, load, factor) → ok` | a load times its final value; NaN gives its history back |
 //! | `vx_grab(run, number, vertex, x, y, z, stiffness) → ok`, `vx_release(run, number) → ok` | hands |
@@ -30,16 +31,16 @@
 use std::cell::RefCell;
 
 use voxsoft_frames::{Display, Field, FrameHead};
-use voxsoft_scene::Scene;
+use voxsoft_scene::{Scene, stepper};
 use voxsoft_solid::vector::{norm, sub};
-use voxsoft_xpbd::{Live, LiveStatus};
+use voxsoft_solid::{LiveStatus, Method, Stepper};
 
 /// The numbers that `vx_advance` answers with.
 pub const STATS: usize = 9;
 
 /// An open scene.
 pub struct Run {
-    live: Live,
+    live: Box<dyn Stepper>,
     surface: Display,
     notes: String,
 }
@@ -76,7 +77,7 @@ impl Run {
         settings.deterministic = true;
         Ok(Self {
             surface: surface.map_err(|error| error.to_string())?,
-            live: Live::new(problem, settings),
+            live: stepper(problem, settings),
             notes: scene.notes,
         })
     }
@@ -206,6 +207,26 @@ pub unsafe extern "C" fn vx_advance(at: *mut Run, substeps: u32) -> usize {
         look.breakdown.map_or(-1.0, |b| b.vertex as f64),
     ];
     answer_numbers(&numbers)
+}
+
+/// Whether a step solves for its end, and may be as long as asked.
+///
+/// # Safety
+///
+/// An open run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn vx_implicit(at: *mut Run) -> bool {
+    unsafe { run(at) }.live.method() == Method::Implicit
+}
+
+/// Asks for steps of another length in s.
+///
+/// # Safety
+///
+/// An open run.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn vx_prefer_step(at: *mut Run, seconds: f64) {
+    unsafe { run(at) }.live.prefer_step(seconds);
 }
 
 /// Makes a load `factor` times its final value; NaN gives its history back.

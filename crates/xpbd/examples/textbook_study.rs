@@ -34,7 +34,7 @@ use voxsoft_xpbd::{Relaxation, Status, relax};
 const SIDE: f64 = 5e-3;
 /// In Pa.
 const PRESSURE: f64 = 4e3;
-/// Edge and bulk modulus in Pa and density in kg/m³ of the card `ecoflex-00-30`.
+/// Edge and bulk modulus in Pa and density in kg/m³ of the card `ecoflex-00-30-lattice`.
 const MATERIAL: [f64; 3] = [23.6e3, 2e3, 1070.0];
 /// Largest error of a rise.
 const WITHIN: f64 = 1e-3;

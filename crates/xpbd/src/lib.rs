@@ -31,6 +31,7 @@ mod slots;
 mod stiffness;
 mod viscosity;
 
-pub use dynamics::{Damping, Dynamics, Grab, Live, LiveStatus, Look, simulate};
-pub use outcome::{Answer, Breakdown, Progress, Status};
+pub use dynamics::{Dynamics, Live, simulate};
+pub use outcome::{Answer, Progress, Status};
 pub use relaxation::{Relaxation, Trial, relax};
+pub use voxsoft_solid::Damping;

@@ -1,7 +1,6 @@
 use std::ops::ControlFlow;
 
-use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Problem, State};
+use voxsoft_solid::{Breakdown, State};
 
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,17 +17,6 @@ pub enum Status {
     Diverged,
     /// The observer asked to stop.
     Cancelled,
-}
-
-/// Where and when a run broke down.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Breakdown {
-    /// The vertex that went farthest or lost its number.
-    pub vertex: usize,
-    /// Its position at rest in m.
-    pub rest: Vec3,
-    /// The time in s (dynamics) or the number of steps (relaxation).
-    pub when: f64,
 }
 
 /// The answer of a run: the last good state and how it was reached.
@@ -72,52 +60,3 @@ pub(crate) const MAX_BACK_OFFS: u32 = 10;
 /// A residual this many times the loads and reactions is no motion that they could cause. Unstable
 /// steps pass 1e3 within a few dozen steps; the sound transients in the tests stay under 10.
 pub(crate) const BLOW_UP_EXCESS: f64 = 300.0;
-
-/// How far a vertex may go from its rest position, in body sizes beyond the clamps' own motion.
-const BLOW_UP_SIZES: f64 = 10.0;
-
-/// The farthest distance in m that a vertex may sensibly travel.
-pub(crate) fn travel_limit(problem: &Problem) -> f64 {
-    let body = problem.body();
-    let clamps = problem.clamps().iter().flat_map(|clamp| {
-        clamp.vertices.iter().map(|&vertex| {
-            let rest = body.rest()[vertex as usize];
-            norm(sub(clamp.target(rest, f64::INFINITY, 1.0), rest))
-        })
-    });
-    BLOW_UP_SIZES * body.size() + clamps.fold(0.0, f64::max)
-}
-
-/// The first vertex that is not a number or has gone past `limit`.
-pub(crate) fn find_breakdown(
-    problem: &Problem,
-    positions: &[Vec3],
-    limit: f64,
-    when: f64,
-) -> Option<Breakdown> {
-    let rest = problem.body().rest();
-    let beyond = |vertex: &usize| {
-        let distance = norm(sub(positions[*vertex], rest[*vertex]));
-        distance.is_nan() || distance > limit
-    };
-    let vertex = (0..positions.len()).find(beyond)?;
-    Some(Breakdown {
-        vertex,
-        rest: rest[vertex],
-        when,
-    })
-}
-
-/// The vertex that has gone farthest, for a run that blew up without leaving the limits.
-pub(crate) fn farthest(problem: &Problem, positions: &[Vec3], when: f64) -> Breakdown {
-    let rest = problem.body().rest();
-    let distance = |vertex: usize| norm(sub(positions[vertex], rest[vertex]));
-    let vertex = (0..positions.len())
-        .max_by(|&a, &b| distance(a).total_cmp(&distance(b)))
-        .unwrap_or(0);
-    Breakdown {
-        vertex,
-        rest: rest[vertex],
-        when,
-    }
-}

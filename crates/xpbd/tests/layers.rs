@@ -9,7 +9,7 @@ use common::{GRAVITY, block, relax, simulate, tip, where_};
 use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, sub};
 use voxsoft_solid::{
     Body, Clamp, HyperelasticMaterial, LatticeMaterial, Load, LoadKind, Material, Membrane,
-    MembraneMaterial, Mesh, Problem, State, elastic,
+    MembraneMaterial, Mesh, Problem, State, Stepper, elastic,
 };
 use voxsoft_xpbd::{Damping, Dynamics, Live, Relaxation, Status};
 

@@ -6,10 +6,10 @@ use common::{GRAVITY, beam, block, problem, simulate, where_};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::vector::{norm, sub};
 use voxsoft_solid::{
-    Body, Clamp, Filling, Floor, History, HyperelasticMaterial, Load, LoadKind, Mesh, Model,
-    Problem,
+    Body, Clamp, Filling, Floor, History, HyperelasticMaterial, LiveStatus, Load, LoadKind, Look,
+    Mesh, Model, Problem, Stepper,
 };
-use voxsoft_xpbd::{Damping, Dynamics, Live, LiveStatus, Look, Status};
+use voxsoft_xpbd::{Damping, Dynamics, Live, Status};
 
 /// A short beam of lattice voxels that sags.
 fn stub() -> Problem {

@@ -4,7 +4,8 @@ Examples
 --------
 >>> from voxsoft.design import families
 >>> table = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75"
->>> experiment = Experiment(families.beam(), read_measurement(table))
+>>> beam = families.beam().with_values("parts.0.material=ecoflex-00-30-lattice")
+>>> experiment = Experiment(beam, read_measurement(table))
 >>> found = calibrate(experiment, parameters={"edge": ("5 kPa", "80 kPa")}, generations=3)
 >>> found.identifiable
 {'edge': True}

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import metrics
+from voxsoft._shown import Shown
 from voxsoft.calibration.line import LineName, StationLine
 from voxsoft.calibration.measurement import Measurement
 from voxsoft.design import Design, Gravity, Probe
 from voxsoft.errors import MeasurementError
+from voxsoft.geometry import mean_displacement
 from voxsoft.materials import Material
 from voxsoft.records import closest
 from voxsoft.simulation import Place, Setup
@@ -26,8 +28,8 @@ _FARTHEST = 2.0
 _NEAREST = 0.02
 
 
-@dataclass(frozen=True, eq=False)
-class Experiment:
+@dataclass(frozen=True, eq=False, repr=False)
+class Experiment(Shown):
     """A design together with a measurement of the body it describes.
 
     Parameters
@@ -69,6 +71,9 @@ class Experiment:
     def __post_init__(self) -> None:
         _ = self.material, self.places
         self._check_size()
+
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.name}: {len(self.measurement)} stations of the design {self.design.name}"
 
     @property
     def name(self) -> str:
@@ -180,7 +185,7 @@ class Experiment:
         rest = self.setup.mesh.vertices
         moved = np.array(
             [
-                metrics.mean_displacement(rest, positions, place.vertices, place.weights)
+                mean_displacement(rest, positions, place.vertices, place.weights)
                 for place in self.places
             ]
         )

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from voxsoft._shown import Shown, counted
 from voxsoft.errors import MeasurementError
 
 #: What can be measured at a station: positions relative to the clamp face, and displacements.
 QUANTITIES: Final = ("x", "y", "z", "dx", "dy", "dz")
 
 
-@dataclass(frozen=True, eq=False)
-class Measurement:
+@dataclass(frozen=True, eq=False, repr=False)
+class Measurement(Shown):
     """Measured positions or displacements at stations of one body at rest.
 
     Parameters
@@ -108,6 +110,10 @@ seen
 
         return load_measurement(path, select=select)
 
+    def _lines(self) -> Iterator[str]:
+        stations = counted(len(self), "station")
+        yield f"{self.name}: {', '.join(self.quantities)} at {stations}"
+
     def __len__(self) -> int:
         """Count the stations."""
         return len(self.values)
@@ -138,8 +144,8 @@ seen
         if self.values.shape != (count, len(self.quantities)) or count == 0:
             raise MeasurementError(
                 self.name,
-                f"has numbers of the shape {self.values.shape}; a row for each of the {count} "
-                f"stations and a column for each of the {len(self.quantities)} quantities is due",
+                f"has numbers of the shape {self.values.shape}; expected {count} rows, one for "
+                f"each station, and {len(self.quantities)} columns, one for each quantity",
             )
         self._check_stations()
         for station, row in zip(self.station_names, self.values, strict=True):

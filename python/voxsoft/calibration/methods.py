@@ -12,6 +12,7 @@ from voxsoft.calibration.descent import descend
 from voxsoft.calibration.misfit import Evaluation, Misfit
 from voxsoft.errors import StudyError
 from voxsoft.search import Genetic
+from voxsoft.search.samplers import SAMPLERS
 
 #: One generation of candidates, evaluated.
 Batch = Sequence[Evaluation]
@@ -43,12 +44,9 @@ def method_named(name: str) -> Method:
     if name in _METHODS:
         return _METHODS[name]
     from voxsoft.records import closest
-    from voxsoft.search.samplers import SAMPLERS
 
-    # A grid needs a step, which a modulus does not have.
-    known = [*_METHODS, *(sampler for sampler in SAMPLERS if sampler not in (*_METHODS, "grid"))]
-    if name not in known:
-        raise StudyError("method", f'"{name}" is not known', closest(name, known))
+    if name not in METHODS:
+        raise StudyError("method", f'"{name}" is not known', closest(name, METHODS))
 
     def search(misfit: Misfit, generations: int, population: int, seed: int) -> Iterator[Batch]:
         return _optuna(misfit, generations, population, seed, sampler=name)
@@ -118,6 +116,9 @@ _METHODS: Final[dict[str, Method]] = {
     "gradient": descend,
     "cma-es": _cma_es,
 }
+
+#: What can be named. A grid needs a step, which a modulus does not have.
+METHODS: Final = (*_METHODS, *(name for name in SAMPLERS if name not in (*_METHODS, "grid")))
 
 
 def errors_of(batch: Batch) -> NDArray[np.float64]:

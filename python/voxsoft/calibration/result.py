@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft._shown import Shown, counted, rounded
 from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.identifiability import Profile
 from voxsoft.calibration.misfit import Comparison
@@ -113,8 +114,8 @@ class Fit:
         }
 
 
-@dataclass(frozen=True)
-class Calibration:
+@dataclass(frozen=True, repr=False)
+class Calibration(Shown):
     """A material fitted to experiments.
 
     Attributes
@@ -160,6 +161,13 @@ class Calibration:
     method: str
     seed: int
     settings: Mapping[str, Any]
+
+    def _lines(self) -> Iterator[str]:
+        error = format_quantity(rounded(self.mean_error), "length")
+        tried = counted(self.evaluations, "candidate")
+        yield f"{self.material.model}: mean error {error} after {tried} ({self.method})"
+        for name, value in self.parameters.items():
+            yield f"{name} {format_quantity(rounded(value), self.kinds[name])}"
 
     @property
     def mean_error(self) -> float:

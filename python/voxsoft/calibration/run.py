@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Literal
+from typing import Final, Literal
 
 import numpy as np
 
@@ -20,6 +20,11 @@ from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
 from voxsoft.calibration.space import Bounds, Space
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.materials import Hyperelastic, Material
+from voxsoft.simulation.ways import check_settings_of
+
+#: What of an experiment's solver counts, and why nothing else does.
+_USED: Final = frozenset({"refine"})
+_SOLVES: Final = "calibrations, which bring every candidate to rest with settings of their own"
 
 
 @dataclass(frozen=True)
@@ -140,7 +145,8 @@ def calibrate(
     >>> from voxsoft.calibration import Measurement
     >>> from voxsoft.design import families
     >>> seen = Measurement(quantities=["dz"], values=[[-0.030], [-0.070]], arcs=[0.04, 0.08])
-    >>> experiment = Experiment(families.beam(), seen)
+    >>> beam = families.beam().with_values("parts.0.material=ecoflex-00-30-lattice")
+    >>> experiment = Experiment(beam, seen)
     >>> found = calibrate(
     ...     experiment, "cma-es", parameters={"edge": ("5 kPa", "50 kPa")},
     ...     generations=5, population=6, identify=False,
@@ -150,6 +156,8 @@ def calibrate(
     """
     chosen = [experiments] if isinstance(experiments, Experiment) else list(experiments)
     space = Space.of(parameters, _material_of(chosen))
+    for experiment in chosen:
+        check_settings_of(experiment.design, _USED, _SOLVES)
     _check_counts(chosen, space, free_scale, generations, population)
     search = method_named(method)
     statics = method == "gradient" or isinstance(space.base, Hyperelastic)

@@ -21,7 +21,8 @@ from voxsoft.cli.study import optimize, sweep
 app = typer.Typer(
     name="voxsoft",
     help="Describe, mesh, simulate, calibrate and optimise soft robots.",
-    epilog="Exit codes: 0 done, 2 wrong call, 3 invalid input, 4 not at rest, 130 interrupted.",
+    epilog="Exit codes: 0 done, 2 wrong call, 3 invalid input, 4 not at rest, 5 the machine failed "
+    "(disk, memory), 130 interrupted.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_show_locals=False,

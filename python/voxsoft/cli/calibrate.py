@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from voxsoft._folders import folder_name
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Seed, Sets, Workers
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
@@ -69,7 +70,7 @@ def calibrate(
                 seed=seed,
                 progress=lambda event: bar.advance_to(*_standing(event, generations)),
             )
-        folder = out or Path("runs") / f"{loaded.name}-calibration"
+        folder = out or Path("runs") / f"{folder_name(loaded.name)}-calibration"
         written = files.write_calibration(answer, folder, name or _card_name(material, data[0]))
         if json:
             print_json(answer.summary() | {"folder": str(folder)})

@@ -19,7 +19,9 @@ def check(
     source: Annotated[
         Path,
         typer.Argument(
-            help="A design file, or a mesh: .stl .obj .ply .vtk .vtu.", exists=True, dir_okay=False
+            help="A design file, or a mesh: .stl .obj .ply .off ...",
+            exists=True,
+            dir_okay=False,
         ),
     ],
     sets: Sets = None,
@@ -72,8 +74,11 @@ def _show_body(report: CheckReport) -> None:
     )
     for index, cavity in enumerate(report.cavities):
         volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")
-        say(f"cavity {index}: {volume}, walls of {area}")
+        name = report.chambers[index] if index < len(report.chambers) else ""
+        called = f"chamber {name}" if name else f"cavity {index}"
+        say(f"{plain(called)}: {volume}, walls of {area}")
     if report.thinnest_wall:
         plural = "s" if report.thinnest_wall > 1 else ""
         say(f"thinnest wall: {report.thinnest_wall} voxel{plural}")
-    say(f"one run to rest: about {report.seconds:.2g} s and {report.memory / 1e6:.3g} MB")
+    took = "" if report.cost is None else f"{report.cost.sentence}; "
+    say(f"one run: {took}{report.memory / 1e6:.3g} MB")

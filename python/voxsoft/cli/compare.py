@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from voxsoft._folders import folder_name
 from voxsoft.cli.exits import NOT_AT_REST, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, say, show_table
@@ -82,7 +83,7 @@ def compare(
                 time_limit=time_limit,
                 progress=lambda label, done, total: bar.advance_to(100 * done // total, label),
             )
-        name = f"{loaded.name}-{loaded.hash[:8]}-comparison.html"
+        name = f"{folder_name(loaded.name)}-{loaded.hash[:8]}-comparison.html"
         target = output or Path("runs") / name
         target.parent.mkdir(parents=True, exist_ok=True)
         files.write_comparison(found, target)
@@ -143,6 +144,8 @@ def _show(found: Comparison, target: Path) -> None:
             if errors is not None:
                 mean, most = (in_words(float(e), "length") for e in (errors.mean(), errors.max()))
                 say(plain(f"{judged.name}, {run.label}: mean error {mean}, largest {most}"))
+    for warning in found.warnings:
+        say(f"[yellow]warning:[/yellow] {plain(str(warning))}")
     if found.note:
         say(f"[yellow]note:[/yellow] {plain(found.note)}")
     say(f"wrote {plain(str(target))}")

@@ -11,18 +11,54 @@ from typing import Any, Final
 import typer
 
 from voxsoft.cli.output import plain, print_json, say
-from voxsoft.errors import MissingPackageError, StudyError, VoxSoftError
+from voxsoft.errors import (
+    MissingPackageError,
+    OutputError,
+    OutsideCodeError,
+    StudyError,
+    VoxSoftError,
+)
 
 OK: Final = 0
 USAGE: Final = 2
 INVALID: Final = 3
 NOT_AT_REST: Final = 4
+FAILED: Final = 5
 INTERRUPTED: Final = 130
 
+#: The codes of all commands, as the documentation has them.
+MEANINGS: Final = {
+    OK: "done",
+    USAGE: "the command was used in a wrong way, or needs a package that is not installed",
+    INVALID: "the design, mesh or data is not valid; nothing was solved",
+    NOT_AT_REST: "the run did not come to rest, or diverged",
+    FAILED: "the machine failed: a file cannot be written, memory is short, a storage or an "
+    "outside code does not answer; what was finished is kept",
+    INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
+}
 
-def exit_code(error: VoxSoftError) -> int:
-    """2 where the call is off (a missing package, a study folder of another study), else 3."""
-    return USAGE if isinstance(error, (MissingPackageError, StudyError)) else INVALID
+#: By the kind of error, the first that fits; INVALID for all others.
+_CODES: Final[tuple[tuple[type[BaseException], int], ...]] = (
+    (OutputError, FAILED),
+    (OutsideCodeError, FAILED),
+    (MissingPackageError, USAGE),
+    (StudyError, USAGE),
+    (VoxSoftError, INVALID),
+    (OSError, FAILED),
+    (MemoryError, FAILED),
+)
+
+
+def exit_code(error: BaseException) -> int:
+    """The code of an error, whatever the command.
+
+    Examples
+    --------
+    >>> from voxsoft.errors import DesignError
+    >>> exit_code(OutputError("a.vtu", "no room")), exit_code(DesignError("wall", "is negative"))
+    (5, 3)
+    """
+    return next(code for kind, code in _CODES if isinstance(error, kind))
 
 
 def problems_of(error: VoxSoftError) -> list[dict[str, str]]:
@@ -47,10 +83,7 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
     try:
         yield
     except VoxSoftError as error:
-        say(f"[red]error:[/red] {plain(str(error))}")
-        if json:
-            print_json({"status": "failed", **(invalid or {}), "problems": problems_of(error)})
-        raise typer.Exit(exit_code(error)) from None
+        raise _leave(error, json, invalid) from None
     except KeyboardInterrupt as interrupt:
         say(plain(str(interrupt)) or "stopped; files that were written before are kept")
         raise typer.Exit(INTERRUPTED) from None
@@ -58,3 +91,17 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
         # The reader of a pipe went away (`| head`). Python would complain once more at its end.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise typer.Exit(OK) from None
+    except MemoryError as error:
+        told = OutputError("memory", "is short", "make the voxels larger, or start fewer workers")
+        raise _leave(told, json, invalid) from error
+    except OSError as error:
+        told = OutputError(str(error.filename or "a file"), error.strerror or str(error))
+        raise _leave(told, json, invalid) from error
+
+
+def _leave(error: VoxSoftError, json: bool, invalid: dict[str, Any] | None) -> typer.Exit:
+    """Tell of an error, and return what ends the program."""
+    say(f"[red]error:[/red] {plain(str(error))}")
+    if json:
+        print_json({"status": "failed", **(invalid or {}), "problems": problems_of(error)})
+    return typer.Exit(exit_code(error))

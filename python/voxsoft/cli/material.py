@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
+from voxsoft._folders import folder_name
 from voxsoft.cli.exits import errors_in_words
 from voxsoft.cli.options import Json
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
@@ -112,7 +113,7 @@ def fit(
         )
         chosen = name or _card_name(curves[0].name)
         card = answer.card(chosen, model, source=source)
-        folder = out or Path("runs") / f"{chosen}-material"
+        folder = out or Path("runs") / f"{folder_name(chosen, 'card')}-material"
         written = write_coupon_fit(answer, card, folder)
         if json:
             print_json(answer.summary() | {"card": str(written[0]), "folder": str(folder)})
@@ -130,8 +131,9 @@ def list_cards(json: Json = False) -> None:
     if json:
         print_json({"cards": [_summary(card) for card in cards]})
         return
-    rows = [_row(card) for card in cards]
-    columns = ["card", "model", "initial E", "break"]
+    stood_for = [card.same_as for card in cards]
+    rows = [_row(card) for card in cards if card.name not in stood_for]
+    columns = ["card", "model", "initial E", "break", "stands for"]
     show_table("Materials", columns, rows)
     say("voxsoft material show CARD says where the numbers come from")
 
@@ -238,6 +240,7 @@ def _row(card: Card) -> list[str]:
         card.material.model,
         quantity(_moduli(card.material)[0], "modulus"),
         "" if broken is None else f"{broken:.0%}",
+        card.same_as.removeprefix(card.name),
     ]
 
 
@@ -246,6 +249,8 @@ def _summary(card: Card) -> dict[str, Any]:
     return {
         "name": card.name,
         "title": card.title,
+        "same_as": card.same_as,
+        "choice": card.choice,
         "material": card.material.model_dump(by_alias=True),
         "young": young,
         "poisson": poisson,

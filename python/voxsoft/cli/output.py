@@ -18,7 +18,8 @@ def console() -> Console:
     """The console for people, for tables and progress bars."""
     from rich.console import Console
 
-    return Console(stderr=True, highlight=False)
+    # No emoji: names such as `:x:` are shown as they are.
+    return Console(stderr=True, highlight=False, emoji=False)
 
 
 def say(message: str) -> None:
@@ -46,15 +47,21 @@ def print_json(value: Mapping[str, Any]) -> None:
     sys.stdout.flush()
 
 
-def show_table(title: str, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Write a table for people: the first column left, the others right."""
+def show_table(
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    doubtful: Sequence[bool] = (),
+) -> None:
+    """Write a table for people: the first column left, the others right, doubtful rows yellow."""
     from rich.table import Table
 
     table = Table(title=plain(title), title_justify="left", title_style="bold")
     for index, column in enumerate(columns):
         table.add_column(plain(column), justify="left" if index == 0 else "right")
-    for row in rows:
-        table.add_row(*map(plain, row))
+    for index, row in enumerate(rows):
+        doubt = index < len(doubtful) and doubtful[index]
+        table.add_row(*map(plain, row), style="yellow" if doubt else None)
     console().print(table)
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from voxsoft._folders import folder_name
 from voxsoft.cli.exits import NOT_AT_REST, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
@@ -16,7 +17,10 @@ from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 if TYPE_CHECKING:
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.design import Solver
-    from voxsoft.simulation import Result
+    from voxsoft.simulation import Diagnostic, Result
+
+
+_METHODS = "auto, statics or xpbd; default: as the design says, else auto."
 
 
 def run(
@@ -26,7 +30,7 @@ def run(
         Path | None,
         typer.Option("--out", "-o", help="Run folder; default: runs/NAME-HASH."),
     ] = None,
-    solver: Annotated[str | None, typer.Option("--solver", help="xpbd (default).")] = None,
+    solver: Annotated[str | None, typer.Option("--solver", help=_METHODS)] = None,
     figure: Annotated[
         bool, typer.Option("--figure", help="Also draw the deformed body, as body.png.")
     ] = False,
@@ -46,7 +50,7 @@ def run(
         with ProgressBar("percent", 100, transient=True) as bar:
             tell = _percent(bar, loaded.solver)
             result = simulate(loaded, progress=tell, **changes)
-        folder = out or Path("runs") / f"{loaded.name}-{loaded.hash[:8]}"
+        folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
         files.write_run(result, folder)
         if figure:
             from voxsoft.files.figures import save_figure
@@ -84,9 +88,11 @@ def _percent(bar: ProgressBar, solver: Solver) -> Callable[[int, float, float], 
 
 
 def _show(result: Result, folder: Path) -> None:
+    from voxsoft.design.chamber import name_of_cavity
     from voxsoft.metrics import METRICS
 
-    color = "green" if result.status == "ok" else "red"
+    spoiled = any(found.severity == "error" for found in result.warnings)
+    color = "red" if result.status != "ok" or spoiled else "yellow" if result.warnings else "green"
     say(f"[{color}]{result.status}[/{color}]: {plain(result.message)}")
     if result.probes:
         rows = (
@@ -98,11 +104,46 @@ def _show(result: Result, folder: Path) -> None:
         zip(result.cavity_volumes, result.mesh.cavities, strict=True)
     ):
         before = quantity(float(cavity.volume), "volume")
-        say(f"cavity {index}: {before} grew to {quantity(now, 'volume')}")
+        name = plain(name_of_cavity(result.mesh, index))
+        say(f"{name}: {before} grew to {quantity(now, 'volume')}")
     design = result.design
     metrics = {name: objective.metric for name, objective in design.objectives.items()}
     metrics |= {name: constraint.metric for name, constraint in design.constraints.items()}
     for name, metric in metrics.items():
-        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric])}")
+        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}")
+    say(_stress_line(result))
+    say(_stretch_line(result))
+    for found in result.warnings:
+        shade = "red" if found.severity == "error" else "yellow"
+        say(f"[{shade}]{found.severity}[/{shade}]: {plain(str(found))}{_place(found)}")
     say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s")
     say(f"wrote {plain(str(folder))}")
+
+
+def _stress_line(result: Result) -> str:
+    largest, most = (
+        quantity(result.fields.percentile("von_mises", p), "pressure") for p in (100, 99)
+    )
+    return f"von Mises stress: up to {largest}; 99 % of the volume up to {most}"
+
+
+def _stretch_line(result: Result) -> str:
+    from voxsoft.simulation.tested_range import tested_ranges
+
+    fields = result.fields
+    line = (
+        f"stretch: up to {fields.percentile('max_stretch'):.3g}; "
+        f"99 % of the volume up to {fields.percentile('max_stretch', 99):.3g}"
+    )
+    known = filter(None, tested_ranges(result.design))
+    limits = dict.fromkeys(f"{tested.largest:g}" for tested in known)
+    return f"{line}; tested to {', '.join(limits)}" if limits else line
+
+
+def _place(found: Diagnostic) -> str:
+    """Where it is, unless its text says so."""
+    from voxsoft.simulation.diagnostic import near
+
+    if found.at is None or "near (" in found.what:
+        return ""
+    return f" ({near(found.at)})"

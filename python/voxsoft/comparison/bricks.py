@@ -235,8 +235,7 @@ class BrickModel:
                 down = np.asarray(load.direction) / np.linalg.norm(load.direction)
                 gravity += factor * load.value * down
             elif isinstance(load, Pressure):
-                chosen = mesh.cavities if load.cavity == "all" else [mesh.cavities[load.cavity]]
-                for cavity in chosen:
+                for cavity in setup.pressurized(load, f"loads[{index}]"):
                     faces = grid.split_faces(cavity.triangles, self.split)
                     pressures.append(FacePressure(faces, factor * load.value))
             elif isinstance(load, Force):

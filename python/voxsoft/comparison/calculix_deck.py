@@ -54,7 +54,8 @@ def calculix_deck(model: BrickModel, element: Element = "C3D20R") -> str:
     >>> from voxsoft.comparison.bricks import BrickModel
     >>> from voxsoft.design import families
     >>> from voxsoft.simulation import Setup
-    >>> calculix_deck(BrickModel.of(Setup.of(families.beam())))
+    >>> springs = families.beam().with_values("parts.0.material=ecoflex-00-30-lattice")
+    >>> calculix_deck(BrickModel.of(Setup.of(springs)))
     Traceback (most recent call last):
     ...
     voxsoft.errors.SimulationError: parts[0].material: CalculiX has no "lattice" material. Try: \

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple, Self
@@ -10,11 +10,12 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import Shown, counted
 from voxsoft.calibration import Experiment
 from voxsoft.comparison.quantities import Quantities, Quantity
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Design
-from voxsoft.simulation import Result
+from voxsoft.simulation import Diagnostic, Result
 
 Floats = NDArray[np.float64]
 
@@ -110,8 +111,8 @@ class Judged:
         )
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Shown):
     """What :func:`voxsoft.compare` found.
 
     Attributes
@@ -128,6 +129,8 @@ class Comparison:
         The measurements.
     note
         What is missing, if anything.
+    warnings
+        Why an estimate may say too little, and what of the design was not used.
     """
 
     design: Design
@@ -136,6 +139,16 @@ class Comparison:
     outside: str
     measured: tuple[Judged, ...] = ()
     note: str = ""
+    warnings: tuple[Diagnostic, ...] = ()
+
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.design.name}: {counted(len(self.runs), 'run')}"
+        for run in self.runs:
+            yield f"{run.label}: {run.status}, {run.message}"
+        if self.note:
+            yield self.note
+        for warning in self.warnings:
+            yield f"warning: {warning}"
 
     @property
     def base(self) -> Run:
@@ -285,6 +298,7 @@ class Comparison:
             "solver": self.solver,
             "outside": self.outside or None,
             "note": self.note,
+            "warnings": [warning.summary() for warning in self.warnings],
             "runs": [self._run(run) for run in self.runs],
             "estimates": [
                 {

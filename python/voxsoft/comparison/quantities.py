@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import metrics
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.outside import OutsideAnswer
+from voxsoft.design.chamber import name_of_cavity
+from voxsoft.geometry import mean_displacement, mean_rotation
 from voxsoft.simulation import Result, Setup
 from voxsoft.units import format_quantity
 
@@ -76,11 +77,11 @@ def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantiti
     found: dict[str, Quantity] = {}
     rest = setup.mesh.vertices
     for name, place in setup.places.items():
-        moved = metrics.mean_displacement(rest, positions, place.vertices, place.weights)
+        moved = mean_displacement(rest, positions, place.vertices, place.weights)
         found |= _components(name, moved, "length")
         flat = np.ptp(rest[place.vertices], axis=0)
         if np.count_nonzero(flat > 0) > 1 and setup.design.probes[name].point is None:
-            turned = metrics.mean_rotation(rest, positions, place.vertices)
+            turned = mean_rotation(rest, positions, place.vertices)
             found[f"{name} rotation"] = Quantity(turned, "angle", abs(turned), _LEAST_TURN)
     for index, forces in enumerate(held):
         name = "reaction" if len(held) == 1 else f"reaction of clamp {index}"
@@ -90,7 +91,8 @@ def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantiti
     for index, cavity in enumerate(setup.mesh.cavities):
         volume = cavity.volume_at(positions)
         grown = volume - cavity.volume
-        found[f"growth of cavity {index}"] = Quantity(grown, "volume", abs(grown))
+        name = f"growth of {name_of_cavity(setup.mesh, index)}"
+        found[name] = Quantity(grown, "volume", abs(grown))
     return found
 
 

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Final, Literal
 
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.comparison.bricks import BrickModel
+from voxsoft.comparison.cautions import cautions_of
 from voxsoft.comparison.comparison import Comparison, Judged, Run
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
-from voxsoft.design import Design, Solver
+from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
-from voxsoft.simulation import Result, Setup, simulate
-from voxsoft.units import format_quantity
+from voxsoft.simulation import Diagnostic, Result, Setup, simulate
+from voxsoft.simulation.ways import given_settings
+from voxsoft.units import format_quantity, si_value
 
 #: An outside code: the first that is installed, one by name, or none.
 Outside = Literal["auto", "calculix", "scikit-fem", "none"]
@@ -28,6 +30,9 @@ DEFAULT_SOLVERS: Final = ("xpbd", "statics")
 DEFAULT_TIME_LIMIT: Final = 300.0
 DEFAULT_SPLITS: Final = (1, 2)
 
+#: Of a design's solver; a comparison names its methods itself.
+_USED: Final = frozenset({"method", "refine"})
+
 #: Called before each run with its label, how many runs are done, and how many there are.
 ProgressCallback = Callable[[str, int, int], None]
 
@@ -37,10 +42,10 @@ def compare(
     *,
     solvers: Sequence[str] = DEFAULT_SOLVERS,
     outside: Outside = "auto",
-    voxel_sizes: Sequence[float] | None = None,
+    voxel_sizes: Iterable[float | str] | None = None,
     splits: Sequence[int] = DEFAULT_SPLITS,
     measured: Sequence[Measurement] = (),
-    time_limit: float = DEFAULT_TIME_LIMIT,
+    time_limit: float | str = DEFAULT_TIME_LIMIT,
     progress: ProgressCallback | None = None,
 ) -> Comparison:
     """Solve a design in several ways, and estimate how far each is from the truth.
@@ -54,21 +59,22 @@ def compare(
     Parameters
     ----------
     design
-        What to compare, as it comes to rest: of its own choices about the solver, `refine` counts.
+        What to compare, as it comes to rest: of its own choices about the solver, `refine` counts;
+        others are named in :attr:`Comparison.warnings`.
     solvers
         Of our own, ``"xpbd"`` and ``"statics"``; the estimates are for the last.
     outside
         ``"calculix"``, ``"scikit-fem"``, ``"auto"`` (the first of the two that is installed;
         default), or ``"none"``.
     voxel_sizes
-        Sizes of voxels in m that the last solver answers on besides the design's own; default: one
-        half as large. An empty list for none.
+        Sizes of voxels, in m or with their unit, that the last solver answers on besides the
+        design's own; default: one half as large. An empty list for none.
     splits
         Bricks along the edge of a voxel, rising; default 1 and 2.
     measured
         Measurements of the real body.
     time_limit
-        Seconds that each run may take.
+        Time that each run may take, in s or with its unit.
     progress
         Called before each run with its label, how many are done and how many there are.
 
@@ -87,13 +93,16 @@ def compare(
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> beam = families.beam().model_copy(update={"voxel_size": 10e-3})
+    >>> beam = families.beam().replace(voxel_size=10e-3)
     >>> found = compare(beam, solvers=["xpbd"], outside="none", voxel_sizes=[5e-3], splits=[1])
     >>> [run.label for run in found.runs]
     ['xpbd, 10 mm', 'xpbd, 5 mm']
     >>> found.estimates[0].runs
     ('xpbd, 10 mm', 'xpbd, 5 mm')
     """
+    require_design(design)
+    limit = si_value(time_limit, "time", "time_limit", positive=True)
+    splits = [int(split) for split in splits]
     if not solvers:
         raise SimulationError("solvers", "names none", 'name "xpbd", "statics" or both')
     for method in solvers:
@@ -101,14 +110,16 @@ def compare(
     if list(splits) != sorted(set(splits)) or not splits or splits[0] < 1:
         raise SimulationError("splits", "do not rise from 1", "write 1,2 or 1,2,3")
     code = _outside(outside)
-    plain = design.model_copy(update={"solver": Solver()})
+    plain = design.replace(solver=Solver())
     refine = design.solver.refine
     base = Setup.of(plain, may_fly=False, refine=refine)
     experiments = [Experiment(plain, measurement) for measurement in measured]
-    sizes = [design.voxel_size / 2] if voxel_sizes is None else list(voxel_sizes)
-    tasks = list(
-        _tasks(plain, base, tuple(solvers), code, sizes, tuple(splits), time_limit, refine)
+    sizes = (
+        [design.voxel_size / 2]
+        if voxel_sizes is None
+        else [si_value(size, "length", "voxel_sizes", positive=True) for size in voxel_sizes]
     )
+    tasks = list(_tasks(plain, base, tuple(solvers), code, sizes, tuple(splits), limit, refine))
     runs: list[Run] = []
     for index, task in enumerate(tasks):
         if progress is not None:
@@ -116,12 +127,20 @@ def compare(
         runs.append(_run(task, design.voxel_size, experiments))
     note = "" if code or outside == "none" else _NO_OUTSIDE
     judged = tuple(Judged.of(experiment) for experiment in experiments)
-    return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note)
+    warnings = (*_unused(design), *cautions_of(design, base.mesh))
+    return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note, warnings)
+
+
+def _unused(design: Design) -> Iterator[Diagnostic]:
+    for name in given_settings(design.solver):
+        if name not in _USED:
+            what = "is not used by comparisons, whose runs all go to rest"
+            yield Diagnostic("warning", f"solver.{name}", what, "leave it out of the design")
 
 
 _NO_OUTSIDE = (
     "no outside code is installed: apt install calculix-ccx (Debian, Ubuntu), or "
-    "pip install 'voxsoft[fea]' for the one with scikit-fem"
+    "pip install scikit-fem for the one with scikit-fem"
 )
 
 
@@ -192,7 +211,7 @@ def _tasks(
             yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
     for size in sizes:
         if size != design.voxel_size:
-            other = design.model_copy(update={"voxel_size": size})
+            other = design.replace(voxel_size=size)
             setup = partial(Setup.of, other, may_fly=False, refine=refine)
             yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
     for split in splits if code else ():

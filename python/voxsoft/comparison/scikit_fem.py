@@ -102,7 +102,7 @@ def scikit_fem_version() -> str:
         return version("scikit-fem")
     except PackageNotFoundError as error:
         raise MissingPackageError(
-            "scikit-fem", "is not installed", "pip install 'voxsoft[fea]'"
+            "scikit-fem", "is not installed", "pip install scikit-fem"
         ) from error
 
 

@@ -1,6 +1,7 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
 from voxsoft.design.assignment import set_values
+from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
@@ -9,11 +10,13 @@ from voxsoft.design.model import Design
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.region import Probe, Region
+from voxsoft.design.require import require_design
 from voxsoft.design.solver import Solver
 from voxsoft.design.target import Constraint, Objective
 
 __all__ = [
     "AnyLoad",
+    "Chamber",
     "Clamp",
     "Constraint",
     "Design",
@@ -32,5 +35,6 @@ __all__ = [
     "Rotation",
     "Solver",
     "Traction",
+    "require_design",
     "set_values",
 ]

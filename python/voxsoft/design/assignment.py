@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Final
 
 from voxsoft.design.resolution import Document
 from voxsoft.errors import DesignError
-from voxsoft.records import closest
+from voxsoft.records import closest, steps_of
+
+#: A key, in which quoted names may hold "=", and what it is set to.
+_ASSIGNMENT: Final = re.compile(r"""((?:[^="']|"[^"]*"|'[^']*')+)=(.*)""", re.DOTALL)
 
 
 def set_values(document: Mapping[str, Any], assignments: Iterable[str]) -> Document:
@@ -22,8 +26,9 @@ def set_values(document: Mapping[str, Any], assignments: Iterable[str]) -> Docum
         A design document; it is not changed.
     assignments
         Texts ``key=value``. A bare name sets the parameter of that name, or else a top-level
-        key; a dotted path sets any key, with list indices as numbers, and makes tables that are
-        missing. The value is read as
+        key; a path as errors write it, ``parts[0].material``, or with dots alone,
+        ``parts.0.material``, sets any key and makes tables that are
+        missing; a name that holds dots or spaces stands in quotes. The value is read as
         TOML (a number, ``true``, a list, a quoted text) or, failing that, taken as text.
 
     Returns
@@ -39,16 +44,16 @@ def set_values(document: Mapping[str, Any], assignments: Iterable[str]) -> Docum
     Examples
     --------
     >>> document = {"parameters": {"radius": {"value": "5 mm"}}, "parts": [{"material": "a"}]}
-    >>> changed = set_values(document, ["radius=20 mm", "parts.0.material=b"])
+    >>> changed = set_values(document, ["radius=20 mm", "parts[0].material=b"])
     >>> changed["parameters"]["radius"]["value"], changed["parts"][0]["material"]
     ('20 mm', 'b')
     """
     changed = copy.deepcopy(dict(document))
     for assignment in assignments:
-        key, separator, text = assignment.partition("=")
-        if not separator or not key.strip():
+        found = _ASSIGNMENT.fullmatch(assignment)
+        if found is None or not steps_of(found[1]):
             raise DesignError(assignment, "is not an assignment", 'write "radius=20 mm"')
-        _assign(changed, key.strip(), _read_value(text.strip()))
+        _assign(changed, found[1].strip(), _read_value(found[2].strip()))
     return changed
 
 
@@ -71,30 +76,32 @@ def _assign(document: Document, key: str, value: object) -> None:
             parameters[key] = value
         return
     names = list(parameters) if isinstance(parameters, dict) else []
-    if "." not in key and key not in document and get_close_matches(key, names, n=1):
+    *path, last = steps_of(key)
+    if not path and last not in document and get_close_matches(key, names, n=1):
         raise DesignError(key, "is not a parameter of this design", closest(key, names))
-    *path, last = key.split(".")
     table = _descend(document, path, key)
     if isinstance(table, dict):
-        table[last] = value
+        table[str(last)] = value
     else:
         table[_index(table, last, key)] = value
 
 
-def _descend(document: Document, path: list[str], key: str) -> Any:  # noqa: ANN401
+def _descend(document: Document, path: list[str | int], key: str) -> Any:  # noqa: ANN401
     """Follow a path to a table or list, making tables that are not there yet."""
     here: Any = document
     for step in path:
-        here = (
-            here[_index(here, step, key)] if isinstance(here, list) else here.setdefault(step, {})
-        )
+        if isinstance(here, list):
+            here = here[_index(here, step, key)]
+        else:
+            here = here.setdefault(str(step), {})
         if not isinstance(here, (dict, list)):
             raise DesignError(key, f'"{step}" holds {here!r}, nothing below it can be set')
     return here
 
 
-def _index(items: list[Any], step: str, key: str) -> int:
-    if not step.isascii() or not step.isdigit() or int(step) >= len(items):
+def _index(items: list[Any], step: str | int, key: str) -> int:
+    number = str(step)
+    if not number.isascii() or not number.isdigit() or int(number) >= len(items):
         last = f"use a number from 0 to {len(items) - 1}" if items else "the list is empty"
         raise DesignError(key, f'there is no entry "{step}"', last)
-    return int(step)
+    return int(number)

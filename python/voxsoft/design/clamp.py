@@ -103,7 +103,7 @@ class Clamp(Record):
 
 
 def check_direction(vector: Vector) -> Vector:
-    """Refuse the zero vector where a direction is due."""
+    """Refuse the zero vector as a direction."""
     if not any(vector):
         raise DesignError("", "has no direction", "give a vector that is not zero")
     return vector

@@ -6,6 +6,7 @@ import numpy as np
 
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.model import Design
+from voxsoft.design.require import require_design
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
 from voxsoft.voxels import Voxels
@@ -34,7 +35,7 @@ def voxels_of(design: Design) -> Voxels:
     >>> voxels_of(families.beam()).count
     80
     """
-    if design.fill == "fraction":
+    if require_design(design).fill == "fraction":
         return CutVoxels.of(design).voxels
     size = design.voxel_size
     grids = []
@@ -75,7 +76,7 @@ def mesh_of(design: Design, refine: int = 1) -> Mesh:
     >>> len(mesh_of(families.beam(), refine=2).tets)
     3200
     """
-    if design.fill == "fraction":
+    if require_design(design).fill == "fraction":
         return CutVoxels.of(design, refine).mesh()
     voxels = voxels_of(design)
     return (voxels.refine(refine) if refine > 1 else voxels).mesh()

@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any, Final
 
 from voxsoft.design.resolution import Document, formulas
+from voxsoft.materials import is_card_path
+
+#: What a user may type in Python in place of the names in a file.
+_WRITTEN: Final = {"schema_": "schema", "young_modulus": "young"}
+#: Entries that may hold such names.
+_HOLDERS: Final = frozenset({"materials", "parts"})
 
 
 def plain_document(
-    source: Mapping[str, Any], resolved: Mapping[str, Any], *, from_file: bool
+    source: Mapping[str, Any], dumped: Mapping[str, Any], typed: Collection[str]
 ) -> Document:
     """Make the document of a design with its formulas.
 
@@ -18,21 +25,26 @@ def plain_document(
     ----------
     source
         What the design was made of: for a Python call, a mix of models, SI floats and dicts.
-    resolved
+    dumped
         The same as plain data with values in place of formulas.
-    from_file
-        Whether the source is a document already.
+    typed
+        Keys of the source that were typed in Python; the others are as a file holds them.
 
     Examples
     --------
-    >>> plain_document({"size": ["= a", 0.005]}, {"size": ["1 mm", "5 mm"]}, from_file=False)
+    >>> dumped = {"size": ["1 mm", "5 mm"]}
+    >>> plain_document({"size": ["= a", 0.005]}, dumped, {"size"})
     {'size': ['= a', '5 mm']}
     """
-    if from_file:
-        return copy.deepcopy(dict(source))
-    document = copy.deepcopy(dict(resolved))
-    for path, formula in formulas(source):
-        _put(document, path, formula)
+    from_file = [key for key in source if key not in typed]
+    keys = [_WRITTEN.get(key, key) for key in source] if from_file else [*dumped]
+    document = {
+        key: copy.deepcopy(source[key] if key in from_file else dumped[key])
+        for key in keys
+        if key in from_file or key in dumped
+    }
+    for path, formula in formulas({key: source[key] for key in source if key in typed}):
+        _put(document, written_path(path), formula)
     return document
 
 
@@ -42,3 +54,39 @@ def _put(document: Any, path: tuple[str | int, ...], formula: str) -> None:  # n
     for step in way:
         here = here[step]
     here[last] = formula
+
+
+def written_path(path: tuple[str | int, ...]) -> tuple[str | int, ...]:
+    """Return the path under which a file holds what was typed at one in Python.
+
+    Examples
+    --------
+    >>> written_path(("materials", "soft", "young_modulus"))
+    ('materials', 'soft', 'young')
+    """
+    if path[0] not in _HOLDERS or not isinstance(path[-1], str):
+        return path
+    return (*path[:-1], _WRITTEN.get(path[-1], path[-1]))
+
+
+def with_whole_paths(document: Mapping[str, Any], folder: Path) -> Document:
+    """Complete the relative paths of meshes and cards, which are meant from the file's folder."""
+    whole: Document = _with_whole_meshes(document, folder)
+    parts = whole.get("parts")
+    for part in parts if isinstance(parts, list) else ():
+        material = part.get("material") if isinstance(part, dict) else None
+        if isinstance(material, str) and is_card_path(material):
+            part["material"] = str(folder.absolute() / material)
+    return whole
+
+
+def _with_whole_meshes(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
+    if isinstance(value, list):
+        return [_with_whole_meshes(entry, folder) for entry in value]
+    if not isinstance(value, dict):
+        return value
+    table = {key: _with_whole_meshes(entry, folder) for key, entry in value.items()}
+    if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
+        # A path that is absolute already stays as it is.
+        table["path"] = str(folder.absolute() / table["path"])
+    return table

@@ -59,11 +59,43 @@ def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[s
         named = {name: pruning.differences(table) for name, table in shapes.items()}
         named.update(pruning.subtracted)
         cleaned["shapes"] = {name: table for name, table in named.items() if table is not None}
-    for place in ("parts", "layers", "clamps", "loads", "probes"):
+    for place in ("parts", "layers", "clamps", "loads", "chambers", "probes"):
         if place in document:
             cleaned[place] = pruning.differences(document[place])
     empty = tuple(name for name, table in pruning.subtracted.items() if table is None)
     return cleaned, empty
+
+
+def with_stand_ins(document: Mapping[str, Any]) -> Document:
+    """Give sizes that vanished one meter, so that a design's empty shapes can be read as well.
+
+    Examples
+    --------
+    >>> from voxsoft.design.resolution import resolve
+    >>> inner = {"kind": "sphere", "radius": "= r - r"}
+    >>> resolved = resolve({"parameters": {"r": "5 mm"}, "shapes": {"inner": inner}})
+    >>> with_stand_ins(resolved)["shapes"]["inner"]["radius"].value
+    1.0
+    """
+    return {key: _stand_in(value) for key, value in document.items()}
+
+
+def _stand_in(value: Any) -> Any:  # noqa: ANN401 - a document holds anything
+    if isinstance(value, list):
+        return [_stand_in(entry) for entry in value]
+    if not isinstance(value, Mapping):
+        return value
+    kind = value.get("kind")
+    sizes = _sizes(kind) if isinstance(kind, str) else frozenset()
+    return {
+        key: _sized(entry) if key in sizes else _stand_in(entry) for key, entry in value.items()
+    }
+
+
+def _sized(value: Any) -> Any:  # noqa: ANN401
+    if isinstance(value, list):
+        return [_sized(entry) for entry in value]
+    return Quantity(1.0, value.dimension) if _any_not_positive(value) else value
 
 
 class _Pruning:

@@ -117,7 +117,7 @@ class _Reader:
     def _expect(self, token: str) -> None:
         if self._token != token:
             came = f'"{self._token}"' if self._token else "the end"
-            self._fail(f'"{token}" is due where {came} stands')
+            self._fail(f'expected "{token}", but {came} stands there')
         self._position += 1
 
     def _sum(self) -> Quantity:
@@ -159,7 +159,9 @@ class _Reader:
         elif _is_name(token):
             result = self._parameter(token)
         else:
-            self._fail(f'a value is due where "{token}" stands' if token else "is not complete")
+            self._fail(
+                f'expected a value, but "{token}" stands there' if token else "is not complete"
+            )
         self._depth -= 1
         return result
 
@@ -187,7 +189,7 @@ class _Reader:
         sign = self._take() if self._token == "-" else ""
         exponent = self._take()
         if not (exponent.isdigit() and 1 <= int(exponent) <= 9):
-            self._fail("an exponent from 1 to 9 is due after ^")
+            self._fail("expected an exponent from 1 to 9 after ^")
         return f"{name}^{sign}{exponent}"
 
     @property

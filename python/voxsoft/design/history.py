@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import Dimensionless, Time
+from voxsoft.units import Dimensionless, Time, to_si
 
 
 class History(Record):
@@ -44,14 +44,15 @@ class History(Record):
             raise DesignError("time", "does not rise", "sort the instants and drop repeats")
         return self
 
-    def at(self, time: float) -> float:
-        """Return the factor at a time in seconds.
+    def at(self, time: float | str) -> float:
+        """Return the factor at a time.
 
         Parameters
         ----------
         time
-            The instant in seconds.
+            The instant, in seconds or with its unit.
         """
+        time = to_si(time, "time", "time")
         after = bisect_right(self.time, time)
         if after == 0:
             return self.factor[0]

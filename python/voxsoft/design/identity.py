@@ -16,6 +16,9 @@ NOT_PHYSICS: Final = frozenset(
     {"schema", "name", "description", "parameters", "objectives", "constraints"}
 )
 
+# What is said about the constants of a material, beside them.
+_ABOUT_CONSTANTS: Final = frozenset({"tested_stretch"})
+
 
 def hash_of(document: Mapping[str, Any]) -> str:
     """Hash a resolved design document: SHA-256 of canonical JSON, in hexadecimal.
@@ -42,7 +45,11 @@ def _canonical(value: object) -> object:
     if isinstance(value, Mapping):
         if value.get("kind") == "mesh":
             value = {**value, "path": _content(str(value.get("path")))}
-        return {str(key): _canonical(entry) for key, entry in value.items() if entry is not None}
+        return {
+            str(key): _canonical(entry)
+            for key, entry in value.items()
+            if entry is not None and key not in _ABOUT_CONSTANTS
+        }
     if isinstance(value, (list, tuple)):
         return [_canonical(entry) for entry in value]
     if isinstance(value, (int, float)) and not isinstance(value, bool):

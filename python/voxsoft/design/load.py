@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Discriminator, Field, Tag, field_validator
 
 from voxsoft import units
+from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.clamp import check_direction
 from voxsoft.design.history import History
 from voxsoft.design.region import Region
@@ -46,10 +47,6 @@ class Gravity(Record):
         return check_direction(direction)
 
 
-def _all_or_index(value: object) -> str:
-    return "all" if isinstance(value, str) else "index"
-
-
 class Pressure(Record):
     """Gauge pressure in a cavity, a follower load: it stays normal to the deforming wall.
 
@@ -58,7 +55,8 @@ class Pressure(Record):
     value
         The pressure; negative is a vacuum.
     cavity
-        ``"all"`` (default), or the index of one cavity; 0 is the largest.
+        ``"all"`` (default), the name of a chamber of the design, or the index of one cavity; 0 is
+        the largest.
     history
         The factor over time; default: constant.
 
@@ -71,10 +69,7 @@ class Pressure(Record):
 
     kind: Literal["pressure"] = "pressure"
     value: units.Pressure
-    cavity: Annotated[
-        Annotated[Literal["all"], Tag("all")] | Annotated[int, Field(ge=0), Tag("index")],
-        Discriminator(_all_or_index),
-    ] = "all"
+    cavity: CavityChoice = "all"
     history: History | None = None
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
 from pydantic import (
@@ -17,26 +19,28 @@ from pydantic import (
 from pydantic_core import PydanticSerializationError
 
 from voxsoft.design.assignment import set_values
+from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
-from voxsoft.design.documents import plain_document
-from voxsoft.design.emptiness import without_empty_shapes
+from voxsoft.design.documents import plain_document, with_whole_paths, written_path
+from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
+from voxsoft.design.kept_formulas import with_kept_formulas
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
-from voxsoft.design.operands import Name, ParameterName
+from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.references import dangling_references
 from voxsoft.design.region import Probe
-from voxsoft.design.resolution import Document, resolve, with_parameter_values
+from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
 from voxsoft.design.target import Constraint, Objective
-from voxsoft.errors import DesignError
-from voxsoft.materials import AnyMaterial, Material, load_card
-from voxsoft.records import Record, plain_error
+from voxsoft.errors import DesignError, FormulaError
+from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
+from voxsoft.records import FrozenDict, Record, Table, plain_error, plain_values, problems_of
 from voxsoft.shapes import AnyShape
-from voxsoft.units import FILE_CONTEXT, PositiveLength
+from voxsoft.units import EXACT, FILE_CONTEXT, PositiveLength, format_quantity
 
 if TYPE_CHECKING:
     from voxsoft.studio.html import LivePage
@@ -75,6 +79,8 @@ class Design(Record):
         Thin layers of fabric, film or paper bonded to the body.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
+    chambers
+        Cavities by name, each found by its place: what loads and metrics call ``cavity``.
     probes
         Named places to measure at.
     objectives, constraints
@@ -111,21 +117,22 @@ class Design(Record):
     description: str = ""
     voxel_size: PositiveLength
     fill: Literal["binary", "fraction"] = "binary"
-    parameters: dict[ParameterName, Parameter] = Field(default_factory=dict, max_length=200)
-    shapes: dict[Name, AnyShape] = Field(default_factory=dict)
-    materials: dict[Name, AnyMaterial] = Field(default_factory=dict)
+    parameters: Table[ParameterName, Parameter] = Field(default_factory=FrozenDict, max_length=200)
+    shapes: Table[Name, AnyShape] = Field(default_factory=FrozenDict)
+    materials: Table[MaterialName, AnyMaterial] = Field(default_factory=FrozenDict)
     parts: tuple[Part, ...] = Field(min_length=1, max_length=250)
     layers: tuple[Layer, ...] = Field((), max_length=250)
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
-    probes: dict[Name, Probe] = Field(default_factory=dict)
-    objectives: dict[Name, Objective] = Field(default_factory=dict)
-    constraints: dict[Name, Constraint] = Field(default_factory=dict)
+    chambers: Table[ChamberName, Chamber] = Field(default_factory=FrozenDict)
+    probes: Table[Name, Probe] = Field(default_factory=FrozenDict)
+    objectives: Table[Name, Objective] = Field(default_factory=FrozenDict)
+    constraints: Table[Name, Constraint] = Field(default_factory=FrozenDict)
     solver: Solver = Solver()
 
     _source: Document = PrivateAttr(default_factory=dict)
-    _from_file: bool = PrivateAttr(default=False)
+    _typed: frozenset[str] = PrivateAttr(default=frozenset())
     _empty_shapes: tuple[str, ...] = PrivateAttr(default=())
 
     @classmethod
@@ -145,7 +152,7 @@ class Design(Record):
         overrides
             New values of parameters by name: text with a unit, or numbers in SI units.
         from_file
-            Whether a bare number where a unit is due is an error (default), or SI.
+            Whether a bare number where a unit belongs is an error (default), or SI.
 
         Raises
         ------
@@ -158,10 +165,23 @@ class Design(Record):
         Traceback (most recent call last):
         ...
         voxsoft.errors.DesignError: 2 problems
-          voxel_size: 5 has no unit; a length is due. Try: write "5 mm"
+          voxel_size: 5 has no unit; expected a length. Try: write "5 mm"
           parts: is missing
         """
-        context = {**(FILE_CONTEXT if from_file else {}), "overrides": dict(overrides or {})}
+        if isinstance(document, Mapping):
+            document = with_whole_paths(plain_values(document), Path())
+        return cls._read(document, overrides or {}, None if from_file else frozenset(document))
+
+    @classmethod
+    def _read(
+        cls,
+        document: Mapping[str, Any],
+        overrides: Mapping[str, object],
+        typed: frozenset[str] | None,
+    ) -> Self:
+        """Read a document; `typed` are its keys that were typed in Python, None for a file."""
+        context: dict[str, Any] = {"overrides": dict(overrides), "ready": True}
+        context |= {"typed": typed} if typed else FILE_CONTEXT
         try:
             return cls.model_validate(document, context=context)
         except ValidationError as error:
@@ -176,26 +196,50 @@ class Design(Record):
         if not isinstance(data, Mapping):
             return handler(data)
         context = info.context or {}
-        source = with_parameter_values(data, context.get("overrides", {}))
-        resolved, empty = without_empty_shapes(resolve(source))
-        design = handler(resolved)
-        design._source, design._from_file = source, context.get("source") == "file"
-        design._empty_shapes = empty
-        problems = list(dangling_references(design))
-        if problems:
-            raise DesignError.listing(problems)
+        source = data if context.get("ready") else with_whole_paths(plain_values(data), Path())
+        source = with_parameter_values(source, context.get("overrides", {}))
+        found = Resolution.of(source)
+        if context.get("whole"):
+            return handler(with_stand_ins(found.document))
+        document, empty = without_empty_shapes(found.document)
+        problems, only_formulas = found.problems, bool(found.problems)
+        try:
+            design = handler(document)
+        except ValidationError as error:
+            wrong = problems_of(error, cls, document, found.told)
+            problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
+        dangling = list(dangling_references(document, empty))
+        if problems or dangling:
+            error_type = FormulaError if only_formulas and not dangling else DesignError
+            raise error_type.listing(dict.fromkeys([*problems, *dangling]))
+        design._source, design._empty_shapes = source, empty
+        is_file = context.get("source") == "file"
+        design._typed = frozenset() if is_file else context.get("typed", frozenset(source))
         return design
 
     def __str__(self) -> str:
         try:
             return self.to_toml()
-        except DesignError:
-            return repr(self)
+        except DesignError:  # it holds a Python function
+            return super().__repr__()
+
+    def __repr__(self) -> str:
+        held = [
+            f"{len(value)} {name}"
+            for name, value in self._entries().items()
+            if isinstance(value, (tuple, Mapping)) and value
+        ]
+        size = format_quantity(self.voxel_size, "length")
+        return f"<Design {self.name}: voxels of {size}, {', '.join(held)}>"
 
     @property
     def empty_shapes(self) -> tuple[str, ...]:
         """Names of subtracted shapes of which the parameters leave nothing."""
         return self._empty_shapes
+
+    def is_typed(self, key: str) -> bool:
+        """Whether an entry was typed in Python, where numbers may be without a unit."""
+        return key in self._typed
 
     def material_of(self, part: Part) -> Material:
         """Return the material of a part: its own, one of this design's, or that of a card.
@@ -220,10 +264,39 @@ class Design(Record):
         own = self.materials.get(part.material)
         return load_card(part.material).material if own is None else own
 
+    def __eq__(self, other: object) -> bool:
+        """Whether all values and all formulas are the same, wherever the two came from."""
+        if not isinstance(other, Design):
+            return NotImplemented
+        return self._entries() == other._entries() and self._formulas == other._formulas
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._entries().values()))
+
+    @property
+    def _formulas(self) -> dict[tuple[str | int, ...], str]:
+        """Formulas by their path; one that is all of a parameter is that of its value."""
+        found = {written_path(path): formula for path, formula in formulas(self._source)}
+        return {
+            (*path, "value") if path[0] == "parameters" and len(path) == 2 else path: formula
+            for path, formula in found.items()
+        }
+
     @property
     def document(self) -> Document:
-        """The design as plain data with its formulas, as a file would hold it."""
-        return plain_document(self._source, self.resolved, from_file=self._from_file)
+        """The design as plain data with its formulas, as a file would hold it.
+
+        Numbers have all their digits, so that reading it gives the same design.
+        """
+        if not self._typed:
+            return copy.deepcopy(self._source)
+        return plain_document(self._source, self._whole._dumped(context=EXACT), self._typed)
+
+    @property
+    def _whole(self) -> Self:
+        """The same with shapes that are empty, for what is written of it."""
+        context = {"whole": True, "ready": True}
+        return type(self).model_validate(self._source, context=context)
 
     @property
     def resolved(self) -> Document:
@@ -234,16 +307,28 @@ class Design(Record):
         DesignError
             A shape is made of a Python function: such a design has no document and no hash.
         """
-        return self._values_without(frozenset())
+        return self._dumped(cards=True)
 
-    def _values_without(self, tables: frozenset[str]) -> Document:
+    def _dumped(
+        self,
+        exclude: Iterable[str] = (),
+        context: Mapping[str, bool] | None = None,
+        *,
+        cards: bool = False,
+    ) -> Document:
+        """Plain data; with `cards`, materials in place of the paths of their cards."""
         try:
             dumped = self.model_dump(
-                mode="json", by_alias=True, exclude_none=True, exclude=set(tables)
+                mode="json", by_alias=True, exclude_none=True, exclude={*exclude}, context=context
             )
         except PydanticSerializationError as error:
             what = "hold a Python function, which no file can hold"
             raise DesignError("shapes", what, "write it as an expression") from error
+        for table, part in zip(dumped["parts"], self.parts, strict=True):
+            if cards and isinstance(part.material, str) and is_card_path(part.material):
+                table["material"] = self.material_of(part).model_dump(
+                    mode="json", by_alias=True, exclude_none=True
+                )
         return {key: value for key, value in dumped.items() if value not in ("", {}, [])}
 
     @property
@@ -253,7 +338,7 @@ class Design(Record):
         Name, description, parameters, objectives and constraints do not count; values that
         formulas gave do. Numbers are rounded to 12 significant digits.
         """
-        return hash_of(self._values_without(NOT_PHYSICS))
+        return hash_of(self._dumped(NOT_PHYSICS, cards=True))
 
     def with_parameters(self, **values: float | str) -> Self:
         """Return the design with other values of its parameters.
@@ -268,23 +353,78 @@ class Design(Record):
         DesignError
             An unknown name, a value outside its range, or a design that is no longer valid.
         """
-        return type(self).from_document(self._source, values, from_file=self._from_file)
+        return self._read(self._source, values, self._typed or None)
 
-    def with_values(self, *assignments: str) -> Self:
+    def replace(self, **changes: Any) -> Self:  # noqa: ANN401 - the fields declare the types
+        """Return the design with other values of some of its entries, checked like new.
+
+        Parameters
+        ----------
+        **changes
+            New values by key, as the constructor takes them: ``loads=[...]``,
+            ``voxel_size="2 mm"``. They take the place of all that stood there.
+
+        Raises
+        ------
+        DesignError
+            An unknown key, or a design that is no longer valid.
+
+        Notes
+        -----
+        Formulas in all other entries stay, and follow new `parameters`. Of the entries that are
+        replaced, those that come from this design as they are keep their formulas too.
+
+        Examples
+        --------
+        >>> from voxsoft.design import Gravity, families
+        >>> beam = families.beam()
+        >>> light = beam.replace(loads=[Gravity(value="1.62 m/s^2")])
+        >>> light.loads[0].value, light.with_parameters(length="50 mm").loads[0].value
+        (1.62, 1.62)
+        >>> beam.replace(lodas=[])
+        Traceback (most recent call last):
+        ...
+        voxsoft.errors.DesignError: lodas: is not known here. Try: did you mean "loads"?
+        """
+        return self._with(changes, {})
+
+    def _with(self, changes: Mapping[str, Any], overrides: Mapping[str, object]) -> Self:
+        """Replace entries and set parameters."""
+        known = with_whole_paths(plain_values(self._known(changes)), Path())
+        kept = with_kept_formulas(self._entries(), self._source, known)
+        return self._read({**self._source, **kept}, overrides, self._typed | frozenset(kept))
+
+    def with_values(self, *assignments: str, **values: Any) -> Self:  # noqa: ANN401
         """Return the design with any of its values changed.
 
         Parameters
         ----------
         *assignments
             Texts ``key=value`` as :func:`voxsoft.design.set_values` reads them, such as
-            ``"voxel_size=2.5 mm"`` or ``"parts.0.material=ecoflex-00-50"``.
+            ``"voxel_size=2.5 mm"`` or ``"parts[0].material=ecoflex-00-50"``.
+        **values
+            The same for single names: a parameter of the design, else a key of it. Text with a
+            unit, or numbers in SI units. They are set first.
 
         Raises
         ------
         DesignError
             A path that leads nowhere, or a design that is no longer valid.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> families.beam().with_values(voxel_size="2.5 mm", length="50 mm").voxel_size
+        0.0025
         """
-        return type(self).from_document(set_values(self.document, assignments))
+        changed = self
+        if values:
+            own = {name: value for name, value in values.items() if name in self.parameters}
+            rest = {name: value for name, value in values.items() if name not in own}
+            changed = self._with(rest, own)
+        if not assignments:
+            return changed
+        return self.from_document(set_values(changed.document, assignments))
 
     def to_toml(self, *, resolved: bool = False) -> str:
         """Write the design as the text of a design file.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from numbers import Real
 from typing import Annotated, Any, Final
 
 from pydantic import (
@@ -27,8 +29,12 @@ from voxsoft.units import (
     Quantity,
     describe_dimension,
     format_quantity,
+    is_pint,
     parse_any,
+    quantity_of,
     read_from_file,
+    write_exactly,
+    writes_exactly,
 )
 
 _QUANTITIES: Final = ("value", "min", "max", "step")
@@ -157,12 +163,28 @@ def read_quantity(value: object, name: str) -> Quantity:
         return value
     if isinstance(value, str):
         return parse_any(value, where=name)
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
+    if is_pint(value):
+        return quantity_of(value, name)
+    if isinstance(value, bool) or not isinstance(value, Real):
         raise DesignError(name, f"{value!r} is not a quantity", 'write one such as "25 mm"')
     try:
-        return Quantity(float(value), Dimension())
+        number = float(value)
     except OverflowError:
         raise DesignError(name, "is too large for a number") from None
+    if not math.isfinite(number):
+        raise DesignError(name, f"{number} is not a finite number", "leave it out, or give one")
+    return Quantity(number, Dimension())
+
+
+def kind_of(dimension: Dimension) -> str | None:
+    """Name the kind that a dimension is taken for, if there is one.
+
+    Examples
+    --------
+    >>> kind_of(KINDS["modulus"].dimension)
+    'pressure'
+    """
+    return next((kind.name for kind in KINDS.values() if kind.dimension == dimension), None)
 
 
 def write_quantities(table: dict[str, Any], kind: str, info: SerializationInfo) -> dict[str, Any]:
@@ -170,14 +192,16 @@ def write_quantities(table: dict[str, Any], kind: str, info: SerializationInfo) 
     if not info.mode_is_json():
         return table
     unitless = not KINDS[kind].units
+    write = write_exactly if writes_exactly(info) else format_quantity
     written = {
-        name: format_quantity(value, kind) if name in _QUANTITIES and not unitless else value
+        name: write(value, kind) if name in _QUANTITIES and not unitless else value
         for name, value in table.items()
         if value not in (None, "") and name != "kind"
     }
-    # "0" does not tell its kind; where every quantity is zero the kind must be stated.
-    implied = unitless or any(
-        value not in (0, "0") for n, value in written.items() if n in _QUANTITIES
+    # "0" does not tell its kind, nor does "1 kPa" that it is a modulus: the kind must be stated.
+    implied = unitless or (
+        kind == kind_of(KINDS[kind].dimension)
+        and any(value not in (0, "0") for n, value in written.items() if n in _QUANTITIES)
     )
     return written if implied else {**written, "kind": kind}
 
@@ -193,14 +217,14 @@ def as_one_kind(
     bare_is_si = due is not None and not from_file
     wrong = [
         Problem(
-            name, f"is {describe_dimension(q.dimension)}; {describe_dimension(dimension)} is due"
+            name, f"is {describe_dimension(q.dimension)}; expected {describe_dimension(dimension)}"
         )
         for name, q in found.items()
         if q.dimension != dimension and not (q.dimension == plain and (q.value == 0 or bare_is_si))
     ]
     if wrong:
         raise DesignError.listing(wrong)
-    kind = next((k.name for k in KINDS.values() if k.dimension == dimension), None)
+    kind = kind_of(dimension)
     if kind is None:
         what = f"is {describe_dimension(dimension)}, which has no name"
         raise DesignError("value", what, "split the formula over the values that use it")

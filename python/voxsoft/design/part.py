@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+import os
 from typing import Annotated
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Discriminator,
+    Field,
+    StringConstraints,
+    Tag,
+)
 
 from voxsoft.design.operands import Name, ShapeOrName, name_or_table
-from voxsoft.materials import AnyMaterial, Fiber
-from voxsoft.records import Record
+from voxsoft.materials import AnyMaterial, Fiber, is_card_path
+from voxsoft.records import Record, check_name
+
+
+def _whole_path(name: object) -> object:
+    """Complete the path of a card's file, so that it leads there from everywhere."""
+    if isinstance(name, (str, os.PathLike)) and is_card_path(name):
+        return os.path.abspath(name)  # noqa: PTH100 - as text, and without asking the disk
+    return name
+
+
+#: A name, or the path of a card's file, which may be longer.
+CardOrName = Annotated[
+    str,
+    StringConstraints(min_length=1, max_length=4096),
+    BeforeValidator(_whole_path),
+    AfterValidator(check_name),
+]
 
 
 class Part(Record):
@@ -19,8 +43,9 @@ class Part(Record):
     shape
         Name of a shape of the design, or a shape.
     material
-        Name of a material card or of one of the design's own materials, or a
-        material.
+        Name of a material card or of one of the design's own materials, the path of a card's
+        file (``"runs/mine/mine.toml"``), or a material. A relative path is meant from the folder of
+        the design file, in Python from the working directory.
     fibers
         Families of fibers, up to 10, spread over the part, whose material must then be a
         hyperelastic one. Default: none.
@@ -35,7 +60,7 @@ class Part(Record):
 
     shape: ShapeOrName
     material: Annotated[
-        Annotated[Name, Tag("name")] | Annotated[AnyMaterial, Tag("table")],
+        Annotated[CardOrName, Tag("name")] | Annotated[AnyMaterial, Tag("table")],
         Discriminator(name_or_table),
     ]
     fibers: tuple[Fiber, ...] = Field((), max_length=10)

@@ -2,96 +2,137 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
 
-from voxsoft.design.region import Region
-from voxsoft.errors import Problem
-from voxsoft.materials import card_names
+from voxsoft.errors import MaterialError, Problem, VoxSoftError
+from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import closest, place
-from voxsoft.shapes import Shape
-
-if TYPE_CHECKING:
-    from voxsoft.design.model import Design
 
 Path = tuple[str | int, ...]
 
 
-def dangling_references(design: Design) -> Iterator[Problem]:
+def dangling_references(document: Mapping[str, Any], empty: Collection[str]) -> Iterator[Problem]:
     """Find every name in a design that leads nowhere, and shapes made of themselves.
 
     Parameters
     ----------
-    design
-        The design; its tables are valid each on its own.
+    document
+        The design as tables or records with values in place of formulas. What is of a wrong type
+        is passed over: reading the tables tells it.
+    empty
+        Names of subtracted shapes of which the parameters leave nothing.
 
     Yields
     ------
     Problem
         The place of the name, the name, and the closest one that exists.
     """
-    for path, name in _shape_names(design):
-        if name in design.empty_shapes:
+    shapes = _table(document, "shapes")
+    for path, name in _shape_names(document):
+        if name in empty:
             yield Problem(place(path), f'the shape "{name}" is empty at these parameters')
-        elif name not in design.shapes:
-            yield _unknown(path, "shape", name, design.shapes)
-    yield from _circles(design.shapes)
-    materials = {*design.materials, *card_names()}
-    for index, part in enumerate(design.parts):
-        if isinstance(part.material, str) and part.material not in materials:
-            yield _unknown(("parts", index, "material"), "material", part.material, materials)
+        elif name not in shapes:
+            yield _unknown(path, "shape", name, shapes)
+    yield from _circles(shapes)
+    yield from _materials(document)
+    yield from _chambers(document)
+    probes = _table(document, "probes")
     for table in ("objectives", "constraints"):
-        for key, target in getattr(design, table).items():
-            if target.probe is not None and target.probe not in design.probes:
-                yield _unknown((table, key, "probe"), "probe", target.probe, design.probes)
+        for key, target in _table(document, table).items():
+            probe = entry_of(target, "probe")
+            if isinstance(probe, str) and probe not in probes:
+                yield _unknown((table, key, "probe"), "probe", probe, probes)
+
+
+def entry_of(table: object, key: str) -> Any:  # noqa: ANN401 - a document holds anything
+    """Return an entry of a table or a record; None where there is none."""
+    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
+
+
+def _table(document: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    table = document.get(key)
+    return table if isinstance(table, Mapping) else {}
+
+
+def _list(document: Mapping[str, Any], key: str) -> Iterator[tuple[Path, Any]]:
+    entries = document.get(key)
+    for index, entry in enumerate(entries if isinstance(entries, (list, tuple)) else ()):
+        yield (key, index), entry
 
 
 def _unknown(path: Path, what: str, name: str, known: Iterable[str]) -> Problem:
-    return Problem(place(path), f'there is no {what} "{name}"', closest(name, known))
+    return Problem(place(path), f'there is no {what} "{name}"', closest(name, map(str, known)))
 
 
-def _shape_names(design: Design) -> Iterator[tuple[Path, str]]:
+def _materials(document: Mapping[str, Any]) -> Iterator[Problem]:
+    known = {*_table(document, "materials"), *card_names()}
+    for path, part in _list(document, "parts"):
+        material, where = entry_of(part, "material"), (*path, "material")
+        if not isinstance(material, str) or material in known:
+            continue
+        if not is_card_path(material):
+            yield _unknown(where, "material", material, known)
+            continue
+        try:
+            load_card(material)
+        except MaterialError as error:
+            for problem in error.problems:
+                yield Problem(place(where), f"{material}: {problem}")
+        except VoxSoftError as error:  # the file cannot be read
+            yield Problem(place(where), f"{error.where}: {error.what}", error.hint)
+
+
+def _chambers(document: Mapping[str, Any]) -> Iterator[Problem]:
+    known = _table(document, "chambers")
+    users = list(_list(document, "loads"))
+    for table in ("objectives", "constraints"):
+        users += [((table, name), each) for name, each in _table(document, table).items()]
+    for path, user in users:
+        choice = entry_of(user, "cavity")
+        if isinstance(choice, str) and choice != "all" and choice not in known:
+            hint = closest(choice, map(str, known))
+            hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
+            yield Problem(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
+
+
+def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
     """Collect the names of shapes with their places, all over the design."""
-    for name, shape in design.shapes.items():
+    for name, shape in _table(document, "shapes").items():
         yield from operand_names(shape, ("shapes", name))
-    for index, part in enumerate(design.parts):
-        yield from _operand(part.shape, ("parts", index, "shape"))
-    for path, region in _regions(design):
-        if region.shape is not None:
-            yield from _operand(region.shape, (*path, "shape"))
+    for path, part in _list(document, "parts"):
+        yield from _operand(entry_of(part, "shape"), (*path, "shape"))
+    for path, region in _regions(document):
+        yield from _operand(entry_of(region, "shape"), (*path, "shape"))
 
 
-def _regions(design: Design) -> Iterator[tuple[Path, Region]]:
-    for index, layer in enumerate(design.layers):
-        yield ("layers", index, "region"), layer.region
-    for index, clamp in enumerate(design.clamps):
-        yield ("clamps", index, "region"), clamp.region
-    for index, load in enumerate(design.loads):
-        region = getattr(load, "region", None)
-        if region is not None:
-            yield ("loads", index, "region"), region
-    for name, probe in design.probes.items():
-        yield ("probes", name), probe
+def _regions(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
+    for key in ("layers", "clamps", "loads"):
+        for path, entry in _list(document, key):
+            yield (*path, "region"), entry_of(entry, "region")
+    for table in ("chambers", "probes"):
+        for name, spot in _table(document, table).items():
+            yield (table, name), spot
 
 
-def operand_names(shape: Shape, path: Path) -> Iterator[tuple[Path, str]]:
+def operand_names(shape: object, path: Path) -> Iterator[tuple[Path, str]]:
     """Collect the names that a shape's operands go by, at any depth."""
-    operands = getattr(shape, "of", None)
-    if isinstance(operands, tuple):
+    operands = entry_of(shape, "of")
+    if isinstance(operands, (list, tuple)):
         for index, operand in enumerate(operands):
             yield from _operand(operand, (*path, "of", index))
-    elif operands is not None:
+    else:
         yield from _operand(operands, (*path, "of"))
 
 
-def _operand(operand: str | Shape, path: Path) -> Iterator[tuple[Path, str]]:
+def _operand(operand: object, path: Path) -> Iterator[tuple[Path, str]]:
     if isinstance(operand, str):
         yield path, operand
-    else:
+    elif operand is not None:
         yield from operand_names(operand, path)
 
 
-def _circles(shapes: Mapping[str, Shape]) -> Iterator[Problem]:
+def _circles(shapes: Mapping[str, Any]) -> Iterator[Problem]:
     uses = {
         name: [used for _, used in operand_names(shape, ()) if used in shapes]
         for name, shape in shapes.items()

@@ -67,7 +67,19 @@ class Region(Record):
         return [place for place in places if place is not None]
 
 
-class Probe(Region):
+class Spot(Region):
+    """A point, or a region."""
+
+    point: Point | None = None
+
+    def _check_conditions(self) -> None:
+        if self.point is None:
+            super()._check_conditions()
+        elif self._conditions():
+            raise DesignError("", "has both a point and a region", "keep one of them")
+
+
+class Probe(Spot):
     """A place to measure at: a point, or the average over a region.
 
     Parameters
@@ -80,14 +92,6 @@ class Probe(Region):
     >>> Probe(point=("50 mm", 0, 0)).point
     (0.05, 0.0, 0.0)
     """
-
-    point: Point | None = None
-
-    def _check_conditions(self) -> None:
-        if self.point is None:
-            super()._check_conditions()
-        elif self._conditions():
-            raise DesignError("", "has both a point and a region", "keep one of them")
 
 
 def _check_range(axis: str, bounds: Range | None) -> None:

@@ -8,15 +8,17 @@ can still tell a length from an area.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
 from voxsoft.design.formula import evaluate, is_formula
-from voxsoft.design.parameter import Parameter, read_quantity
+from voxsoft.design.parameter import Parameter, kind_of, read_quantity
 from voxsoft.errors import DesignError, FormulaError, Problem, VoxSoftError
-from voxsoft.records import closest, place
-from voxsoft.units import KINDS, Dimension, Number, Quantity, describe_dimension, format_quantity
+from voxsoft.records import closest, place, steps_of
+from voxsoft.units import KINDS, Dimension, Number, Quantity, describe_dimension, write_exactly
 
 Document = dict[str, Any]
+Path = tuple[str | int, ...]
 
 LONGEST_CHAIN: Final = 50
 DEEPEST_DOCUMENT: Final = 50
@@ -50,12 +52,48 @@ def resolve(document: Mapping[str, Any]) -> Document:
     >>> resolve({"parameters": {"mu": "5 mm"}, "voxel_size": "= mu/2"})["voxel_size"].value
     0.0025
     """
-    parameters = _Parameters(document.get("parameters"))
-    problems: list[Problem] = []
-    resolved = _resolve(document, (), parameters, problems)
-    if problems:
-        raise FormulaError.listing(dict.fromkeys(problems))
-    return dict(resolved)
+    resolution = Resolution.of(document)
+    if resolution.problems:
+        raise FormulaError.listing(resolution.problems)
+    return resolution.document
+
+
+@dataclass
+class Resolution:
+    """A document with values in place of formulas, and what is wrong with these.
+
+    Attributes
+    ----------
+    document
+        The values; :data:`UNREAD` stands for a formula that has none.
+    problems
+        What is wrong, each once.
+    told
+        Paths of what is wrong.
+    """
+
+    document: Document
+    problems: list[Problem]
+    told: set[Path]
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Resolution:
+        """Evaluate every formula of a document; see :func:`resolve`."""
+        found = cls({}, [], set())
+        parameters = _Parameters(document.get("parameters"))
+        found.document = dict(_resolve(document, (), parameters, found))
+        found.problems = list(dict.fromkeys(found.problems))
+        return found
+
+
+class _Unread:
+    """No value that any field takes."""
+
+    def __repr__(self) -> str:
+        return "a formula without a value"
+
+
+UNREAD: Final = _Unread()
 
 
 def with_parameter_values(document: Mapping[str, Any], overrides: Mapping[str, object]) -> Document:
@@ -104,11 +142,16 @@ def _with_unit(value: object, dimension: Dimension, where: str) -> object:
     if is_formula(value):
         return value
     quantity = read_quantity(value, where)
-    if isinstance(value, str) and quantity.dimension != dimension and quantity.value != 0:
+    is_si = quantity.dimension == Dimension() and not isinstance(value, str)
+    if quantity.dimension != dimension and quantity.value != 0 and not is_si:
         came, due = describe_dimension(quantity.dimension), describe_dimension(dimension)
-        raise DesignError(where, f'"{value}" is {came}; {due} is due')
-    kind = next((k.name for k in KINDS.values() if k.dimension == dimension), "number")
-    return value if isinstance(value, str) else format_quantity(quantity.value, kind)
+        raise DesignError(where, f'"{value}" is {came}; expected {due}')
+    kind = kind_of(dimension) or "number"
+    if isinstance(value, str):
+        return value
+    if not KINDS[kind].units:
+        return value if isinstance(value, int) else quantity.value
+    return write_exactly(quantity.value, kind)
 
 
 class _Parameters:
@@ -145,15 +188,23 @@ class _Parameters:
         if isinstance(declared, Parameter):
             return Quantity(declared.value, declared.dimension)
         value = declared.get("value") if isinstance(declared, Mapping) else declared
+        where = place(("parameters", name))
         if is_formula(value):
-            return evaluate(str(value), self)
-        where = f"parameters.{name}"
+            return self._formula(str(value), f"{where}.value" if value != declared else where)
         if value is None:
             raise DesignError(where, "has no value", 'write one such as "25 mm"')
         quantity = read_quantity(value, where)
         if not isinstance(declared, Mapping) or quantity.dimension != Dimension():
             return quantity
         return Quantity(quantity.value, _dimension_beside(declared, quantity.value, where))
+
+    def _formula(self, text: str, where: str) -> Quantity:
+        """Evaluate the formula of a parameter; what is wrong with it is said of it alone."""
+        try:
+            return evaluate(text, self)
+        except FormulaError as error:
+            what = _within(text, error.what)
+            raise FormulaError(error.where or where, what, error.hint) from None
 
 
 def _dimension_beside(declared: Mapping[str, Any], value: float, where: str) -> Dimension:
@@ -176,39 +227,41 @@ def _dimension_beside(declared: Mapping[str, Any], value: float, where: str) -> 
     return Dimension()
 
 
-def _resolve(
-    value: object, path: tuple[str | int, ...], parameters: _Parameters, problems: list[Problem]
-) -> Any:  # noqa: ANN401 - a document holds anything
+def _resolve(value: object, path: Path, parameters: _Parameters, found: Resolution) -> Any:  # noqa: ANN401 - a document holds anything
     if len(path) > DEEPEST_DOCUMENT:
         raise DesignError(place(path[:3]), f"nests deeper than {DEEPEST_DOCUMENT} levels")
     if isinstance(value, str):
         if not is_formula(value) or (path and path[-1] in _PROSE):
             return value
-        return _evaluated(value, path, parameters, problems)
+        return _evaluated(value, path, parameters, found)
     if isinstance(value, Mapping):
-        return {k: _resolve(v, (*path, k), parameters, problems) for k, v in value.items()}
+        return {k: _resolve(v, (*path, k), parameters, found) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_resolve(v, (*path, i), parameters, problems) for i, v in enumerate(value)]
+        return [_resolve(v, (*path, i), parameters, found) for i, v in enumerate(value)]
     return value
 
 
 def _evaluated(
-    formula: str, path: tuple[str | int, ...], parameters: _Parameters, problems: list[Problem]
-) -> Quantity | Number | None:
+    formula: str, path: Path, parameters: _Parameters, found: Resolution
+) -> Quantity | Number | _Unread:
     try:
         result = evaluate(formula, parameters)
         return result if result.dimension != Dimension() else Number(result.value)
     except FormulaError as error:
-        what = error.what if f'"{formula}"' in error.what else f'in "{formula}": {error.what}'
-        problems.append(Problem(place(path), what, error.hint))
+        what = _within(formula, error.what)
+        found.problems.append(Problem(error.where or place(path), what, error.hint))
     except VoxSoftError as error:  # the value of a parameter that the formula uses
-        problems.append(Problem(error.where, error.what, error.hint))
-    return None
+        found.problems.append(Problem(error.where, error.what, error.hint))
+        found.told.add(tuple(steps_of(error.where)))
+    found.told.add(path)
+    return UNREAD
 
 
-def formulas(
-    document: object, path: tuple[str | int, ...] = ()
-) -> Iterator[tuple[tuple[str | int, ...], str]]:
+def _within(formula: str, what: str) -> str:
+    return what if what.startswith('in "') else f'in "{formula}": {what}'
+
+
+def formulas(document: object, path: Path = ()) -> Iterator[tuple[Path, str]]:
     """Find every formula of a document with its path."""
     if isinstance(document, Mapping):
         for key, value in document.items():

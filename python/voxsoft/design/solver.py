@@ -17,6 +17,9 @@ def _named_or_rate(value: object) -> str:
 class Solver(Record):
     """How to solve; whatever is left out is chosen from the design and reported.
 
+    A setting that the design and the other settings leave without use is refused when the design
+    is checked or solved.
+
     Parameters
     ----------
     method
@@ -28,34 +31,37 @@ class Solver(Record):
         Solve on every voxel cut into this many along each axis: the same body, smaller
         elements. Default 1.
     time_step
-        Length of one step in seconds; smaller is more accurate in motion, and no
+        Dynamics only. Length of one step in seconds; smaller is more accurate in motion, and no
         different at rest.
     substeps
-        Substeps of each step, at least 1.
+        Dynamics only. Substeps of each step, at least 1.
     iterations
-        Passes over the constraints in each substep, at least 1.
+        Dynamics only. Passes over the constraints in each substep, at least 1.
     damping
-        Decay rate of velocities in 1/s, ``"critical"`` (the lowest mode does not swing), or
-        ``"auto"`` (the fastest way to rest).
+        Decay rate of velocities in 1/s, or ``"critical"`` (the lowest mode does not swing): both
+        ask for dynamics; or ``"auto"`` (the fastest way to rest).
     retardation
-        Retardation time of Kelvin–Voigt damping in seconds: stress follows strain and its rate.
+        Dynamics only. How slowly the material gives way: the retardation time of Kelvin–Voigt
+        damping in seconds, by which stress follows strain and its rate.
     tolerance
-        Largest residual force at rest, relative to the load.
+        Largest residual force at rest, relative to the load. Not used with an `end_time`.
     max_time
-        Simulated time after which a run that is not at rest stops.
+        Dynamics without an `end_time` only. Simulated time after which a run that is not at rest
+        stops.
     end_time
-        Run to this time exactly, at rest or not: for motion over time.
+        Dynamics only. Run to this time exactly, at rest or not: for motion over time.
     control
         Statics only. ``"load"`` (default): all loads grow together; ``"arc-length"``: the
         same, followed through snaps; ``"volume"``: the pressurised volume grows to
         ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
     steps
-        Statics only: steps of arc-length or volume control; default 20.
+        Arc-length and volume control only: the steps; default 20.
     volume_ratio
-        The pressurised volume at the end of volume control over that without pressure;
+        Volume control only: the pressurised volume at its end over that without pressure;
         default 1.5.
     first_step
-        Statics only: the first step of the load path, as a part of the full load; default 1.
+        Load and arc-length control only: the first step of the path, as a part of the full load;
+        default 1, or an arc of 0.2.
 
     Examples
     --------

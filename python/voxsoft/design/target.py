@@ -14,6 +14,7 @@ from pydantic import (
     model_validator,
 )
 
+from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.operands import Name
 from voxsoft.design.parameter import AnyQuantity, as_one_kind, read_quantity, write_quantities
 from voxsoft.errors import DesignError
@@ -35,7 +36,11 @@ class Objective(Record):
     axis
         The component; default: the magnitude.
     cavity
-        Index of the cavity, for a metric that needs one; 0 is the largest.
+        The name of a chamber of the design, or the index of a cavity; 0 is the largest. Default:
+        ``"all"``.
+    percentile
+        For ``max_stress`` and ``max_stretch``: what so many percent of the volume stay at or
+        below, above 0 and at most 100; default: 100, the largest of all voxels.
 
     Examples
     --------
@@ -48,7 +53,8 @@ class Objective(Record):
     minimize: Name | None = None
     probe: Name | None = None
     axis: Axis | None = None
-    cavity: int | None = Field(None, ge=0)
+    cavity: CavityChoice | None = None
+    percentile: float | None = Field(None, gt=0, le=100)
 
     @model_validator(mode="after")
     def _one_direction(self) -> Objective:
@@ -74,7 +80,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, axis, cavity
+    probe, axis, cavity, percentile
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -90,7 +96,8 @@ class Constraint(Record):
     metric: Name
     probe: Name | None = None
     axis: Axis | None = None
-    cavity: int | None = Field(None, ge=0)
+    cavity: CavityChoice | None = None
+    percentile: float | None = Field(None, gt=0, le=100)
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None
     kind: str = "number"

@@ -13,10 +13,10 @@ from voxsoft.design.model import Design
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.errors import DesignError, VoxSoftError
-from voxsoft.records import Record, closest
+from voxsoft.records import Record, closest, steps_of
 
 #: What a change may reach, beside the parameters.
-_ROOTS = ("clamps", "layers", "loads", "materials", "parts", "probes", "shapes")
+_ROOTS = ("chambers", "clamps", "layers", "loads", "materials", "parts", "probes", "shapes")
 
 
 def number_of(design: Design, name: str) -> float:
@@ -28,7 +28,7 @@ def number_of(design: Design, name: str) -> float:
         The design.
     name
         A parameter, or the path of a number as ``--set`` writes it: ``loads.0.value``,
-        ``parts.0.material.young``, ``materials.soft.mu.1``.
+        ``parts[0].material.young``, ``materials.soft.mu.1``.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def number_of(design: Design, name: str) -> float:
     >>> from voxsoft.design import families
     >>> cylinder = families.cylinder()
     >>> number_of(cylinder, "radius"), number_of(cylinder, "loads.0.value")
-    (0.025, 4000.0)
+    (0.03, 6000.0)
     >>> number_of(cylinder, "loads.0.valve")
     Traceback (most recent call last):
     ...
@@ -80,9 +80,9 @@ def with_number(design: Design, name: str, value: float) -> Design:
     >>> stiffer = with_number(families.cylinder(), "loads.0.value", 5e3)
     >>> stiffer.loads[0].value
     5000.0
-    >>> wider = with_number(families.cylinder(), "radius", 0.0253)
+    >>> wider = with_number(families.cylinder(), "radius", 0.0403)
     >>> wider.shapes["outer"].radius, families.cylinder().parameters["radius"].max
-    (0.0253, 0.025)
+    (0.0403, 0.04)
     """
     if name in design.parameters:
         return _with_parameter(design, name, value)
@@ -92,13 +92,11 @@ def with_number(design: Design, name: str, value: float) -> Design:
 
 def _with_parameter(design: Design, name: str, value: float) -> Design:
     free = Parameter(value=value, kind=design.parameters[name].kind)
-    source = dict(design._source)
-    source["parameters"] = {**source["parameters"], name: free}
-    return Design.from_document(source, from_file=design._from_file)
+    return design.replace(parameters={**design.parameters, name: free})
 
 
 def _path(design: Design, name: str) -> list[str]:
-    path = name.split(".")
+    path = [str(step) for step in steps_of(name)]
     if path[0] not in _ROOTS or len(path) < 2:
         known = [*design.parameters]
         hint = closest(name, known) if known else ""
@@ -134,7 +132,7 @@ def _with(design: Design, node: Any, path: list[str], value: float, name: str) -
     step = path[0]
     child = _with(design, _child(design, node, step, name), path[1:], value, name)
     if isinstance(node, Design):
-        return node.model_copy(update={step: child})
+        return node.replace(**{step: child})
     if isinstance(node, Record):
         held = {key: getattr(node, field) for key, field in _fields(node).items()}
         try:

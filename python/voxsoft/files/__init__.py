@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
+
+from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
     from voxsoft.files.calibrations import write_calibration
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.run_folder import write_run
-    from voxsoft.files.study_folder import write_study
+    from voxsoft.files.study_folder import write_confirmation, write_study
 
 __all__ = [
     "check_design",
@@ -25,6 +26,7 @@ __all__ = [
     "save",
     "write_calibration",
     "write_comparison",
+    "write_confirmation",
     "write_family",
     "write_mesh",
     "write_run",
@@ -32,25 +34,19 @@ __all__ = [
 ]
 
 # Loaded when first used: a study folder needs matplotlib and pandas, a design file does not.
-_HOMES: Final = {
-    "check_design": "checks",
-    "check_mesh": "checks",
-    "export": "exports",
-    "load": "designs",
-    "read_mesh": "meshes",
-    "save": "designs",
-    "write_calibration": "calibrations",
-    "write_comparison": "comparison_report",
-    "write_family": "family_file",
-    "write_mesh": "meshes",
-    "write_run": "run_folder",
-    "write_study": "study_folder",
+_HOMES = {
+    "check_design": "voxsoft.files.checks",
+    "check_mesh": "voxsoft.files.checks",
+    "export": "voxsoft.files.exports",
+    "load": "voxsoft.files.designs",
+    "read_mesh": "voxsoft.files.meshes",
+    "save": "voxsoft.files.designs",
+    "write_calibration": "voxsoft.files.calibrations",
+    "write_confirmation": "voxsoft.files.study_folder",
+    "write_comparison": "voxsoft.files.comparison_report",
+    "write_family": "voxsoft.files.family_file",
+    "write_mesh": "voxsoft.files.meshes",
+    "write_run": "voxsoft.files.run_folder",
+    "write_study": "voxsoft.files.study_folder",
 }
-
-
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - any public object
-    if name not in _HOMES:
-        raise AttributeError(f"module 'voxsoft.files' has no attribute '{name}'")
-    value = getattr(import_module(f"voxsoft.files.{_HOMES[name]}"), name)
-    globals()[name] = value
-    return value
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

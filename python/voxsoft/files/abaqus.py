@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from itertools import takewhile
 from pathlib import Path
 from typing import TextIO
 
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import FileError
 from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
+from voxsoft.files.region_names import comments_of, labels_of, names_in
 from voxsoft.mesh import Mesh
 
 #: Corners of the faces S1 to S4 of a C3D4 element, outward.
@@ -33,7 +35,9 @@ def write(path: Path, content: MeshFile) -> None:
     """Write nodes, elements, sets and surfaces."""
     mesh = content.mesh
     with path.open("w", encoding="ascii", newline="\n") as file:
-        file.write(f"{_BEGIN}\n*NODE, NSET=ALL-NODES\n")
+        labels = labels_of(content.regions)
+        comments = "".join(f"** {line}\n" for line in comments_of(labels))
+        file.write(f"{_BEGIN}\n{comments}*NODE, NSET=ALL-NODES\n")
         for number, (x, y, z) in enumerate(mesh.vertices.tolist(), start=1):
             file.write(f"{number}, {x:.17g}, {y:.17g}, {z:.17g}\n")
         file.write("*ELEMENT, TYPE=C3D4, ELSET=ALL-ELEMENTS\n")
@@ -42,7 +46,7 @@ def write(path: Path, content: MeshFile) -> None:
         for part in np.unique(mesh.tet_part).tolist():
             _write_set(file, "ELSET", f"PART-{part}", np.flatnonzero(mesh.tet_part == part))
         for name, vertices in content.regions.items():
-            _write_set(file, "NSET", name, vertices)
+            _write_set(file, "NSET", labels[name], vertices)
         for number, cavity in enumerate(mesh.cavities, start=1):
             _write_surface(file, f"CAVITY-{number}", mesh, cavity.triangles)
         file.write(f"{_END}\n")
@@ -98,9 +102,16 @@ def read(path: Path) -> MeshFile:
     if faces:
         surfaces = [np.concatenate(faces[number]) for number in sorted(faces)]
         mesh = with_cavities(mesh, surfaces, str(path))
+    names = names_in(_comments(path))
     regions = {
-        name: vertex_set(str(path), name, vertices, len(data.points))
-        for name, vertices in data.point_sets.items()
-        if name.upper() != "ALL-NODES"
+        names.get(label, label): vertex_set(str(path), label, vertices, len(data.points))
+        for label, vertices in data.point_sets.items()
+        if label.upper() != "ALL-NODES"
     }
     return MeshFile(mesh, regions)
+
+
+def _comments(path: Path) -> Iterator[str]:
+    """The comments that a file begins with."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        yield from takewhile(lambda line: line.startswith("**"), file)

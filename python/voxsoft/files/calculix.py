@@ -41,7 +41,7 @@ def calculix_path() -> Path:
             "CalculiX",
             f'there is no program "{PROGRAM}" on the search path',
             "apt install calculix-ccx (Debian, Ubuntu), or compare with scikit-fem: "
-            "pip install 'voxsoft[fea]'",
+            "pip install scikit-fem",
         )
     return Path(found)
 

@@ -7,6 +7,7 @@ import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from voxsoft._folders import folder_name
 from voxsoft.calibration import Calibration
 from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath
@@ -44,7 +45,7 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
         The folder or a file in it cannot be written.
     """
     place = make_folder(folder)
-    card, summary = place / f"{name}.toml", place / "summary.json"
+    card, summary = place / f"{folder_name(name, 'card')}.toml", place / "summary.json"
     save_card(calibration.card(name), card)
     write_json(summary, calibration.summary() | provenance())
     written = [card, summary]

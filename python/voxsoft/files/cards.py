@@ -8,6 +8,7 @@ from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_text import write_toml
 from voxsoft.files.whole import write_whole
 from voxsoft.materials import Card
+from voxsoft.units import EXACT
 
 
 def card_text(card: Card) -> str:
@@ -19,7 +20,7 @@ def card_text(card: Card) -> str:
     >>> card_text(load_card("ecoflex-00-30")).splitlines()[1]
     'name = "ecoflex-00-30"'
     """
-    dumped = card.model_dump(mode="json", by_alias=True, exclude_none=True)
+    dumped = card.model_dump(mode="json", by_alias=True, exclude_none=True, context=EXACT)
     return write_toml({key: value for key, value in dumped.items() if value not in ("", {})})
 
 

@@ -14,9 +14,8 @@ from voxsoft.errors import UnitError, VoxSoftError
 from voxsoft.files.designs import FilePath, load
 from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.surface_files import Surface, read_surface
-from voxsoft.shapes.triangles import open_edges
-from voxsoft.simulation import CheckReport, Finding, check
-from voxsoft.simulation.check import findings_of_holes
+from voxsoft.simulation import CheckReport, Diagnostic, check
+from voxsoft.simulation.surfaces import findings_of_surface
 from voxsoft.units import format_quantity, parse
 
 #: Voxels along the longest side of a mesh whose voxel size is not given.
@@ -60,7 +59,7 @@ def check_mesh(
     Parameters
     ----------
     path
-        ``.stl``, ``.obj``, ``.ply``, ``.vtk`` or ``.vtu``.
+        ``.stl``, ``.obj``, ``.ply``, ``.off``, ``.vtu`` or another that meshio reads.
     unit
         What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``.
     voxel_size
@@ -86,22 +85,19 @@ def check_mesh(
     metre = parse(f"1 {unit}", "length", where="--unit")
     size, chosen = _voxel_size(voxel_size, _extents(surface) * metre)
     try:
-        report = check(voxelize(TriangleMesh(path=str(file), unit=unit), size))
+        mesh = TriangleMesh(path=str(file), unit=unit)
+        report = check(voxelize(mesh, size))
     except VoxSoftError as error:
         return _report_of(error)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
-    findings = [
-        *report.findings,
-        *findings_of_holes(*open_edges(surface.triangles), file.name),
-        *chosen,
-    ]
+    findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
     return replace(report, findings=tuple(findings))
 
 
 def _report_of(error: VoxSoftError) -> CheckReport:
     return CheckReport(
         tuple(
-            Finding("error", problem.where, problem.what, problem.hint)
+            Diagnostic("error", problem.where, problem.what, problem.hint)
             for problem in error.problems
         )
     )
@@ -131,7 +127,7 @@ def _longest(extents: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -
 
 def _voxel_size(
     given: str | float | None, extents: np.ndarray[tuple[int], np.dtype[np.float64]]
-) -> tuple[float, list[Finding]]:
+) -> tuple[float, list[Diagnostic]]:
     """The voxel size in m, and a warning where nobody chose it."""
     if isinstance(given, str):
         given = parse(given, "length", where="--voxel-size")
@@ -143,4 +139,4 @@ def _voxel_size(
     if size == 0:
         raise UnitError("--voxel-size", "cannot be chosen for a body without size", 'write "2 mm"')
     what = f"{format_quantity(size, 'length')} was chosen, about {DEFAULT_VOXELS} along the body"
-    return size, [Finding("warning", "voxel size", what, "give --voxel-size")]
+    return size, [Diagnostic("warning", "voxel size", what, "give --voxel-size")]

@@ -192,6 +192,8 @@ def _answers(comparison: Comparison) -> Iterator[str]:
 
 
 def _estimates(comparison: Comparison) -> Iterator[str]:
+    for warning in comparison.warnings:
+        yield f'<p class="bad">{escape(str(warning))}</p>'
     if not comparison.estimates:
         yield "<p>No series has two runs that came to rest.</p>"
         return

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from voxsoft._folders import folder_name
 from voxsoft.errors import FileError, MeasurementError
 from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath, read_document, read_text
@@ -112,7 +113,7 @@ def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]
         The folder or a file in it cannot be written.
     """
     place = make_folder(folder)
-    written = [place / f"{card.name}.toml", place / "summary.json"]
+    written = [place / f"{folder_name(card.name, 'card')}.toml", place / "summary.json"]
     save_card(card, written[0])
     write_json(written[1], fit.summary() | provenance())
     written.append(

@@ -5,14 +5,16 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from voxsoft.design import Design, set_values
+from voxsoft.design.documents import with_whole_paths
 from voxsoft.errors import DesignError, FileError, Problem
 from voxsoft.files.toml_text import line_of
 from voxsoft.files.whole import write_whole
+from voxsoft.records import steps_of
 
 if TYPE_CHECKING:
     from voxsoft.design.resolution import Document
@@ -55,16 +57,25 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     ...     load(file)
     ... except DesignError as error:
     ...     print(error.problems[0].where, "·", error.problems[0].what)
-    broken.toml, line 2, voxel_size · "5 kPa" is a pressure; a length is due
+    broken.toml, line 2, voxel_size · "5 kPa" is a pressure; expected a length
     """
     text = read_text(path)
     document = read_document(text, Path(path).name)
+    _refuse_card(document, path)
     try:
         changed = with_whole_paths(set_values(document, assignments), Path(path).parent)
         return Design.from_document(changed, parameters)
     except DesignError as error:
-        problems = (_with_line(problem, text, Path(path).name) for problem in error.problems)
-        raise type(error).listing(problems) from None
+        raise type(error).listing(_with_lines(error.problems, text, Path(path).name)) from None
+
+
+def _refuse_card(document: Document, path: FilePath) -> None:
+    if isinstance(document.get("material"), dict) and "parts" not in document:
+        raise DesignError(
+            Path(path).name,
+            "is a material card, not a design",
+            f'look at it with `voxsoft material show`, or write material = "{path}" in a design',
+        )
 
 
 def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
@@ -135,19 +146,6 @@ def read_document(text: str, name: str) -> Document:
         raise FileError(name, f"holds a value that cannot be read: {error}") from None
 
 
-def with_whole_paths(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
-    """Complete the relative paths of mesh shapes, which are meant from the file's folder."""
-    if isinstance(value, list):
-        return [with_whole_paths(entry, folder) for entry in value]
-    if not isinstance(value, dict):
-        return value
-    table = {key: with_whole_paths(entry, folder) for key, entry in value.items()}
-    if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
-        # A path that is absolute already stays as it is.
-        table["path"] = str(folder.absolute() / table["path"])
-    return table
-
-
 _AT: Final = re.compile(r"\s*\(at (?:line (\d+), column (\d+)|end of document)\)$")
 
 
@@ -163,21 +161,9 @@ def _position(message: str, text: str, name: str) -> tuple[str, str]:
     return where, f"{what}; the file ends too early"
 
 
-_STEP: Final = re.compile(r"\[(\d+)\]|([^.\[\]]+)")
-
-
-def steps_of(where: str) -> list[str | int]:
-    """Read the place that a problem names as keys and indices.
-
-    Examples
-    --------
-    >>> steps_of("parts[0].material")
-    ['parts', 0, 'material']
-    """
-    return [int(index) if index else key for index, key in _STEP.findall(where)]
-
-
-def _with_line(problem: Problem, text: str, name: str) -> Problem:
-    line = line_of(text, steps_of(problem.where))
-    where = f"{name}, line {line}" if line else name
-    return Problem(f"{where}, {problem.where}" if problem.where else where, *problem[1:])
+def _with_lines(problems: Iterable[Problem], text: str, name: str) -> Iterator[Problem]:
+    """Say the line of each problem, in the order of the lines."""
+    found = [(line_of(text, steps_of(problem.where)) or 0, problem) for problem in problems]
+    for line, problem in sorted(found, key=lambda pair: pair[0]):
+        where = f"{name}, line {line}" if line else name
+        yield Problem(f"{where}, {problem.where}" if problem.where else where, *problem[1:])

@@ -17,6 +17,7 @@ from voxsoft.errors import FileError
 from voxsoft.files.designs import FilePath, load, read_text, save
 from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
+from voxsoft.files.run_folder import csv_text
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import named_regions
 from voxsoft.units import parse
@@ -132,8 +133,8 @@ def _write_body(goal: Path, body: MeshFile, deformed: bool, metre: float) -> Non
     if suffix in _SURFACES:
         write_mesh(goal, replace(mesh, vertices=mesh.vertices / metre))
     else:
-        data = dict(body.point_data) if suffix == ".vtu" else {}
-        write_mesh(goal, mesh, point_data=data, regions=body.regions)
+        points, cells = (body.point_data, body.cell_data) if suffix == ".vtu" else ({}, {})
+        write_mesh(goal, mesh, point_data=points, cell_data=cells, regions=body.regions)
 
 
 def _probes_csv(folder: Path) -> str:
@@ -143,5 +144,4 @@ def _probes_csv(folder: Path) -> str:
         rows = [[name, *probe["displacement"]] for name, probe in summary["probes"].items()]
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise FileError(str(file), f"is damaged: {error}", "run the design again") from None
-    lines = ["probe,dx_m,dy_m,dz_m", *(f"{n},{x:.9g},{y:.9g},{z:.9g}" for n, x, y, z in rows)]
-    return "\n".join(lines) + "\n"
+    return csv_text(["probe", "dx_m", "dy_m", "dz_m"], rows)

@@ -8,6 +8,8 @@ groups in this version of the format only where every entity owns a vertex.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 from typing import TextIO
 
@@ -17,6 +19,7 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import FileError
 from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
+from voxsoft.files.region_names import comments_of, labels_of, names_in
 from voxsoft.mesh import Mesh
 
 _DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
@@ -30,8 +33,9 @@ def write(path: Path, content: MeshFile) -> None:
     """Write an ASCII file of version 4.1."""
     mesh = content.mesh
     groups: list[Group] = []
+    labels = labels_of(content.regions)
     for number, (name, vertices) in enumerate(content.regions.items(), start=1):
-        groups.append((0, number, name, vertices[:, None]))
+        groups.append((0, number, labels[name], vertices[:, None]))
     for number, cavity in enumerate(mesh.cavities, start=1):
         groups.append((2, number, f"cavity-{number}", cavity.triangles))
     for part in np.unique(mesh.tet_part).tolist():
@@ -39,6 +43,8 @@ def write(path: Path, content: MeshFile) -> None:
 
     with path.open("w", encoding="ascii", newline="\n") as file:
         file.write("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
+        if comments := comments_of(labels):
+            file.write("\n".join(["$Comments", *comments, "$EndComments\n"]))
         names = [f'{dimension} {number} "{name}"' for dimension, number, name, _ in groups]
         file.write("\n".join(["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames\n"]))
         _write_entities(file, mesh, groups)
@@ -113,8 +119,15 @@ def read(path: Path) -> MeshFile:
         surfaces = [np.concatenate(cavities[number]) for number in sorted(cavities)]
         mesh = with_cavities(mesh, surfaces, str(path))
     count = len(mesh.vertices)
-    kept = {name: np.concatenate(rows) for name, rows in regions.items()}
+    written = names_in(_comments(path))
+    kept = {written.get(label, label): np.concatenate(rows) for label, rows in regions.items()}
     return MeshFile(mesh, {name: vertex_set(str(path), name, v, count) for name, v in kept.items()})
+
+
+def _comments(path: Path) -> Iterator[str]:
+    """Lines of the section of comments before the names, if there is one."""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        yield from takewhile(lambda line: not line.startswith(("$PhysicalNames", "$Nodes")), file)
 
 
 def _part_ids(tags: NDArray[np.integer]) -> NDArray[np.integer]:

@@ -10,14 +10,14 @@ Suffix   Format                        Parts   Regions Cavities Data
 ``.obj`` Wavefront OBJ of the boundary
 ======== ============================= ======= ======= ======== =====
 
-Only ``.vtu`` keeps which voxel a tet belongs to. Surface formats can be written, not read: a
-surface enters as a shape.
+Only ``.vtu`` keeps which voxel a tet belongs to. Of other volume formats that meshio reads, such as
+Medit's ``.mesh`` and Netgen's ``.vol``, the tetrahedra are taken. Surface formats can be written,
+not read: a surface enters as a shape.
 """
 
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -25,16 +25,22 @@ import meshio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from voxsoft.errors import FileError, MeshError
+from voxsoft.errors import DesignError, FileError, MeshError
 from voxsoft.files import abaqus, gmsh, vtu
 from voxsoft.files.mesh_file import MeshFile, vertex_set
 from voxsoft.files.whole import replace_whole
 from voxsoft.mesh import Mesh
+from voxsoft.records import check_name
+from voxsoft.shapes.surface_files import known_suffixes
 
 
 def _write_stl(path: Path, content: MeshFile) -> None:
-    triangles = [("triangle", content.mesh.triangles)]
-    meshio.stl.write(str(path), meshio.Mesh(content.mesh.vertices, triangles), binary=True)
+    # Not by meshio: NumPy's `tofile`, which it uses, loses what a full disk refuses without a word.
+    import trimesh
+
+    mesh = content.mesh
+    body = trimesh.Trimesh(mesh.vertices, mesh.triangles, process=False)
+    path.write_bytes(trimesh.exchange.stl.export_stl(body))
 
 
 def _write_obj(path: Path, content: MeshFile) -> None:
@@ -55,6 +61,16 @@ _READERS: dict[str, Callable[[Path], MeshFile]] = {
     ".inp": abaqus.read,
 }
 _SURFACES = {".stl", ".obj"}
+_ONLY_SURFACES = {*_SURFACES, ".ply", ".off"}
+
+
+def _read_other(path: Path) -> MeshFile:
+    """The linear tetrahedra of a file of any other format that meshio reads."""
+    data = meshio.read(path)
+    tets = [block.data for block in data.cells if block.type == "tetra"]
+    if not tets:
+        raise FileError(str(path), "holds no linear tetrahedra", "enter it as a shape")
+    return MeshFile(Mesh.from_tets(data.points, np.concatenate(tets)), {}, {}, {})
 
 
 def write_mesh(
@@ -76,7 +92,8 @@ def write_mesh(
     point_data, cell_data : mappings of str to array_like, shape (n, ...) or (m, ...), optional
         Values at vertices and in tets, such as displacements and stretches; ``.vtu`` only.
     regions : mapping of str to array_like of int, optional
-        Vertices of each named region. Names are letters, digits, ``_`` and ``-``, a letter first.
+        Vertices of each named region. In ``.msh`` and ``.inp`` a name of more than letters, digits,
+        ``_`` and ``-`` becomes a label of these; reading gives the name back.
 
     Raises
     ------
@@ -119,6 +136,8 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
 def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
     """Return the mesh of a ``.vtu``, ``.msh`` or ``.inp`` file with its regions and data.
 
+    Of other formats that meshio reads only the tetrahedra are taken.
+
     Files of other programs can be read too: linear tetrahedra are taken, cells of less dimension
     only where they name a region. Cavities that the file does not name are found.
 
@@ -136,12 +155,12 @@ def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
     """
     source = Path(path)
     suffix = source.suffix.lower()
-    if suffix in _SURFACES:
+    if suffix in _ONLY_SURFACES:
         hint = "enter it as a shape and voxelize it"
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
-    reader = _READERS.get(suffix)
-    if reader is None:
-        raise _unknown_format(source, list(_READERS))
+    reader = _READERS.get(suffix, _read_other)
+    if suffix not in known_suffixes():
+        raise _unknown_format(source, [*_READERS, *sorted(set(known_suffixes()) - set(_READERS))])
     if not source.is_file():
         raise FileError(str(source), "no such file")
     try:
@@ -165,9 +184,10 @@ def _checked_regions(
     path: Path, regions: Mapping[str, ArrayLike], count: int
 ) -> dict[str, NDArray[np.int64]]:
     for name in regions:
-        if not re.fullmatch(r"[A-Za-z][\w-]*", name, re.ASCII):
-            hint = "use letters, digits, _ and -, a letter first"
-            raise FileError(str(path), f"{name!r} cannot name a region", hint)
+        try:
+            check_name(name)
+        except DesignError as error:
+            raise FileError(str(path), f"a region: {error.what}", error.hint) from None
     return {name: vertex_set(str(path), name, v, count) for name, v in regions.items()}
 
 

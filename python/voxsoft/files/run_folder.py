@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -12,13 +14,15 @@ from typing import Any
 
 import numpy as np
 
-from voxsoft.errors import FileError
+from voxsoft.errors import OutputError
 from voxsoft.files.meshes import write_mesh
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
 
 
-def write_run(result: Result, folder: str | os.PathLike[str]) -> Path:
+def write_run(
+    result: Result, folder: str | os.PathLike[str], *, more: Mapping[str, Any] | None = None
+) -> Path:
     """Write a run folder: ``design.toml`` (resolved), ``summary.json`` and ``result.vtu``.
 
     Parameters
@@ -27,6 +31,8 @@ def write_run(result: Result, folder: str | os.PathLike[str]) -> Path:
         What came out.
     folder
         Where; made if it does not exist, files in it are replaced.
+    more
+        Further entries of the summary.
 
     Raises
     ------
@@ -40,6 +46,7 @@ def write_run(result: Result, folder: str | os.PathLike[str]) -> Path:
         "hash": result.design.hash,
         "voxel_size": result.design.voxel_size,
         **provenance(),
+        **(more or {}),
     }
     write_json(folder / "summary.json", summary)
     write_mesh(
@@ -49,7 +56,9 @@ def write_run(result: Result, folder: str | os.PathLike[str]) -> Path:
             "displacement": result.displacements,
             "velocity": result.velocities,
             "reaction": result.reactions,
+            **result.fields.point_data(),
         },
+        cell_data=result.fields.cell_data(result.mesh),
         regions=named_regions(result.design, result.mesh),
     )
     if len(result.history.times) > 1:
@@ -67,12 +76,12 @@ def provenance() -> dict[str, Any]:
 
 
 def make_folder(folder: str | os.PathLike[str]) -> Path:
-    """Make a folder and its parents; :class:`FileError` where that fails."""
+    """Make a folder and its parents; :class:`OutputError` where that fails."""
     path = Path(folder)
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise FileError(str(path), f"cannot be made a folder: {error.strerror}") from error
+        raise OutputError(str(path), f"cannot be made a folder: {error.strerror}") from error
     return path
 
 
@@ -95,6 +104,19 @@ def _history_csv(result: Result) -> str:
     names = list(result.history.probes)
     header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
     columns = [result.history.times[:, None], *(result.history.probes[name] for name in names)]
-    rows = np.hstack(columns)
-    lines = [",".join(header), *(",".join(f"{value:.9g}" for value in row) for row in rows)]
-    return "\n".join(lines) + "\n"
+    return csv_text(header, np.hstack(columns).tolist())
+
+
+def csv_text(header: Iterable[str], rows: Iterable[Iterable[str | float]]) -> str:
+    r"""Write a table as comma-separated text, numbers to nine digits, names quoted where needed.
+
+    Examples
+    --------
+    >>> csv_text(["probe", "dx_m"], [["tip, left", 1 / 3]])
+    'probe,dx_m\n"tip, left",0.333333333\n'
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows([c if isinstance(c, str) else f"{c:.9g}" for c in row] for row in rows)
+    return text.getvalue()

@@ -6,6 +6,7 @@ import os
 from importlib.util import find_spec
 from pathlib import Path
 
+from voxsoft.comparison import Confirmation
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
 from voxsoft.files.whole import write_whole
@@ -51,3 +52,16 @@ def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Pat
     if result.ranking and len(result.objectives) > 1:
         written.append(save_figure(plot_pareto(result), folder / "pareto.png"))
     return written
+
+
+def write_confirmation(found: Confirmation, folder: str | os.PathLike[str]) -> Path:
+    """Write what solving the best designs again gave, as ``confirmed.json``.
+
+    Raises
+    ------
+    FileError
+        The folder cannot be written.
+    """
+    file = make_folder(folder) / "confirmed.json"
+    write_json(file, found.summary() | provenance())
+    return file

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from xml.sax.saxutils import escape
 
 import meshio
 import numpy as np
@@ -53,7 +54,15 @@ def write(path: Path, content: MeshFile) -> None:
     points = dict(content.point_data)
     for name, vertices in content.regions.items():
         points[_REGION + name] = np.isin(np.arange(len(mesh.vertices)), vertices).astype(np.uint8)
+    points = {_attribute(name): values for name, values in points.items()}
+    arrays = {_attribute(name): values for name, values in arrays.items()}
     meshio.vtu.write(str(path), meshio.Mesh(mesh.vertices, cells, points, arrays))
+
+
+def _attribute(name: str) -> str:
+    """A name as it stands in XML, in ASCII: meshio writes names as they come."""
+    escaped = escape(name, {'"': "&quot;"})
+    return escaped.encode("ascii", "xmlcharrefreplace").decode("ascii")
 
 
 def read(path: Path) -> MeshFile:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from voxsoft.errors import FileError
+from voxsoft.errors import OutputError
 
 
 def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
@@ -23,7 +23,7 @@ def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
 
     Raises
     ------
-    FileError
+    OutputError
         The file cannot be written; the target is as it was.
     """
     beside = target.with_name(f".{target.stem}-{uuid.uuid4().hex[:8]}{target.suffix}")
@@ -33,7 +33,7 @@ def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         hint = "check that the folder exists and the disk has room"
-        raise FileError(str(target), f"cannot be written: {reason}", hint) from error
+        raise OutputError(str(target), f"cannot be written: {reason}", hint) from error
     finally:
         with suppress(OSError, ValueError):
             beside.unlink()
@@ -44,7 +44,7 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
 
     Raises
     ------
-    FileError
+    OutputError
         The file cannot be written.
     """
     data = content.encode("utf-8") if isinstance(content, str) else content

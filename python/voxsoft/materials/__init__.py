@@ -17,7 +17,7 @@ True
 True
 """
 
-from voxsoft.materials.card import Card, card_names, load_card, material_of
+from voxsoft.materials.card import Card, card_names, is_card_path, load_card, material_of
 from voxsoft.materials.constants import constants_of, with_constants
 from voxsoft.materials.fiber import Fiber
 from voxsoft.materials.gent import Gent
@@ -30,6 +30,7 @@ from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
 from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
+from voxsoft.materials.tested import StretchRange
 from voxsoft.materials.yeoh import Yeoh
 
 __all__ = [
@@ -50,9 +51,11 @@ __all__ = [
     "PronyTerm",
     "Rigid",
     "StableRange",
+    "StretchRange",
     "Yeoh",
     "card_names",
     "constants_of",
+    "is_card_path",
     "load_card",
     "material_of",
     "nominal_stress",

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Final, Literal
 
 from pydantic import Field, ValidationError
 
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.materials.model import AnyMaterial, Material
-from voxsoft.records import Record, closest, plain_error
+from voxsoft.records import FrozenDict, Name, Record, Table, closest, plain_error
 from voxsoft.units import FILE_CONTEXT, UnitOf
+
+SCHEMA: Final = "voxsoft-material/1"
 
 
 class Card(Record):
@@ -36,27 +39,36 @@ class Card(Record):
         Under which terms the numbers may be passed on, where they are not VoxSoft's own.
     elongation_at_break
         Strain at break (change of length over length), if it was measured.
+    same_as, choice
+        Of a plain name, such as ``ecoflex-00-30``: the card that it stands for, and why that one.
     calibration
         What a calibration noted: voxel size, solver settings, errors, seed, versions.
 
     Examples
     --------
     >>> card = load_card("ecoflex-00-30")
-    >>> card.material.model
+    >>> card.material.model, card.same_as
+    ('yeoh', 'ecoflex-00-30-epfl-yeoh')
+    >>> load_card("ecoflex-00-30-lattice").material.model
     'lattice'
     """
 
     error_type: ClassVar[type[VoxSoftError]] = MaterialError
 
-    schema_: Literal["voxsoft-material/1"] = Field("voxsoft-material/1", alias="schema")
-    name: str
+    schema_: Literal["voxsoft-material/1"] = Field(SCHEMA, alias="schema")
+    name: Name
     title: str = ""
     material: AnyMaterial
     source: str = ""
     caution: str = ""
     licence: str = ""
+    same_as: str = ""
+    choice: str = ""
     elongation_at_break: Annotated[float, UnitOf("number", positive=True)] | None = None
-    calibration: dict[str, Any] = Field(default_factory=dict)
+    calibration: Table[str, Any] = Field(default_factory=FrozenDict)
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.material))  # what a calibration noted may hold lists
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Card:
@@ -67,12 +79,30 @@ class Card(Record):
             raise plain_error(error, cls, document) from None
 
 
+# How the cards that came from tests end; a plain name has no such ending.
+_ENDINGS: Final = ("-tensile", "-bending")
+_PLAIN_NAMES: Final = "plain-names.toml"
+
+
 @cache
 def _shipped() -> Mapping[str, Card]:
     folder = resources.files("voxsoft.materials") / "cards"
     texts = (file.read_text(encoding="utf-8") for file in _card_files(folder))
-    cards = (Card.from_document(tomllib.loads(text)) for text in texts)
-    return {card.name: card for card in sorted(cards, key=lambda card: card.name)}
+    cards = {card.name: card for card in map(Card.from_document, map(tomllib.loads, texts))}
+    choices = tomllib.loads((folder / _PLAIN_NAMES).read_text(encoding="utf-8"))
+    plain = {
+        name: _renamed(cards[choice["card"]], name, choice["why"])
+        for name, choice in choices.items()
+    }
+    for name, card in cards.items():
+        short = next((name.removesuffix(end) for end in _ENDINGS if name.endswith(end)), name)
+        if short != name and short not in plain:
+            plain[short] = _renamed(card, short, "The only card of it.")
+    return dict(sorted((cards | plain).items()))
+
+
+def _renamed(card: Card, name: str, why: str) -> Card:
+    return card.model_copy(update={"name": name, "same_as": card.name, "choice": why})
 
 
 def _card_files(folder: Traversable) -> Iterator[Traversable]:
@@ -80,7 +110,7 @@ def _card_files(folder: Traversable) -> Iterator[Traversable]:
     for entry in folder.iterdir():
         if entry.is_dir():
             yield from _card_files(entry)
-        elif entry.name.endswith(".toml"):
+        elif entry.name.endswith(".toml") and entry.name != _PLAIN_NAMES:
             yield entry
 
 
@@ -90,18 +120,37 @@ def card_names() -> tuple[str, ...]:
     Examples
     --------
     >>> [name for name in card_names() if name.startswith("ecoflex-00-20")]
-    ['ecoflex-00-20', 'ecoflex-00-20-bending']
+    ['ecoflex-00-20', 'ecoflex-00-20-bending', 'ecoflex-00-20-lattice']
     """
     return tuple(_shipped())
 
 
-def load_card(name: str) -> Card:
-    """Return a shipped card by name.
+def is_card_path(name: str | os.PathLike[str]) -> bool:
+    """Whether what names a material is the path of a card's file: its suffix is ``.toml``.
+
+    Examples
+    --------
+    >>> is_card_path("runs/mine/mine.toml"), is_card_path("ecoflex-00-30")
+    (True, False)
+    """
+    return os.fspath(name).lower().endswith(".toml")
+
+
+def load_card(name: str | os.PathLike[str]) -> Card:
+    """Return a card: a shipped one by its name, any other by the path of its file.
+
+    Parameters
+    ----------
+    name
+        A key of :func:`card_names`, or a path that ends with ``.toml``, such as that of the card
+        that a calibration wrote.
 
     Raises
     ------
     MaterialError
-        No such card; the message suggests the closest.
+        No such card, and the message suggests the closest; or the file holds no valid card.
+    FileError
+        The file cannot be read.
 
     Examples
     --------
@@ -111,12 +160,23 @@ def load_card(name: str) -> Card:
     voxsoft.errors.MaterialError: material: "ecoflex-0030" is not a card. Try: did you mean \
 "ecoflex-00-30"?
     """
+    if is_card_path(name):
+        # `files` lies above `materials` in the layers; this convenience reaches up when called.
+        from voxsoft.files.cards import load_card_file
+
+        return load_card_file(name)
     cards = _shipped()
+    name = os.fspath(name)
     if name not in cards:
-        raise MaterialError("material", f'"{name}" is not a card', closest(name, cards))
+        hint = closest(name, cards)
+        if os.sep in name:
+            hint = "the path of a card ends with .toml"
+        raise MaterialError("material", f'"{name}" is not a card', hint)
     return cards[name]
 
 
-def material_of(material: str | Material) -> Material:
-    """Return the model behind a card's name; a model is returned as it is."""
-    return load_card(material).material if isinstance(material, str) else material
+def material_of(material: str | os.PathLike[str] | Material) -> Material:
+    """Return the model behind a card's name or path; a model is returned as it is."""
+    if isinstance(material, (str, os.PathLike)):
+        return load_card(material).material
+    return material

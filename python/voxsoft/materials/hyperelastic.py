@@ -18,6 +18,7 @@ from pydantic import (
 
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.materials.lattice import SILICONE_DENSITY
+from voxsoft.materials.tested import StretchRange
 from voxsoft.records import Record
 from voxsoft.units import PositiveDensity, PositiveTime, UnitOf, format_quantity
 
@@ -42,7 +43,7 @@ SignedModulus = Annotated[float, UnitOf("modulus")]
 #: Poisson's ratio where a model names none: the bulk modulus is then 500 shear moduli.
 NEARLY_INCOMPRESSIBLE = 0.499
 
-_STANDING = ("poisson", "density", "prony")
+_STANDING = ("poisson", "density", "prony", "tested_stretch")
 
 
 def _below_half(poisson: float) -> float:
@@ -103,6 +104,9 @@ class Hyperelastic(Record):
         Branches that relax. The constants are those at rest, when all branches have relaxed; a
         sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1.
         Default: none, a purely elastic material.
+    tested_stretch
+        How far the specimens were stretched that the constants come from, if that is known;
+        results that go farther carry a warning. Default: not known.
     """
 
     error_type: ClassVar[type[VoxSoftError]] = MaterialError
@@ -111,6 +115,7 @@ class Hyperelastic(Record):
     poisson: PoissonRatio = NEARLY_INCOMPRESSIBLE
     density: PositiveDensity = SILICONE_DENSITY
     prony: tuple[PronyTerm, ...] = Field(default=())
+    tested_stretch: StretchRange | None = None
 
     if TYPE_CHECKING:
 
@@ -138,7 +143,7 @@ class Hyperelastic(Record):
     def log_hessian(self, stretches: ArrayLike) -> Floats:
         """``∂²W/∂ln λᵢ ∂ln λⱼ`` in Pa, (3, ...) → (3, 3, ...)."""
 
-    def young(self, voxel_size: float = 1.0) -> float:
+    def young(self, voxel_size: float | str = 1.0) -> float:
         """Young's modulus in Pa at small strain, ``2 μ₀ (1 + ν)``.
 
         Parameters

@@ -8,8 +8,9 @@ from pydantic import Field
 
 from voxsoft import _core
 from voxsoft.errors import MaterialError, VoxSoftError
+from voxsoft.materials.tested import StretchRange
 from voxsoft.records import Record
-from voxsoft.units import PositiveDensity, UnitOf
+from voxsoft.units import PositiveDensity, UnitOf, to_si
 
 #: Density of platinum-cure silicones such as EcoFlex and Dragon Skin, kg/m³ (maker's datasheets).
 SILICONE_DENSITY = 1070.0
@@ -27,11 +28,16 @@ class Lattice(Record):
     Parameters
     ----------
     edge
-        Edge modulus. Young's modulus is 2.1 to 2.6 times as large, see :meth:`young`.
+        How hard the material resists stretch: the modulus of the springs along the edges of its
+        tetrahedra. Young's modulus is 2.1 to 2.6 times as large, see :meth:`young`.
     bulk
-        Bulk modulus of the tetrahedra. Large values lock thin walls in bending.
+        How hard the material resists a change of volume: the bulk modulus of the tetrahedra. Large
+        values lock thin walls in bending.
     density
         Default 1070 kg/m³, a platinum-cure silicone.
+    tested_stretch
+        How far the specimens were stretched that the constants come from, if that is known;
+        results that go farther carry a warning. Default: not known.
 
     Examples
     --------
@@ -50,8 +56,9 @@ class Lattice(Record):
     edge: PositiveModulus
     bulk: PositiveModulus
     density: PositiveDensity = SILICONE_DENSITY
+    tested_stretch: StretchRange | None = None
 
-    def young(self, voxel_size: float = 1.0) -> float:
+    def young(self, voxel_size: float | str = 1.0) -> float:
         """Young's modulus in Pa for small strain along the axes of a large block of voxels.
 
         Parameters
@@ -59,11 +66,11 @@ class Lattice(Record):
         voxel_size
             Edge length of a voxel in m; moduli do not depend on it.
         """
-        return _core.lattice_constants(self.core, voxel_size)[0]
+        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[0]
 
-    def poisson(self, voxel_size: float = 1.0) -> float:
+    def poisson(self, voxel_size: float | str = 1.0) -> float:
         """Poisson's ratio under the same conditions as :meth:`young`."""
-        return _core.lattice_constants(self.core, voxel_size)[1]
+        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[1]
 
     @property
     def core(self) -> tuple[str, list[float], float, float]:
@@ -107,15 +114,15 @@ class CompliantLattice(Record):
     volume_compliance: Annotated[float, UnitOf("volume compliance", positive=True)]
     density: PositiveDensity = Field(SILICONE_DENSITY)
 
-    def young(self, voxel_size: float) -> float:
+    def young(self, voxel_size: float | str) -> float:
         """Young's modulus in Pa at a voxel size in m, for small strain along the axes."""
-        return _core.lattice_constants(self.core, voxel_size)[0]
+        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[0]
 
-    def poisson(self, voxel_size: float) -> float:
+    def poisson(self, voxel_size: float | str) -> float:
         """Poisson's ratio under the same conditions as :meth:`young`."""
-        return _core.lattice_constants(self.core, voxel_size)[1]
+        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[1]
 
-    def to_moduli(self, voxel_size: float, bulk: float) -> Lattice:
+    def to_moduli(self, voxel_size: float | str, bulk: float | str) -> Lattice:
         """Return the lattice of the same Young's modulus with a bulk modulus of your choice.
 
         The edge modulus ``e`` solves ``E = C11 - 2 C12²/(C11 + C12)`` with

@@ -41,7 +41,7 @@ infinite. Try: use 0.499, or 0.4999 for a stiffer volume; the elements do not lo
     model: Literal["neo-hookean"] = "neo-hookean"
     young_modulus: Modulus = Field(alias="young")
 
-    def young(self, voxel_size: float = 1.0) -> float:
+    def young(self, voxel_size: float | str = 1.0) -> float:
         """Young's modulus in Pa, as it was given; the voxel size does not matter."""
         del voxel_size
         return self.young_modulus

@@ -10,7 +10,8 @@ from pydantic import Field, model_validator
 
 from voxsoft.errors import MaterialError
 from voxsoft.materials.hyperelastic import Floats, Hyperelastic, SignedModulus
-from voxsoft.units import UnitOf
+from voxsoft.records import plain_values
+from voxsoft.units import UnitOf, to_si
 
 
 class Ogden(Hyperelastic):
@@ -42,8 +43,8 @@ class Ogden(Hyperelastic):
     >>> Ogden(mu=["20 kPa"], alpha=[1.7, 2])
     Traceback (most recent call last):
     ...
-    voxsoft.errors.MaterialError: alpha: has 2 entries, mu has 1; one exponent for each modulus \
-is due
+    voxsoft.errors.MaterialError: alpha: has 2 entries, mu has 1; expected one exponent for each \
+modulus
     """
 
     model: Literal["ogden"] = "ogden"
@@ -56,7 +57,7 @@ is due
             raise MaterialError(
                 "alpha",
                 f"has {len(self.alpha)} entries, mu has {len(self.mu)}; "
-                "one exponent for each modulus is due",
+                "expected one exponent for each modulus",
             )
         if 0.0 in self.alpha:
             raise MaterialError(
@@ -79,7 +80,7 @@ is due
         Parameters
         ----------
         moduli
-            ``mᵢ`` in Pa, (n,); those that are zero are left out.
+            ``mᵢ`` in Pa or with their unit, (n,); those that are zero are left out.
         exponents
             ``αᵢ``, (n,).
         poisson, density
@@ -90,7 +91,10 @@ is due
         >>> Ogden.from_classic([10e3, 0.0], [2.0, 5.0]).mu
         (10000.0,)
         """
-        pairs = zip(np.ravel(moduli).tolist(), np.ravel(exponents).tolist(), strict=True)
+        many = plain_values(moduli)
+        many = many if isinstance(many, (list, tuple)) else [many]
+        given = [to_si(modulus, "modulus", "moduli") for modulus in many]
+        pairs = zip(given, np.ravel(exponents).tolist(), strict=True)
         terms = [(0.5 * modulus * alpha, alpha) for modulus, alpha in pairs if modulus != 0.0]
         rest = {"poisson": poisson, "density": density}
         return cls(

@@ -48,7 +48,7 @@ class Rigid(Record):
     model: Literal["rigid"] = "rigid"
     density: PositiveDensity = Field(_DENSITY)
 
-    def young(self, voxel_size: float = 1.0) -> float:
+    def young(self, voxel_size: float | str = 1.0) -> float:
         """Infinity, in Pa."""
         del voxel_size
         return math.inf

@@ -35,7 +35,7 @@ class Yeoh(InvariantModel):
     >>> Yeoh(c=[])
     Traceback (most recent call last):
     ...
-    voxsoft.errors.MaterialError: c: has 0 entries; at least 1 are due
+    voxsoft.errors.MaterialError: c: has 0 entries; expected at least 1
     """
 
     model: Literal["yeoh"] = "yeoh"

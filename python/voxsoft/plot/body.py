@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,6 +14,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.plot import shading
 from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
 from voxsoft.plot.camera import Camera
+from voxsoft.plot.color_range import CLIP, ColorRange, color_range
 from voxsoft.plot.quantities import Scale, scale_for
 from voxsoft.plot.raster import Raster, rasterize
 from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
@@ -25,6 +27,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Floats = NDArray[np.float64]
+
+# Fields of a result by name: what the color bar says, and the kind of quantity.
+_FIELDS: Final[Mapping[str, tuple[str, str]]] = {
+    "displacement": ("displacement", "length"),
+    "von_mises": ("von Mises stress", "pressure"),
+    "max_stretch": ("largest stretch", "number"),
+    "energy_density": ("energy density", "pressure"),
+}
 
 #: Pixels of the longer side of the picture; it is computed twice as fine and averaged.
 PIXELS = 900
@@ -55,7 +65,10 @@ def plot_body(
         A result, which is drawn deformed, or a mesh.
     field
         What the color says: ``"displacement"`` (its magnitude; the default for a result),
-        ``"part"``, ``"plain"`` (the default for a mesh), or one number for each vertex, (n,).
+        ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, ``"part"``,
+        ``"plain"`` (the default for a mesh), or one number for each vertex, (n,). Where a few
+        values lie far beyond all others, colors end where 99 % of the area do, and the picture
+        says where the farthest is.
     label
         What the color bar says of such numbers.
     section
@@ -150,6 +163,8 @@ class _Colors:
     norm: Normalize | None = None
     label: str = ""
     colored: NDArray[np.bool_] | None = None  # (t,) where the values count
+    extend: str = "neither"
+    clipped: str = ""  # what lies beyond the colors
 
 
 def _kept(
@@ -190,27 +205,48 @@ def _colors(
         return _Colors(flat)
     values, label = _values(body, mesh, field, label)
     of_corners = values[surface.triangles]
-    finite = np.isfinite(values)
-    norm = Normalize(float(values[finite].min()), float(values[finite].max()))
     # With a field on the outside, cavity walls keep their own color, by which they are known.
-    return _Colors(flat, of_corners, norm, label, ~lined)
+    outside = surface.triangles if lined.all() else surface.triangles[~lined]
+    moved = isinstance(field, str) and field == "displacement"
+    shown = color_range(values, outside, mesh.vertices, clip=not moved)
+    norm = Normalize(shown.low, shown.high)
+    clipped = _clipped(shown, values, mesh)
+    return _Colors(flat, of_corners, norm, label, ~lined, shown.extend, clipped)
+
+
+def _clipped(shown: ColorRange, values: Floats, mesh: Mesh) -> str:
+    ends = ((shown.clips_high, "max", shown.most), (shown.clips_low, "min", shown.least))
+    return "".join(
+        f"\nclipped at {CLIP:g} %; {word} {values[vertex]:.4g} at "
+        f"({', '.join(f'{x * 1e3:.1f}' for x in mesh.vertices[vertex])}) mm"
+        for clips, word, vertex in ends
+        if clips
+    )
 
 
 def _values(
     body: Result | Mesh, mesh: Mesh, field: str | ArrayLike, label: str
 ) -> tuple[Floats, str]:
     if isinstance(field, str):
-        if field != "displacement" or not isinstance(body, Result):
-            known = ["part", "plain", *(["displacement"] if isinstance(body, Result) else [])]
+        of_result = _FIELDS if isinstance(body, Result) else {}
+        if field not in of_result or not isinstance(body, Result):
+            known = ["part", "plain", *of_result]
             raise MeshError("field", f'"{field}" is not known', closest(field, known))
-        size = np.linalg.norm(body.displacements, axis=1)
-        scale = scale_for(size, "length")
-        return size * scale.factor, scale.label("displacement")
+        words, kind = of_result[field]
+        if field == "displacement":
+            numbers: Floats = np.linalg.norm(body.displacements, axis=1)
+        else:
+            numbers = getattr(body.fields.at_vertices, field)
+        scale = scale_for(numbers, kind)
+        if field == "energy_density":
+            scale = scale._replace(unit=scale.unit.replace("Pa", "J/m³"))
+        return numbers * scale.factor, scale.label(words)
     values = np.asarray(field, dtype=np.float64)
     if values.shape != (len(mesh.vertices),):
         raise MeshError(
             "field",
-            f"has shape {values.shape}; a number for each of {len(mesh.vertices)} vertices is due",
+            f"has shape {values.shape}; expected one number for each of "
+            f"{len(mesh.vertices)} vertices",
         )
     if not np.isfinite(values).any():
         raise MeshError("field", "holds no finite number")
@@ -288,8 +324,10 @@ def _color_bar(figure: Figure, axes: Axes, colors: _Colors) -> None:
     from matplotlib.cm import ScalarMappable
 
     mappable = ScalarMappable(norm=colors.norm, cmap=COLOR_MAP)
-    bar: Any = figure.colorbar(mappable, ax=axes, shrink=0.75, aspect=24, pad=0.03)
-    bar.set_label(colors.label, fontsize=10)
+    bar: Any = figure.colorbar(
+        mappable, ax=axes, shrink=0.75, aspect=24, pad=0.03, extend=colors.extend
+    )
+    bar.set_label(colors.label + colors.clipped, fontsize=10)
     bar.outline.set_visible(False)
     bar.ax.set_label("colorbar")
 

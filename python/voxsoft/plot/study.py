@@ -212,7 +212,8 @@ def _objective(result: StudyResult, name: str | None) -> str:
 
 def _kind(result: StudyResult, objective: str) -> str:
     """The kind of quantity of an objective; unknown where a study measures its own metrics."""
-    return METRICS.get(result.objectives[objective].metric, "")
+    metric = METRICS.get(result.objectives[objective].metric)
+    return "" if metric is None else metric.kind
 
 
 def _wish(result: StudyResult, objective: str) -> str:

@@ -177,15 +177,15 @@ class Genetic:
         if values.shape != (self.population,):
             raise StudyError(
                 "fitness",
-                f"has the shape {values.shape}; one number for each of the {self.population} "
-                "individuals is due",
+                f"has the shape {values.shape}; expected one number for each of the "
+                f"{self.population} individuals",
             )
         wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0)))
         if wrong.size:
             raise StudyError(
                 "fitness",
                 f"individual {wrong[0]} of generation {self.generation} has {values[wrong[0]]}; "
-                "finite numbers of at least 0 are due",
+                "expected finite numbers of at least 0",
                 "give a candidate that failed the fitness 0",
             )
         return values

@@ -138,7 +138,7 @@ def _require_numbers(space: Mapping[str, BaseDistribution]) -> None:
 def _gaussian_process(seed: int | None, constraints: Constraints | None) -> BaseSampler:
     if find_spec("torch") is None:
         raise MissingPackageError(
-            "sampler", '"gp" needs PyTorch, which is not installed', 'pip install "voxsoft[gp]"'
+            "sampler", '"gp" needs PyTorch, which is not installed', "pip install torch"
         )
     return optuna.samplers.GPSampler(
         seed=seed,

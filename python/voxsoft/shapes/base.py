@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
@@ -48,7 +48,8 @@ class Shape(Record):
     """A solid described by a function s(x, y, z) that is negative inside.
 
     Shapes are immutable values: operators and methods give new ones. ``a | b`` is the union,
-    ``a & b`` the intersection, ``a - b`` the difference.
+    ``a & b`` the intersection, ``a - b`` the difference. What a shape must have may be given by
+    position, in the order of its signature; all else goes by name.
 
     Examples
     --------
@@ -63,6 +64,12 @@ class Shape(Record):
     error_type: ClassVar[type[VoxSoftError]] = ShapeError
 
     kind: str = Field(description="Which shape this is.")
+
+    @classmethod
+    def _positional(cls) -> tuple[str, ...]:
+        """Names of what a shape must have, which may be given by position: ``Sphere(5 * mm)``."""
+        fields = cls.model_fields.items()
+        return tuple(name for name, info in fields if info.is_required() and name != "kind")
 
     @abstractmethod
     def make(self, scope: Scope) -> _core.Shape:
@@ -82,6 +89,31 @@ class Shape(Record):
             For sizes that do not fit together, unknown names and circular references.
         """
         return Scope(names or {}).build(self)
+
+    def every(self, names: Mapping[str, Shape] | None = None) -> Iterator[Shape]:
+        """Go through this shape and all that it is made of, each once.
+
+        Parameters
+        ----------
+        names : mapping of str to Shape, optional
+            The shapes that operands given by name refer to; without it those are left out.
+
+        Examples
+        --------
+        >>> from voxsoft.shapes import Box, Sphere
+        >>> [shape.kind for shape in (Box(size=(1, 1, 1)) - Sphere(radius=0.5)).every()]
+        ['difference', 'box', 'sphere']
+        """
+        known = dict(names or {})
+        ahead: list[str | Shape] = [self]
+        while ahead:
+            found = ahead.pop()
+            # Taken out, a name is followed once, also where it refers to itself.
+            shape = known.pop(found, None) if isinstance(found, str) else found
+            if shape is not None:
+                yield shape
+                below = getattr(shape, "of", ())
+                ahead += reversed(below if isinstance(below, tuple) else (below,))
 
     def evaluate(
         self, points: ArrayLike, names: Mapping[str, Shape] | None = None
@@ -108,7 +140,7 @@ class Shape(Record):
         """
         places = np.ascontiguousarray(points, dtype=np.float64)
         if places.ndim != 2 or places.shape[1] != 3:
-            raise ShapeError("points", f"has shape {places.shape}; (n, 3) is due")
+            raise ShapeError("points", f"has shape {places.shape}; expected (n, 3)")
         return self.build(names).evaluate(places)
 
     def bounds(self, names: Mapping[str, Shape] | None = None) -> tuple[Triple, Triple]:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
 from voxsoft import _core
+from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape
 from voxsoft.units import NonNegativeLength
 
@@ -17,9 +18,17 @@ if TYPE_CHECKING:
 class _Combination(Shape):
     """Several shapes made one."""
 
-    of: Annotated[tuple[str | AnyShape, ...], Field(min_length=1)] = Field(
+    of: Annotated[tuple[Name | AnyShape, ...], Field(min_length=1)] = Field(
         description="Names of shapes, or shapes."
     )
+
+    def __init__(self, /, *shapes: Any, **data: Any) -> None:  # noqa: ANN401 - fields are typed
+        if len(shapes) > 1 or (shapes and isinstance(shapes[0], (str, Shape))):
+            shapes = (shapes,)
+        super().__init__(*shapes, **data)
+
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]  # see Record
+
     smooth: NonNegativeLength = Field(
         0.0, description="Length over which edges between shapes are blended; 0 keeps them sharp."
     )

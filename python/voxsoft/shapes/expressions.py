@@ -112,7 +112,7 @@ def _written(value: Expression | float) -> str:
         try:
             value = float(value)
         except (TypeError, ValueError):
-            what = f"{value!r} came; a number or an expression is due"
+            what = f"{value!r} came; expected a number or an expression"
             raise ShapeError("expression", what) from None
     return repr(value)
 

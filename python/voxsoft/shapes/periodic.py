@@ -1,8 +1,8 @@
 """Triply periodic surfaces and strut lattices; endless, so intersect them with a body.
 
-A wall's thickness is metric up to a relative error of second order in thickness/period: for a
-gyroid 0.7 % at a twentieth of the period and 3 % at a tenth (derivation in the Rust module
-``periodic``).
+A wall holds every point within half its thickness of the surface, at any thickness: distances are
+true (see the Rust module ``periodic``). Where :class:`Grade` makes the period a function of space,
+space is stretched, and a wall is as thick as asked only where the period changes slowly.
 """
 
 from __future__ import annotations
@@ -40,11 +40,16 @@ class _Surface(Periodic):
         "sheet", description="A wall around the surface, or everything on one side of it."
     )
     thickness: PositiveLength | None = Field(
-        None, description="Wall thickness of a sheet, normal to the surface."
+        None, description="Wall thickness of a sheet: twice the distance from its middle surface."
     )
     level: Dimensionless = Field(
         0.0, description="Value of the surface's function; it sets the solid's volume fraction."
     )
+
+    @classmethod
+    def _positional(cls) -> tuple[str, ...]:
+        """The period and, of a sheet, its thickness."""
+        return ("period", "thickness")
 
     @model_validator(mode="after")
     def _has_thickness_if_sheet(self) -> _Surface:

@@ -84,6 +84,8 @@ class Sphere(Shape):
     --------
     >>> Sphere(radius="10 mm").evaluate([[0, 0, 0]])
     array([-0.01])
+    >>> Sphere("10 mm") == Sphere(radius=0.01)
+    True
     """
 
     kind: Literal["sphere"] = "sphere"
@@ -229,6 +231,11 @@ class HalfSpace(Shape):
     kind: Literal["half-space"] = "half-space"
     point: Point = Field(_ORIGIN, description="A point of the plane; the origin by default.")
     normal: Axis = Field("z", description="Direction out of the solid: x, y, z or three numbers.")
+
+    @classmethod
+    def _positional(cls) -> tuple[str, ...]:
+        """The normal and the point, which both have a default."""
+        return ("normal", "point")
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from voxsoft import _core
+from voxsoft.records import Name
 from voxsoft.shapes.base import Axis, Scope, Shape, direction
 from voxsoft.units import Angle, Point
 
@@ -30,7 +31,7 @@ class Array(Shape):
     """
 
     kind: Literal["array"] = "array"
-    of: str | AnyShape = Field(description="Name of a shape, or a shape.")
+    of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
     count: tuple[Count, Count, Count] = Field(description="Copies along x, y, z.")
     spacing: Point = Field(description="From one copy to the next along x, y, z.")
 
@@ -53,7 +54,7 @@ class PolarArray(Shape):
     """
 
     kind: Literal["polar-array"] = "polar-array"
-    of: str | AnyShape = Field(description="Name of a shape, or a shape.")
+    of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
     count: Count = Field(description="Number of copies.")
     angle: Angle = Field(2 * math.pi, description="Angle over which they spread; a full turn.")
     axis: Axis = Field("z", description="Axis: x, y, z or three numbers.")

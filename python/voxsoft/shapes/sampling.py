@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft._memory import gigabytes, memory_limit
+from voxsoft._memory import memory_limit, shortage
 from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Shape, Triple
+from voxsoft.units import to_si
 from voxsoft.voxels import Voxels
 
 #: Sides closer to a cell face than this part of a voxel lie on it.
@@ -21,7 +23,7 @@ BYTES_PER_CELL = 4
 
 def inside(
     shape: Shape,
-    voxel_size: float,
+    voxel_size: float | str,
     cells: tuple[int, int, int],
     origin: Triple = (0.0, 0.0, 0.0),
     names: Mapping[str, Shape] | None = None,
@@ -61,9 +63,10 @@ def inside(
     32
     """
     built = shape.build(names)
-    place = (float(origin[0]), float(origin[1]), float(origin[2]))
+    x, y, z = (to_si(value, "length", "origin") for value in origin)
+    size = to_si(voxel_size, "length", "voxel_size")
     try:
-        found = built.sample(place, float(voxel_size), cells, memory_limit())
+        found = built.sample((x, y, z), size, cells, memory_limit())
     except ShapeError as error:
         where = ".".join(part for part in (shape.kind, error.where) if part)
         raise ShapeError(where, error.what, error.hint) from None
@@ -72,8 +75,8 @@ def inside(
 
 def voxelize(
     shape: Shape,
-    voxel_size: float,
-    bounds: tuple[Sequence[float], Sequence[float]] | None = None,
+    voxel_size: float | str,
+    bounds: tuple[Sequence[float | str], Sequence[float | str]] | None = None,
     names: Mapping[str, Shape] | None = None,
 ) -> Voxels:
     """Return the cells whose centers lie inside a shape.
@@ -105,6 +108,7 @@ def voxelize(
     >>> voxelize(Box(size=(0.1, 0.01, 0.01)), voxel_size=0.005)
     Voxels(20 x 2 x 2 cells of 5 mm, 100 x 10 x 10 mm, 80 filled)
     """
+    voxel_size = to_si(voxel_size, "length", "voxel_size")
     if not (math.isfinite(voxel_size) and voxel_size > 0):
         raise ShapeError("voxel_size", f"is {voxel_size}; it must be positive and finite")
     low, high = grid_bounds(shape, voxel_size, bounds, names)
@@ -113,29 +117,39 @@ def voxelize(
     _refuse_too_many(cells)
     found = inside(shape, voxel_size, cells, origin, names)
     if not found.any():
-        raise ShapeError(
-            shape.kind,
-            f"is empty: no cell of {voxel_size * 1e3:.6g} mm has its center inside",
-            "use a smaller voxel_size, or check the sizes and places of its parts",
-        )
+        raise _empty(shape, voxel_size, names)
     return Voxels.from_array(found, voxel_size, origin)
 
 
+def _empty(shape: Shape, voxel_size: float, names: Mapping[str, Shape] | None) -> ShapeError:
+    """Why nothing is inside: an open surface encloses nothing at any voxel size."""
+    from voxsoft.shapes.triangles import TriangleMesh
+
+    for part in shape.every(names):
+        if isinstance(part, TriangleMesh) and part.state().holes:
+            return ShapeError(
+                Path(part.path).name,
+                f"{part.state().opening}, so nothing counts as inside",
+                "close it in the program that it came from, or make a wall of the surface: "
+                '{ kind = "shell", of = ..., thickness = "2 mm" }',
+            )
+    return ShapeError(
+        shape.kind,
+        f"is empty: no cell of {voxel_size * 1e3:.6g} mm has its center inside",
+        "use a smaller voxel_size, or check the sizes and places of its parts",
+    )
+
+
 def _refuse_too_many(cells: tuple[int, int, int]) -> None:
-    due, free = math.prod(cells) * BYTES_PER_CELL, memory_limit()
-    if due > free:
-        raise ShapeError(
-            "voxel_size",
-            f"a grid of {cells[0]:,} x {cells[1]:,} x {cells[2]:,} cells needs about "
-            f"{gigabytes(due)} of memory, more than the limit of {gigabytes(free)}",
-            "make the voxels larger",
-        )
+    if short := shortage(math.prod(cells) * BYTES_PER_CELL):
+        grid = f"a grid of {cells[0]:,} x {cells[1]:,} x {cells[2]:,} cells"
+        raise ShapeError("voxel_size", f"{grid} {short}", "make the voxels larger")
 
 
 def grid_bounds(
     shape: Shape,
-    voxel_size: float,
-    bounds: tuple[Sequence[float], Sequence[float]] | None = None,
+    voxel_size: float | str,
+    bounds: tuple[Sequence[float | str], Sequence[float | str]] | None = None,
     names: Mapping[str, Shape] | None = None,
 ) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
     """Return the first and last-plus-one cell of the lattice that a shape needs.
@@ -148,7 +162,9 @@ def grid_bounds(
     >>> grid_bounds(Sphere(radius=0.012), 0.005)
     ((-3, -3, -3), (3, 3, 3))
     """
-    low, high = shape.bounds(names) if bounds is None else bounds
+    voxel_size = to_si(voxel_size, "length", "voxel_size")
+    corners = shape.bounds(names) if bounds is None else bounds
+    low, high = ([to_si(v, "length", "bounds") for v in corner] for corner in corners)
     numbers = [*low, *high]
     if any(math.isnan(v) for v in numbers):
         raise ShapeError("bounds", f"{bounds} holds a value that is not a number")

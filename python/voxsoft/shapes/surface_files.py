@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import ShapeError
+from voxsoft.shapes.faces import faces_of
 
-_SUFFIXES = (".stl", ".obj", ".ply", ".vtk", ".vtu")
+#: What trimesh reads too, and takes some dialects of that meshio does not.
+_BY_TRIMESH = (".stl", ".obj", ".ply", ".off")
 
-#: The four faces of a tet, outward where the tet's volume is positive.
-_TET_FACES = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2))
+#: Formats of meshio that are drawings.
+_DRAWINGS = {".svg", ".wkt"}
 
 
 class Surface(NamedTuple):
@@ -25,23 +28,40 @@ class Surface(NamedTuple):
     triangles: NDArray[np.int64]
 
 
-def read_surface(path: Path) -> Surface:
-    """Read the triangles of a file, or the boundary of its tets.
+@cache
+def known_suffixes() -> tuple[str, ...]:
+    """Return the endings of the files that can be read: all that meshio reads meshes from.
 
-    Vertices at the same place become one, as STL files repeat them for every triangle.
+    Examples
+    --------
+    >>> {".stl", ".obj", ".ply", ".off", ".mesh", ".msh", ".vtu"} <= set(known_suffixes())
+    True
+    """
+    import meshio
+
+    return tuple(sorted(set(meshio.extension_to_filetypes) - _DRAWINGS))
+
+
+def read_surface(path: Path) -> Surface:
+    """Read the triangles of a file, or the boundary of its volume cells.
+
+    Vertices at the same place become one, as STL files repeat them for every triangle. Cells with
+    curved edges are taken by their corners.
 
     Raises
     ------
     ShapeError
-        For an unknown suffix, an unreadable file, NaN, and a file without triangles or tets.
+        For an unknown suffix, an unreadable file, NaN, and a file without faces or volume cells.
     """
-    if path.suffix.lower() not in _SUFFIXES:
-        what = f"{path.name} is none of {' '.join(_SUFFIXES)}"
-        raise ShapeError("path", what, "convert it, for instance with meshio")
+    if not path.name.lower().endswith(known_suffixes()):
+        what = f"{path.name} is none of {' '.join(known_suffixes())}"
+        raise ShapeError("path", what, "export the part as STL, or convert it with meshio")
     points, triangles = _first_that_reads(path)
-    points = np.ascontiguousarray(points[:, :3], dtype=np.float64)
+    # Some files hold colors behind the coordinates, and plane ones two coordinates.
+    plane = np.zeros((len(points), max(0, 3 - points.shape[1])))
+    points = np.ascontiguousarray(np.hstack([points, plane])[:, :3], dtype=np.float64)
     if not len(triangles):
-        raise ShapeError("path", f"{path} holds neither triangles nor tets")
+        raise ShapeError("path", f"{path} holds neither triangles nor volume cells")
     if triangles.min() < 0 or triangles.max() >= len(points):
         raise ShapeError("path", f"{path} is damaged: a triangle names a vertex that is missing")
     if not np.isfinite(points[np.unique(triangles)]).all():
@@ -53,21 +73,50 @@ def read_surface(path: Path) -> Surface:
 
 
 def _first_that_reads(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Try meshio, then trimesh, which takes some STL, OBJ and PLY dialects that meshio does not."""
-    readers: tuple[Callable[[Path], tuple[NDArray[np.float64], NDArray[np.int64]]], ...]
-    is_vtk = path.suffix.lower() in (".vtk", ".vtu")
-    readers = (_read_by_meshio,) if is_vtk else (_read_by_meshio, _read_by_trimesh)
-    reasons = []
+    """Try meshio, then trimesh."""
+    readers: list[Callable[[Path], tuple[NDArray[np.float64], NDArray[np.int64]]]]
+    readers = [_read_by_meshio]
+    if path.suffix.lower() in _BY_TRIMESH:
+        readers.append(_read_by_trimesh)
+    reasons: list[BaseException] = []
     for read in readers:
         try:
             return read(path)
-        except ShapeError:
-            raise
         # meshio ends the program on some unreadable files; the readers fail in many other ways.
         except (Exception, SystemExit) as error:
-            reasons.append(str(error) or type(error).__name__)
-    what = f"{path} cannot be read ({'; '.join(reasons)})"
-    raise ShapeError("path", what, "check that the file is complete")
+            reasons.append(error)
+    raise _unreadable(path, reasons)
+
+
+def _unreadable(path: Path, reasons: list[BaseException]) -> ShapeError:
+    """Say why, as far as the readers' own words can be understood."""
+    if not path.is_file():
+        return ShapeError("path", f"{path}: there is no such file", "check the path")
+    first = reasons[0]
+    if isinstance(first, ImportError) and first.name:
+        what = f"{path} needs the package {first.name} to be read"
+        return ShapeError("path", what, f"pip install {first.name}, or export the part as STL")
+    why = str(first) if isinstance(first, (ShapeError, _SaidError)) else ""
+    if path.suffix.lower() == ".stl" and not _looks_like_stl(path):
+        why = (
+            'it neither begins with "solid", as text does, nor has the length that a binary file '
+            "of its number of triangles has"
+        )
+    kind = path.suffix.lstrip(".").upper()
+    what = f"{path} cannot be read as {kind}: {why or 'its content is damaged or cut short'}"
+    return ShapeError("path", what, "check that the file is complete, and that its ending is right")
+
+
+def _looks_like_stl(path: Path) -> bool:
+    """80 bytes of anything, the number of triangles, and 50 bytes for each; or text."""
+    with path.open("rb") as file:
+        head = file.read(84)
+    count = int.from_bytes(head[80:84], "little")
+    return head.lstrip()[:5].lower() == b"solid" or path.stat().st_size == 84 + 50 * count
+
+
+class _SaidError(Exception):
+    """What a reader printed before it ended the program."""
 
 
 def _read_by_meshio(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -78,42 +127,32 @@ def _read_by_meshio(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]
 
     # Some programs write the XML format of VTU under the older suffix.
     is_xml = path.suffix.lower() == ".vtk" and path.read_bytes()[:64].lstrip().startswith(b"<")
+    said = io.StringIO()
     with (
         warnings.catch_warnings(),
-        contextlib.redirect_stdout(io.StringIO()),
-        contextlib.redirect_stderr(io.StringIO()),
+        contextlib.redirect_stdout(said),
+        contextlib.redirect_stderr(said),
     ):
         warnings.simplefilter("ignore")
-        mesh = meshio.read(path, file_format="vtu" if is_xml else None)
+        try:
+            mesh = meshio.read(path, file_format="vtu" if is_xml else None)
+        except SystemExit:
+            words = " ".join(said.getvalue().split()).removeprefix("Error: ")
+            raise _SaidError(words[:200]) from None
     points = np.asarray(mesh.points, dtype=np.float64)
-    faces = [block.data for block in mesh.cells if block.type == "triangle"]
-    for quads in (block.data for block in mesh.cells if block.type == "quad"):
-        faces += [quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]
-    tets = [block.data for block in mesh.cells if block.type == "tetra"]
-    if tets:
-        return points, _boundary(points, np.concatenate(tets).astype(np.int64))
-    if not faces:
-        raise ShapeError("path", f"{path} holds neither triangles nor tets")
-    return points, np.concatenate(faces).astype(np.int64)
+    triangles = faces_of(points, [(block.type, block.data) for block in mesh.cells])
+    if not len(triangles):
+        kinds = ", ".join(sorted({block.type for block in mesh.cells})) or "no cells"
+        raise ShapeError("path", f"it holds neither faces nor volume cells, but {kinds}")
+    return points, triangles
 
 
 def _read_by_trimesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     import trimesh
 
-    mesh = trimesh.load_mesh(path, process=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        mesh = trimesh.load_mesh(path, process=False)
     if not isinstance(mesh, trimesh.Trimesh):
         mesh = mesh.to_mesh()
     return np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces, dtype=np.int64)
-
-
-def _boundary(points: NDArray[np.float64], tets: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Return the faces that belong to one tet only, pointing outward."""
-    a, b, c, d = (points[tets[:, i]] for i in range(4))
-    is_turned = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) < 0
-    tets = np.where(is_turned[:, None], tets[:, [0, 2, 1, 3]], tets)
-    faces = tets[:, np.array(_TET_FACES)].reshape(-1, 3)
-    _, first, uses = np.unique(
-        np.sort(faces, axis=1), axis=0, return_index=True, return_counts=True
-    )
-    outer: NDArray[np.int64] = faces[first[uses == 1]]
-    return outer

@@ -8,6 +8,7 @@ from pydantic import Field
 
 from voxsoft import _core
 from voxsoft.errors import ShapeError
+from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape
 from voxsoft.shapes.expressions import ExpressionText
 from voxsoft.shapes.periodic import Periodic
@@ -28,7 +29,7 @@ class Offset(Shape):
     """
 
     kind: Literal["offset"] = "offset"
-    of: str | AnyShape = Field(description="Name of a shape, or a shape.")
+    of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
     distance: Length = Field(description="How far the surface moves outward.")
 
     def make(self, scope: Scope) -> _core.Shape:
@@ -47,7 +48,7 @@ class Shell(Shape):
     """
 
     kind: Literal["shell"] = "shell"
-    of: str | AnyShape = Field(description="Name of a shape, or a shape.")
+    of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
     thickness: PositiveLength = Field(description="Thickness, half of it on each side.")
 
     def make(self, scope: Scope) -> _core.Shape:
@@ -67,7 +68,7 @@ class Blend(Shape):
     """
 
     kind: Literal["blend"] = "blend"
-    of: tuple[str | AnyShape, str | AnyShape] = Field(description="Two names or shapes.")
+    of: tuple[Name | AnyShape, Name | AnyShape] = Field(description="Two names or shapes.")
     weight: Dimensionless | ExpressionText = Field(
         0.5,
         description="0 gives the first shape, 1 the second; or an expression of x, y, z in m.",
@@ -99,7 +100,9 @@ class Grade(Shape):
     """
 
     kind: Literal["grade"] = "grade"
-    of: str | AnyShape = Field(description="A periodic lattice, a shell or an offset, or its name.")
+    of: Name | AnyShape = Field(
+        description="A periodic lattice, a shell or an offset, or its name."
+    )
     thickness: ExpressionText | None = Field(
         None, description="Thickness (distance of an offset) in m, as an expression of x, y, z."
     )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from pydantic import Field
 
 from voxsoft import _core
+from voxsoft.records import Name
 from voxsoft.shapes.base import Axis, Scope, Shape, Triple, direction
 from voxsoft.units import Angle, Point, PositiveLength, UnitOf
 
@@ -20,7 +21,7 @@ _Factor = Annotated[float, UnitOf("number", positive=True)]
 class _OfOne(Shape):
     """A shape made from one other."""
 
-    of: str | AnyShape = Field(description="Name of a shape, or a shape.")
+    of: Name | AnyShape = Field(description="Name of a shape, or a shape.")
 
 
 class Translate(_OfOne):

@@ -2,7 +2,8 @@
 
 The winding number tells how often a surface wraps around a point: 1 inside a closed surface, 0
 outside, −1 inside one whose faces are turned, and something between near a hole. Inside is where
-its size exceeds one half [1]_. An inner shell of opposite orientation is a cavity.
+its size exceeds one half [1]_. Neighbors that disagree on which side is outside are turned to agree
+first; an inner shell of opposite orientation is a cavity.
 
 References
 ----------
@@ -13,22 +14,60 @@ References
 from __future__ import annotations
 
 import atexit
+import os
 from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from voxsoft import _core
 from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Scope, Shape, Triple
+from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
-from voxsoft.units import parse
+from voxsoft.units import format_quantity, parse
 
 #: Where more than this part of the edges belong to one triangle only, nothing is enclosed.
 _MOST_OPEN = 0.5
+
+#: Part of its length by which the box of a flat sheet is thicker than the sheet.
+_ROOM = 1e-6
+
+
+class SurfaceState(NamedTuple):
+    """What is doubtful about a surface.
+
+    Attributes
+    ----------
+    turned
+        Triangles that had to be turned, as their neighbors have their outside on the other side.
+    holes
+        The widest first, in m.
+    """
+
+    turned: int
+    holes: tuple[Hole, ...]
+
+    @property
+    def opening(self) -> str:
+        """The holes in words; empty where there are none.
+
+        Examples
+        --------
+        >>> SurfaceState(0, (Hole(4, 0.012, (0.0, 0.0, 0.03)),)).opening
+        'is open: a hole of 4 edges, 12 mm wide, near (0, 0, 30) mm'
+        """
+        if not self.holes:
+            return ""
+        hole = self.holes[0]
+        width = format_quantity(float(f"{hole.width:.3g}"), "length")
+        place = ", ".join(f"{1e3 * value:.4g}" for value in hole.center)
+        number = len(self.holes)
+        first = "a hole" if number == 1 else f"{number:,} holes, the widest"
+        return f"is open: {first} of {hole.edges:,} edges, {width} wide, near ({place}) mm"
 
 
 def _is_length_unit(unit: str) -> str:
@@ -36,10 +75,18 @@ def _is_length_unit(unit: str) -> str:
     return unit
 
 
-class TriangleMesh(Shape):
-    """The inside of a triangle mesh from a file: STL, OBJ, PLY, or the surface of a VTK or VTU.
+def _whole_path(path: object) -> object:
+    """Complete a path, so that it leads to the file from everywhere."""
+    if isinstance(path, (str, os.PathLike)) and os.fspath(path):
+        return os.path.abspath(path)  # noqa: PTH100 - as text, and without asking the disk
+    return path
 
-    Holes and turned faces do not spoil the inside. Distances are those to the triangles.
+
+class TriangleMesh(Shape):
+    """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
+
+    Of tetrahedra and other volume cells the boundary counts. Small holes and turned faces do not
+    spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
 
     Examples
     --------
@@ -48,7 +95,9 @@ class TriangleMesh(Shape):
     """
 
     kind: Literal["mesh"] = "mesh"
-    path: str = Field(description="File: .stl, .obj, .ply, .vtk or .vtu.")
+    path: Annotated[str, BeforeValidator(_whole_path)] = Field(
+        description="File: .stl, .obj, .ply, .off, .msh, .mesh, .vtk, .vtu and others."
+    )
     unit: Annotated[str, AfterValidator(_is_length_unit)] = Field(
         description="Length unit of the file, such as mm; mesh files do not say it."
     )
@@ -58,15 +107,15 @@ class TriangleMesh(Shape):
         solid = self._solid
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
-    def open_edges(self) -> tuple[int, int]:
-        """Return how many edges belong to one triangle only, and how many there are.
+    def state(self) -> SurfaceState:
+        """Return what is doubtful about the surface: turned faces and holes [m].
 
         Raises
         ------
         ShapeError
-            The file cannot be read.
+            The file cannot be read, or encloses nothing.
         """
-        return self._solid.open_edges
+        return self._solid.state
 
     @property
     def _solid(self) -> _Solid:
@@ -107,12 +156,16 @@ class _Solid:
     ) -> None:
         import igl
 
-        self.open_edges = open_edges(triangles)
-        _refuse_soup(*self.open_edges, name)
+        _refuse_soup(triangles, name)
+        triangles, turned = in_one_sense(points, triangles)
+        self.state = SurfaceState(turned, holes_of(points, triangles))
         self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
-        self.low: Triple = tuple(used.min(axis=0).tolist())
-        self.high: Triple = tuple(used.max(axis=0).tolist())
+        low, high = used.min(axis=0), used.max(axis=0)
+        # A flat sheet has no room in its box; a wall can still be made of it.
+        room = _ROOM * float((high - low).max()) * (high == low)
+        self.low: Triple = tuple((low - room).tolist())
+        self.high: Triple = tuple((high + room).tolist())
         self._points, self._triangles = points, triangles
         self._winding = igl.FastWindingNumberBVH()
         self._winding.init(points, triangles)
@@ -128,6 +181,18 @@ class _Solid:
         return distance
 
 
+def _refuse_soup(triangles: NDArray[np.int64], name: str) -> None:
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, uses = np.unique(edges, axis=0, return_counts=True)
+    bare = int(np.count_nonzero(uses == 1))
+    if bare > _MOST_OPEN * len(uses):
+        raise ShapeError(
+            "path",
+            f"{name} encloses nothing: {bare} of {len(uses)} edges belong to one triangle",
+            "export a closed surface, or merge vertices that coincide",
+        )
+
+
 def _is_closed(triangles: NDArray[np.int64]) -> bool:
     """Tell whether each edge is run through as often in one direction as in the other.
 
@@ -140,19 +205,3 @@ def _is_closed(triangles: NDArray[np.int64]) -> bool:
     _, index = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
     balance = np.bincount(index.reshape(-1), weights=np.where(forward, 1, -1))
     return not balance.any()
-
-
-def open_edges(triangles: NDArray[np.int64]) -> tuple[int, int]:
-    """Return how many edges of triangles (t, 3) belong to one only, and how many there are."""
-    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    _, uses = np.unique(edges, axis=0, return_counts=True)
-    return int(np.count_nonzero(uses == 1)), len(uses)
-
-
-def _refuse_soup(bare: int, edges: int, name: str) -> None:
-    if bare > _MOST_OPEN * edges:
-        raise ShapeError(
-            "path",
-            f"{name} encloses nothing: {bare} of {edges} edges belong to one triangle",
-            "export a closed surface, or merge vertices that coincide",
-        )

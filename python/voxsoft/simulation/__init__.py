@@ -1,19 +1,24 @@
 """From a design to its state at rest or its motion over time."""
 
-from voxsoft.simulation.check import CheckReport, Finding, check
+from voxsoft.metrics import Place
+from voxsoft.simulation.check import CheckReport, check
+from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.many import Ensemble, Settled, simulate_many
-from voxsoft.simulation.places import Place
+from voxsoft.simulation.penetration import Overlap, Penetration, find_penetration
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
 from voxsoft.simulation.targets import check_targets
+from voxsoft.simulation.ways import check_solver
 
 __all__ = [
     "CheckReport",
+    "Diagnostic",
     "Ensemble",
-    "Finding",
     "History",
+    "Overlap",
+    "Penetration",
     "Place",
     "ProgressCallback",
     "Result",
@@ -22,7 +27,9 @@ __all__ = [
     "Status",
     "balance",
     "check",
+    "check_solver",
     "check_targets",
+    "find_penetration",
     "gradient",
     "named_regions",
     "relax",

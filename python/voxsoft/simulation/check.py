@@ -2,50 +2,49 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import Design
+from voxsoft._shown import Shown, counted, rounded, shortened
+from voxsoft.design import Design, require_design
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.discretize import voxels_of
+from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
-from voxsoft.materials import SILICONE_DENSITY
+from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import Mesh
-from voxsoft.shapes import TriangleMesh
+from voxsoft.simulation.chambers import ambiguous_indices
+from voxsoft.simulation.cost import Cost, cost_of
+from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.layers import chambers
+from voxsoft.simulation.plausible import implausible_numbers
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.surfaces import doubtful_surfaces
+from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.ways import unused_settings
+from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
-
-Severity = Literal["error", "warning"]
+from voxsoft.voxels.regions import Cell
 
 #: Walls bend as they should from two voxels of thickness on.
 GOOD_WALL = 2
 
-# Measured on one core of a 2.4 GHz server: time for one constraint and step of relaxation, and
-# bytes of the core's tables for one constraint.
-_SECONDS_PER_CONSTRAINT_STEP = 2e-8
+# Bytes of the core's tables for one constraint, as measured.
 _BYTES_PER_CONSTRAINT = 120
 # Less material than this part may vanish without a word.
 _LOST = 1e-3
+# A place of a design that is a region: "probes.top", "clamps[0].region".
+_OF_A_REGION: Final = re.compile(r"(?P<section>probes|clamps|loads|layers)[.\[](?P<name>[^.\[\]]+)")
 # Voxels and their hinges are listed by name up to this number.
 _LISTED = 5
 
 
-@dataclass(frozen=True)
-class Finding:
-    """Something wrong (``error``) or doubtful (``warning``), where it is, and what to try."""
-
-    severity: Severity
-    where: str
-    what: str
-    hint: str
-
-
-@dataclass(frozen=True)
-class CheckReport:
+@dataclass(frozen=True, repr=False)
+class CheckReport(Shown):
     """What :func:`check` found.
 
     Attributes
@@ -56,23 +55,28 @@ class CheckReport:
         Sizes of the mesh.
     cavities, leaks
         Enclosed chambers, and chambers that are open somewhere.
+    chambers
+        What the design calls each cavity; an empty text where it has no name.
     mass
         In kg.
     thinnest_wall
         In voxels; None for an empty body.
-    seconds, memory
-        What one run to rest is likely to take: an order of magnitude.
+    cost
+        Seconds that one run is likely to take, as the design's solver has it; None without loads.
+    memory
+        In bytes: an order of magnitude.
     """
 
-    findings: tuple[Finding, ...]
+    findings: tuple[Diagnostic, ...]
     voxels: int = 0
     vertices: int = 0
     tets: int = 0
     cavities: tuple[Cavity, ...] = field(default=(), repr=False)
     leaks: tuple[Leak, ...] = field(default=(), repr=False)
+    chambers: tuple[str, ...] = ()
     mass: float = 0.0
     thinnest_wall: int | None = None
-    seconds: float = 0.0
+    cost: Cost | None = None
     memory: float = 0.0
 
     @property
@@ -80,20 +84,41 @@ class CheckReport:
         """Whether there is no error; warnings are allowed."""
         return not any(finding.severity == "error" for finding in self.findings)
 
+    def _named_cavities(self) -> Iterator[tuple[str, Cavity]]:
+        names = self.chambers or ("",) * len(self.cavities)
+        yield from zip(names, self.cavities, strict=True)
+
+    def _lines(self) -> Iterator[str]:
+        errors = sum(finding.severity == "error" for finding in self.findings)
+        told = [
+            counted(n, w)
+            for n, w in ((errors, "error"), (len(self.findings) - errors, "warning"))
+            if n
+        ]
+        yield ", ".join(["valid" if self.valid else "not valid", *told])
+        yield f"{counted(self.voxels, 'voxel')}, mass {format_quantity(rounded(self.mass), 'mass')}"
+        for name, cavity in self._named_cavities():
+            called = f"chamber {name}" if name else "cavity"
+            yield f"{called} of {format_quantity(rounded(cavity.volume), 'volume')}"
+        yield from shortened([f"{found.severity}: {found}" for found in self.findings])
+
     def summary(self) -> dict[str, Any]:
         """Everything as plain data in SI units (the ``--json`` of ``check``)."""
         return {
             "valid": self.valid,
-            "problems": [
-                {"severity": f.severity, "where": f.where, "what": f.what, "try": f.hint}
-                for f in self.findings
-            ],
+            "problems": [finding.summary() for finding in self.findings],
             "voxels": self.voxels,
             "vertices": self.vertices,
             "tets": self.tets,
             "cavities": [
-                {"volume": c.volume, "area": c.area, "bounds": c.bounds.tolist(), "leaks": []}
-                for c in self.cavities
+                {
+                    "name": name,
+                    "volume": cavity.volume,
+                    "area": cavity.area,
+                    "bounds": cavity.bounds.tolist(),
+                    "leaks": [],
+                }
+                for name, cavity in self._named_cavities()
             ]
             + [
                 {"volume": leak.volume, "leaks": [list(cell) for cell in leak.openings]}
@@ -101,7 +126,8 @@ class CheckReport:
             ],
             "mass": self.mass,
             "thinnest_wall": self.thinnest_wall,
-            "seconds": self.seconds,
+            "seconds": None if self.cost is None else self.cost.seconds,
+            "seconds_range": None if self.cost is None else [self.cost.low, self.cost.high],
             "memory": self.memory,
         }
 
@@ -127,6 +153,8 @@ def check(body: Design | Voxels) -> CheckReport:
     >>> report.valid, report.voxels, report.thinnest_wall
     (True, 80, 2)
     """
+    if not isinstance(body, Voxels):
+        require_design(body, "body")
     try:
         voxels, mesh, lost = _discretized(body)
     except VoxSoftError as error:
@@ -160,11 +188,19 @@ def examine(
             setup.check()
             mass = setup.problem.mass
         except VoxSoftError as error:
-            findings += _errors(error)
-        findings += _findings_of_surfaces(body)
-    findings += [*_findings_of_voxels(voxels, leaks), *_findings_of_mesh(mesh)]
+            findings += [_placed(found, body, mesh) for found in _errors(error)]
+        findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
+        findings += _findings_of_settings(body)
+    if isinstance(body, Design) and setup is not None:
+        findings += ambiguous_indices(body, setup.mesh)
+    findings += implausible_numbers(body, mesh, mass)
+    findings += [*_findings_of_voxels(body, voxels, leaks), *_findings_of_mesh(mesh)]
     constraints = len(mesh.edges) + len(mesh.tets)
     thinnest = _thinnest_wall(voxels)
+    cost = None
+    if isinstance(body, Design) and setup is not None:
+        wall = None if thinnest is None else thinnest.thickness * voxels.voxel_size
+        cost = cost_of(body, setup.mesh, wall, mass)
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
         voxels=voxels.count,
@@ -172,9 +208,10 @@ def examine(
         tets=len(mesh.tets),
         cavities=cavities,
         leaks=leaks,
+        chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
         mass=mass,
         thinnest_wall=None if thinnest is None else thinnest.thickness,
-        seconds=constraints * _steps_to_rest(voxels) * _SECONDS_PER_CONSTRAINT_STEP,
+        cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
     )
 
@@ -188,9 +225,35 @@ def _discretized(body: Design | Voxels) -> tuple[Voxels, Mesh, float]:
     return voxels, voxels.mesh(), 0.0
 
 
-def _errors(error: VoxSoftError) -> Iterator[Finding]:
+def _errors(error: VoxSoftError) -> Iterator[Diagnostic]:
     for problem in error.problems:
-        yield Finding("error", problem.where, problem.what, problem.hint)
+        yield Diagnostic("error", problem.where, problem.what, problem.hint)
+
+
+def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:
+    """The same with the place of the region that it is about, if it is about one."""
+    match = _OF_A_REGION.match(found.where)
+    if match is None:
+        return found
+    section, name = match["section"], match["name"]
+    owner: Any = getattr(design, section)
+    owner = owner[name] if section == "probes" else owner[int(name)]
+    region = owner if section == "probes" else getattr(owner, "region", None)
+    return found if region is None else replace(found, at=_middle_of(region, mesh))
+
+
+def _middle_of(region: Region, mesh: Mesh) -> tuple[float, float, float]:
+    """Where a region is, as near to the body as it comes [m]."""
+    point = getattr(region, "point", None) or region.center
+    if point is not None:
+        x, y, z = point
+        return (float(x), float(y), float(z))
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    for axis, bounds in enumerate((region.x, region.y, region.z)):
+        if bounds is not None:
+            low[axis], high[axis] = np.clip((low[axis], high[axis]), *bounds)
+    x, y, z = (low + high) / 2
+    return (float(x), float(y), float(z))
 
 
 def _cavities(voxels: Voxels, mesh: Mesh) -> tuple[Cavity, ...]:
@@ -199,12 +262,12 @@ def _cavities(voxels: Voxels, mesh: Mesh) -> tuple[Cavity, ...]:
     return tuple(replace(cavity, volume=float(surface.volume)) for cavity, surface in pairs)
 
 
-def _findings_of_loss(lost: float, mesh: Mesh) -> list[Finding]:
+def _findings_of_loss(lost: float, mesh: Mesh) -> list[Diagnostic]:
     if lost <= _LOST * mesh.volume:
         return []
     share = lost / (lost + mesh.volume)
     what = f"{share:.1%} of the material is in walls too thin to fill a voxel, and is left out"
-    return [Finding("warning", "parts", what, "make the voxels smaller")]
+    return [Diagnostic("warning", "parts", what, "make the voxels smaller")]
 
 
 def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
@@ -226,59 +289,79 @@ def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...],
     return tuple(cavities), tuple(leaks)
 
 
-def findings_of_holes(bare: int, edges: int, where: str) -> list[Finding]:
-    """Say that a surface has holes, where some of its edges belong to one triangle only."""
-    if bare == 0:
-        return []
-    what = f"the surface has holes: {bare:,} of {edges:,} edges belong to one triangle"
-    hint = "look at the voxels, whose inside was guessed, or close the surface where it was made"
-    return [Finding("warning", where, what, hint)]
+def _findings_of_settings(design: Design) -> Iterator[Diagnostic]:
+    for problem in unused_settings(design, design.solver):
+        yield Diagnostic("error", problem.where, problem.what, problem.hint)
 
 
-def _findings_of_surfaces(design: Design) -> Iterator[Finding]:
-    for name, shape in design.shapes.items():
-        if isinstance(shape, TriangleMesh):
-            yield from findings_of_holes(*shape.open_edges(), f"shapes.{name}.path")
-
-
-def _findings_of_voxels(voxels: Voxels, leaks: tuple[Leak, ...]) -> Iterator[Finding]:
+def _findings_of_voxels(
+    body: Design | Voxels, voxels: Voxels, leaks: tuple[Leak, ...]
+) -> Iterator[Diagnostic]:
     hint = "thicken the body there by a voxel, or make the voxels smaller"
     for hinge in voxels.hinges[:_LISTED]:
-        yield Finding(
+        at = _middle(voxels, *hinge.cells)
+        contact = "an edge" if hinge.contact == "edge" else "a corner"
+        yield Diagnostic(
             "warning",
             f"voxels {hinge.cells[0]} and {hinge.cells[1]}",
-            f"touch at {'an edge' if hinge.contact == 'edge' else 'a corner'} only: a hinge",
+            f"touch at {contact} only, a hinge, {near(at)}",
             hint,
+            at,
         )
     if len(voxels.hinges) > _LISTED:
         what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
-        yield Finding("warning", "voxels", what, hint)
+        yield Diagnostic("warning", "voxels", what, hint)
     pieces = voxels.components("face")
     if len(pieces) > 1:
         sizes = ", ".join(f"{piece.count:,}" for piece in pieces[:_LISTED])
-        yield Finding(
+        yield Diagnostic(
             "warning",
             "voxels",
             f"the body is in {len(pieces)} pieces of {sizes} voxels"
             + (" and more" if len(pieces) > _LISTED else ""),
             "join them by whole faces of voxels, or clamp each of them",
+            _middle(voxels, tuple(pieces[-1].cells[0].tolist())),
         )
     for leak in leaks[:_LISTED]:
         cells = ", ".join(str(cell) for cell in leak.openings[:3])
-        yield Finding(
+        at = _middle(voxels, leak.openings[0])
+        yield Diagnostic(
             "warning",
             f"voxel {leak.openings[0]}",
-            f"a chamber of {leak.volume * 1e6:.3g} mL is open through {cells}",
+            f"a chamber of {leak.volume * 1e6:.3g} mL is open through {cells}, {near(at)}",
             "close the opening by a voxel, unless it is meant to be open",
+            at,
         )
     thinnest = _thinnest_wall(voxels)
-    if thinnest is not None and thinnest.thickness < GOOD_WALL:
-        yield Finding(
+    if thinnest is not None and thinnest.thickness < GOOD_WALL and _locks(body, voxels, thinnest):
+        at = _middle(voxels, thinnest.cell)
+        yield Diagnostic(
             "warning",
             f"voxel {thinnest.cell}",
-            f"the wall is {thinnest.thickness} voxel thick there and bends too stiffly",
+            f"the wall is {thinnest.thickness} voxel thick {near(at)} and bends too stiffly",
             f"make the voxels smaller: {GOOD_WALL} or more across a wall",
+            at,
         )
+
+
+def _middle(voxels: Voxels, *cells: Cell) -> tuple[float, float, float]:
+    """The middle of some cells of a grid [m]."""
+    middle = np.asarray(cells, dtype=np.float64).mean(axis=0) + 0.5
+    x, y, z = np.asarray(voxels.origin) + voxels.voxel_size * middle
+    return (float(x), float(y), float(z))
+
+
+def _locks(body: Design | Voxels, voxels: Voxels, wall: Wall) -> bool:
+    """Whether a wall of one voxel bends too stiffly: five tetrahedra of a lattice do.
+
+    A voxel of rubber bends as it should (docs/method/elements.md). The walls of the pneunet family,
+    one voxel thick, leave its tip 6 % short of where walls of two voxels bring it, no more than the
+    same voxels miss elsewhere.
+    """
+    if isinstance(body, Voxels):
+        return True
+    part = body.parts[int(voxels.array[wall.cell]) - 1]
+    return not isinstance(body.material_of(part), Hyperelastic)
 
 
 def _thinnest_wall(voxels: Voxels) -> Wall | None:
@@ -290,23 +373,12 @@ def _thinnest_wall(voxels: Voxels) -> Wall | None:
     return walls[0] if walls else voxels.wall_thickness.thinnest
 
 
-def _findings_of_mesh(mesh: Mesh) -> Iterator[Finding]:
+def _findings_of_mesh(mesh: Mesh) -> Iterator[Diagnostic]:
     quality = mesh.quality
     if not quality.conforming or quality.smallest_tet <= 0.0:
-        yield Finding(
+        yield Diagnostic(
             "error",
             "mesh",
             "is not conforming, or holds a tetrahedron without volume",
             "report this with the design: no shape should do that",
         )
-
-
-def _steps_to_rest(voxels: Voxels) -> float:
-    """Steps of relaxation: proportional to the highest over the lowest frequency.
-
-    A slender body of length ``L`` and thickness ``t`` in voxels bends with a frequency of order
-    ``t/L²`` of that of a voxel; 10 was measured on the paper's beam (L = 18, t = 2).
-    """
-    extents = np.sort(np.diff(voxels.bounds, axis=0)[0]) / voxels.voxel_size
-    thickness, length = max(float(extents[0]), 1.0), float(extents[-1])
-    return float(max(200.0, 10.0 * length**2 / thickness))

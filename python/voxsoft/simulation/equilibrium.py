@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, Final
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
@@ -15,40 +15,22 @@ from voxsoft.units import format_percent
 
 DEFAULT_STATICS_TOLERANCE = 1e-8
 DEFAULT_STEPS = 20
+#: The first step of arc-length control.
+DEFAULT_ARC = 0.2
 DEFAULT_VOLUME_RATIO = 1.5
 
-#: Fields of a solver that only statics knows, and those that only a run over time knows.
-_STATICS_ONLY = ("control", "steps", "volume_ratio", "first_step")
-_TIME_ONLY = ("time_step", "substeps", "iterations", "retardation", "end_time", "max_time")
 
-
-def check_solver(solver: Solver) -> None:
-    """Refuse settings of one solver that are given to the other.
-
-    Raises
-    ------
-    SimulationError
-        Naming the setting and the method that knows it.
-
-    Examples
-    --------
-    >>> check_solver(Solver(method="xpbd", control="volume"))
-    Traceback (most recent call last):
-    ...
-    voxsoft.errors.SimulationError: solver.control: is a setting of statics, and the method is \
-"xpbd". Try: use method = "statics", or leave control out
-    """
-    foreign = {"xpbd": (_STATICS_ONLY, "statics"), "statics": (_TIME_ONLY, "xpbd")}
-    if solver.method not in foreign:
-        return
-    names, other = foreign[solver.method]
-    for name in names:
-        if getattr(solver, name) is not None:
-            raise SimulationError(
-                f"solver.{name}",
-                f'is a setting of {other}, and the method is "{solver.method}"',
-                f'use method = "{other}", or leave {name} out',
-            )
+#: What to try instead of a control that found no equilibrium, and of one that met a limit.
+_OTHER_WAYS: Final[Mapping[str, str]] = {
+    "load": 'control = "arc-length"',
+    "arc-length": 'control = "load" or more steps',
+    "volume": 'control = "load"',
+}
+_PAST_A_LIMIT: Final[Mapping[str, str]] = {
+    "load": 'control = "volume" or "arc-length"',
+    "arc-length": 'more steps, or control = "volume"',
+    "volume": "more steps",
+}
 
 
 def find_equilibrium(
@@ -78,7 +60,7 @@ def find_equilibrium(
         )
     asked: dict[str, Any] = {
         "tolerance": solver.tolerance or DEFAULT_STATICS_TOLERANCE,
-        "first_step": solver.first_step or 1.0,
+        "first_step": solver.first_step or (DEFAULT_ARC if control == "arc-length" else 1.0),
         "control": control,
         "steps": solver.steps or DEFAULT_STEPS,
         "ratio": solver.volume_ratio or DEFAULT_VOLUME_RATIO,
@@ -101,10 +83,12 @@ def find_equilibrium(
             'use larger voxels, or method = "xpbd"',
         )
     used = {"method": "statics", "way": control, "tolerance": asked["tolerance"]}
-    if control != "load":
-        used["steps"] = asked["steps"]
     if control == "volume":
         used["volume_ratio"] = asked["ratio"]
+    else:
+        used["first_step"] = asked["first_step"]
+    if control != "load":
+        used["steps"] = asked["steps"]
     return used, report
 
 
@@ -139,13 +123,13 @@ def sentence(report: dict[str, Any]) -> str:
             return (
                 f"no equilibrium past {100 * report['limit']:.4g} % of the load, the limit of this "
                 f"path; kept is the last stable state, at {carried}. Lower the load, or follow "
-                'the path with control = "volume" or "arc-length"'
+                f"the path with {_PAST_A_LIMIT[report['way']]}"
             )
         case "mechanism":
             return (
                 f"a part of the body moves freely (the tangent is singular) at {carried}; clamp "
-                "it, or join voxels that meet only along edges or corners (`voxsoft check` shows "
-                "such hinges)"
+                "it, or join voxels that meet only along edges or corners (the check of the "
+                "design shows such hinges)"
             )
         case _ if report["way"] == "volume" and report["reached"] > 0.0:
             words = (
@@ -159,5 +143,5 @@ def sentence(report: dict[str, Any]) -> str:
         case _:
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
-                'Try control = "arc-length", smaller voxels, or method = "xpbd"'
+                f'Try {_OTHER_WAYS[report["way"]]}, smaller voxels, or method = "xpbd"'
             )

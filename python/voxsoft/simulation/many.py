@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from voxsoft import _core, metrics
-from voxsoft.design import Design, Solver
+from voxsoft import _core
+from voxsoft._shown import Shown
+from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import DesignError, SimulationError
-from voxsoft.materials import Lattice, Material
+from voxsoft.geometry import mean_displacement
+from voxsoft.materials import Lattice, Material, material_of
+from voxsoft.metrics import Place
+from voxsoft.records import plain_values
 from voxsoft.simulation.equilibrium import DEFAULT_STATICS_TOLERANCE
-from voxsoft.simulation.places import Place
-from voxsoft.simulation.result import Result, Status
+from voxsoft.simulation.overlaps import penetration_of
+from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.result import Result, Status, moved_in_words
 from voxsoft.simulation.run import simulate
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_percent
@@ -30,8 +35,8 @@ MOST_PRODUCTS: Final = 2_500
 MOST_BYTES: Final = 256_000_000
 
 
-@dataclass(frozen=True)
-class Settled:
+@dataclass(frozen=True, repr=False)
+class Settled(Shown):
     """Where one candidate of many ended.
 
     Attributes
@@ -57,6 +62,11 @@ class Settled:
     way: Literal["lanes", "alone"]
     setup: Setup = field(repr=False)
 
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.status}, {self.message} ({self.way})"
+        for name, moved in self.probes.items():
+            yield moved_in_words(name, moved)
+
     @property
     def displacements(self) -> NDArray[np.float64]:
         """Displacement of every vertex in m, (n, 3)."""
@@ -69,9 +79,14 @@ class Settled:
 
         def moved(place: Place) -> NDArray[np.float64]:
             rest = self.setup.mesh.vertices
-            return metrics.mean_displacement(rest, self.positions, place.vertices, place.weights)
+            return mean_displacement(rest, self.positions, place.vertices, place.weights)
 
         return {name: moved(place) for name, place in self.setup.places.items()}
+
+    @cached_property
+    def penetration(self) -> Penetration:
+        """Where the body is in itself or in its floor, and how deep."""
+        return penetration_of(self.setup.design, self.setup.mesh, self.positions)
 
 
 @dataclass(frozen=True)
@@ -153,9 +168,9 @@ class Ensemble:
 
 def simulate_many(
     design: Design | Setup,
-    materials: Sequence[Material] | None = None,
+    materials: Iterable[Material | str] | None = None,
     *,
-    load_factors: Sequence[float] | None = None,
+    load_factors: ArrayLike | None = None,
     tolerance: float | None = None,
 ) -> tuple[Settled, ...]:
     """Bring a design to rest with many materials, or under many parts of its loads.
@@ -170,8 +185,9 @@ def simulate_many(
     design
         What to simulate; a :class:`Setup` saves meshing again.
     materials
-        The material of all parts, for each candidate; default: the design's own for all.
-    load_factors
+        The material of all parts, for each candidate, or the name or path of its card; default:
+        the design's own for all.
+    load_factors : array_like, shape (n,)
         A factor on all loads, for each candidate; prescribed motions are not scaled. Default: 1 for
         all. One of both has to be given, and where both are, they have the same length.
     tolerance
@@ -200,10 +216,12 @@ def simulate_many(
     >>> sags == sorted(sags, reverse=True)
     True
     """
-    count = _count(materials, load_factors)
-    setup = design if isinstance(design, Setup) else Setup.of(design)
-    factors = [1.0] * count if load_factors is None else [float(f) for f in load_factors]
-    if materials is not None and len({repr(m) for m in _materials(setup.design)}) > 1:
+    chosen = None if materials is None else [material_of(each) for each in materials]
+    factors = None if load_factors is None else _numbers(load_factors)
+    count = _count(chosen, factors)
+    factors = [1.0] * count if factors is None else factors
+    setup = design if isinstance(design, Setup) else Setup.of(require_design(design))
+    if chosen is not None and len({repr(m) for m in _materials(setup.design)}) > 1:
         raise DesignError(
             "parts",
             "are of several materials, and `materials` would replace all of them",
@@ -213,29 +231,40 @@ def simulate_many(
     found: list[Settled | None] = [None] * count
     if _is_plain(solver) and (ensemble := Ensemble.of(setup)) is not None:
         asked = tolerance or solver.tolerance or DEFAULT_STATICS_TOLERANCE
-        found = ensemble.settle(materials, factors, asked)
+        found = ensemble.settle(chosen, factors, asked)
     settings = {} if tolerance is None else {"tolerance": tolerance}
     return tuple(
-        _alone(setup, materials[index] if materials else None, factors[index], settings)
+        _alone(setup, None if chosen is None else chosen[index], factors[index], settings)
         if settled is None
         else settled
         for index, settled in enumerate(found)
     )
 
 
-def _count(materials: Sequence[Material] | None, load_factors: Sequence[float] | None) -> int:
-    lengths = {len(each) for each in (materials, load_factors) if each is not None}
-    if len(lengths) != 1:
-        came = f"have {len(materials or ())} and {len(load_factors or ())} entries"
+def _numbers(load_factors: ArrayLike) -> list[float]:
+    """Read factors: a list, an array, a series, a generator."""
+    given = plain_values(load_factors)
+    try:
+        numbers = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.zeros((0, 0))
+    if numbers.ndim != 1:
         raise SimulationError(
-            "materials, load_factors",
-            came if lengths else "are both missing",
-            "give a list of candidates, or two of the same length",
+            "load_factors", "is no list of numbers", "give one factor for each candidate"
         )
-    for index, factor in enumerate(load_factors or ()):
+    for index, factor in enumerate(numbers.tolist()):
         if not np.isfinite(factor):
             raise SimulationError(f"load_factors[{index}]", f"is {factor}", "give a finite number")
-    return lengths.pop()
+    return [float(factor) for factor in numbers]
+
+
+def _count(materials: Sequence[Material] | None, load_factors: Sequence[float] | None) -> int:
+    lengths = [len(each) for each in (materials, load_factors) if each is not None]
+    if len(set(lengths)) != 1:
+        came = f"have {' and '.join(map(str, lengths))} entries" if lengths else "are both missing"
+        hint = "give a list of candidates, or two of the same length"
+        raise SimulationError("materials, load_factors", came, hint)
+    return lengths[0]
 
 
 def _materials(design: Design) -> list[Material]:
@@ -255,15 +284,13 @@ def _alone(
     design = setup.design
     changes: dict[str, Any] = {}
     if material is not None:
-        parts = [part.model_copy(update={"material": material}) for part in design.parts]
+        parts = [part.replace(material=material) for part in design.parts]
         changes["parts"] = tuple(parts)
     if factor != 1.0:
-        scaled = [
-            load.model_copy(update={"value": _times(factor, load.value)}) for load in design.loads
-        ]
+        scaled = [load.replace(value=_times(factor, load.value)) for load in design.loads]
         changes["loads"] = tuple(scaled)
     try:
-        result = simulate(Setup(design.model_copy(update=changes), setup.mesh), **settings)
+        result = simulate(Setup(design.replace(**changes), setup.mesh), **settings)
     except SimulationError as error:  # a tangent too large for the memory: the others still count
         rest = setup.mesh.vertices
         return Settled("failed", str(error), rest, np.inf, "alone", setup)

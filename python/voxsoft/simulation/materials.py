@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from voxsoft.design import Design
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
@@ -25,7 +27,7 @@ def solid_materials(design: Design) -> list[Material]:
     --------
     >>> from voxsoft.design import families
     >>> [material.model for material in solid_materials(families.beam())]
-    ['lattice']
+    ['yeoh']
     """
     materials = [design.material_of(part) for part in design.parts]
     for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
@@ -49,6 +51,24 @@ def solid_materials(design: Design) -> list[Material]:
     return [
         material.beside(max(soft)) if isinstance(material, Rigid) else material
         for material in materials
+    ]
+
+
+def core_materials(design: Design, materials: list[Material]) -> list[Any]:
+    """What the core takes for each part of a design: its material and its fibers.
+
+    Parameters
+    ----------
+    design
+        Whose parts have the fibers.
+    materials
+        One for each part, such as :func:`solid_materials` gives.
+    """
+    return [
+        (*material.core[:4], [fiber.core for fiber in part.fibers], *material.core[5:])
+        if part.fibers
+        else material.core
+        for part, material in zip(design.parts, materials, strict=True)
     ]
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +11,12 @@ from voxsoft.design import Design, Probe, Region
 from voxsoft.design.cut_cells import built_parts
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
+from voxsoft.metrics import Place
 from voxsoft.shapes import Shape
 from voxsoft.units import format_quantity
 
 # A tie at exactly half a voxel goes to neither side.
 _HALF = 0.5 * (1 - 1e-6)
-
-
-@dataclass(frozen=True)
-class Place:
-    """Vertices with weights that sum to one: what a probe averages over."""
-
-    vertices: NDArray[np.uint32]
-    weights: NDArray[np.float64]
 
 
 def vertices_in(
@@ -57,9 +49,9 @@ def vertices_in(
     """
     reach = _HALF * voxel_size(mesh)
     points = mesh.vertices if points is None else points
-    caught = np.flatnonzero(_inside(region, points, shapes, reach)).astype(np.uint32)
+    caught = np.flatnonzero(inside_region(region, points, shapes, reach)).astype(np.uint32)
     if caught.size == 0:
-        raise DesignError(where, f"catches no vertex; the body spans {_span(mesh)}", _TRY)
+        raise DesignError(where, f"touches nothing; the body spans {_span(mesh)}", _TRY)
     return caught
 
 
@@ -87,7 +79,7 @@ def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
     --------
     >>> from voxsoft.design import families
     >>> from voxsoft.design.discretize import mesh_of
-    >>> short = families.beam(length="98 mm").model_copy(update={"fill": "fraction"})
+    >>> short = families.beam(length="98 mm").replace(fill="fraction")
     >>> mesh = mesh_of(short)
     >>> print(mesh.vertices[:, 0].max().round(4), on_the_body(short, mesh)[:, 0].max().round(4))
     0.1 0.098
@@ -145,12 +137,12 @@ def place_of(
             # Between layers the motion is interpolated, so that here vertices are where they are.
             points = mesh.vertices
             weights *= 1.0 - np.abs(mesh.vertices[:, axis] - bounds[0]) / size
-    weights = np.where(_inside(probe, points, shapes, reach), weights, 0.0)
+    weights = np.where(inside_region(probe, points, shapes, reach), weights, 0.0)
     # Layers a whole voxel away have the weight 0 up to rounding.
     weights[weights < 1e-9] = 0.0
     caught = np.flatnonzero(weights)
     if caught.size == 0:
-        raise DesignError(where, f"catches no vertex; the body spans {_span(mesh)}", _TRY)
+        raise DesignError(where, f"touches nothing; the body spans {_span(mesh)}", _TRY)
     return Place(caught.astype(np.uint32), weights[caught] / weights[caught].sum())
 
 
@@ -161,12 +153,13 @@ def voxel_size(mesh: Mesh) -> float:
     return float(np.cbrt(5.0 * mesh.quality.volume / len(mesh.tets)))
 
 
-def _inside(
+def inside_region(
     region: Region,
     points: NDArray[np.float64],
     shapes: Mapping[str, Shape],
     reach: float | NDArray[np.float64],
 ) -> NDArray[np.bool_]:
+    """Which points (n, 3) lie in a region or within some reach (m) of it, (n,)."""
     reach = np.broadcast_to(reach, (3,))
     inside = np.ones(len(points), dtype=bool)
     for axis, name in enumerate("xyz"):

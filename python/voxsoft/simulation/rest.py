@@ -48,8 +48,7 @@ def relax_fully(
         progress=_counted_from(taken, progress),
     )
     later["steps"] += taken
-    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
-    return {**used, "max_steps": DEFAULT_MAX_STEPS}, later
+    return _used(tolerance), later
 
 
 def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
@@ -69,8 +68,7 @@ def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
         progress=progress,
     )
     if trial["status"] != "slow":
-        used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
-        return {**used, "max_steps": DEFAULT_MAX_STEPS}, trial
+        return _used(tolerance), trial
     try:
         used, report = find_equilibrium(setup, solver, _counted_from(trial["steps"], progress))
     except SimulationError:  # its tangent does not fit in memory
@@ -78,6 +76,12 @@ def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
     if report["status"] == "at-rest" and report["stable"]:
         return {**used, "trial_steps": trial["steps"]}, report
     return relax_fully(setup, solver, progress, trial)
+
+
+def _used(tolerance: float) -> dict[str, Any]:
+    """What relaxation says of itself; it damps as suits it, step by step."""
+    used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance}
+    return {**used, "damping": "auto", "max_steps": DEFAULT_MAX_STEPS}
 
 
 def _counted_from(taken: int, progress: Progress) -> Progress:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,12 +10,20 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import metrics
-from voxsoft.design import Constraint, Design, Objective
+from voxsoft._shown import Shown, rounded, shortened
+from voxsoft.design import Design, Objective
+from voxsoft.design.chamber import chosen_cavities
 from voxsoft.errors import DesignError
+from voxsoft.fields import Fields
+from voxsoft.geometry import mean_displacement
 from voxsoft.mesh import Mesh
-from voxsoft.records import closest
-from voxsoft.simulation.places import Place
+from voxsoft.metrics import METRICS, Place, Target, metric_named
+from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.overlaps import penetration_of
+from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.warnings import warnings_at
+from voxsoft.units import format_percent, format_quantity
 
 if TYPE_CHECKING:
     from voxsoft.studio.html import LivePage
@@ -43,8 +51,8 @@ class History:
     frames: NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Result:
+@dataclass(frozen=True, repr=False)
+class Result(Shown):
     """Where a design ended up, and how sure that is.
 
     Attributes
@@ -122,7 +130,7 @@ class Result:
     def probes(self) -> Mapping[str, NDArray[np.float64]]:
         """Displacement of each probe in m, (3,) by name."""
         return {
-            name: metrics.mean_displacement(
+            name: mean_displacement(
                 self.mesh.vertices, self.positions, place.vertices, place.weights
             )
             for name, place in self.places.items()
@@ -130,8 +138,22 @@ class Result:
 
     @cached_property
     def cavity_volumes(self) -> tuple[float, ...]:
-        """Volume of each cavity now, in m³, in the order of the mesh's cavities."""
+        """Volume of each cavity now, in m³, in the order of the mesh's cavities.
+
+        Those of named chambers are in :attr:`chamber_volumes`.
+        """
         return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Stress and strain in each voxel, and averaged on the vertices."""
+        return fields_of(self.design, self.mesh, self.positions)
+
+    @property
+    def chamber_volumes(self) -> dict[str, float]:
+        """Volume of each named chamber now, in m³."""
+        pairs = zip(self.mesh.cavities, self.cavity_volumes, strict=True)
+        return {cavity.name: volume for cavity, volume in pairs if cavity.name}
 
     def metric(
         self,
@@ -139,7 +161,8 @@ class Result:
         *,
         probe: str | None = None,
         axis: Literal["x", "y", "z"] | None = None,
-        cavity: int | None = None,
+        cavity: int | str | None = None,
+        percentile: float | None = None,
     ) -> float:
         """Return one metric in SI units.
 
@@ -152,78 +175,67 @@ class Result:
         axis
             The component of a vector; default: its magnitude.
         cavity
-            The cavity for ``cavity_volume`` and ``cavity_volume_change``; default: all of them.
+            The chamber for ``cavity_volume`` and ``cavity_volume_change``, by its name or the index
+            of the cavity; default: all of them.
+        percentile
+            For ``max_stress`` and ``max_stretch``: what so many percent of the volume stay at or
+            below, which one sharp corner does not decide; default: 100, the largest of all.
 
         Raises
         ------
         DesignError
-            An unknown metric, probe or cavity, or a probe that is missing.
+            An unknown metric, probe or cavity, a probe that is missing, or one that is not used.
         """
-        if name not in metrics.METRICS:
-            raise DesignError("metric", f'"{name}" is not a metric', closest(name, metrics.METRICS))
-        if name == "displacement":
-            return _component(self.probes[self._probe(probe)], axis)
-        if name == "rotation":
-            place = self.places[self._probe(probe)]
-            return metrics.mean_rotation(self.mesh.vertices, self.positions, place.vertices)
-        if name == "reaction":
-            return _component(np.asarray(self.reaction), axis)
-        if name in ("cavity_volume", "cavity_volume_change"):
-            return self._cavity(cavity, change=name == "cavity_volume_change")
-        return self._plain_metric(name)
+        target = Objective(
+            maximize=name, probe=probe, axis=axis, cavity=cavity, percentile=percentile
+        )
+        problems = list(metric_named(name).refusals(target))
+        if problems:
+            raise DesignError.listing(problems)
+        return self._value(target)
 
-    def _plain_metric(self, name: str) -> float:
-        match name:
-            case "mass":
-                return self.mass
-            case "volume":
-                return self.mesh.volume
-            case "elastic_energy":
-                return self.elastic_energy
-            case "max_displacement":
-                return float(np.linalg.norm(self.displacements, axis=1).max())
-            case _:
-                edges, rest = self.mesh.edges, self.mesh.vertices
-                return metrics.max_stretch(edges, rest, self.positions)
-
-    def _probe(self, name: str | None) -> str:
-        if name is None and len(self.places) == 1:
-            return next(iter(self.places))
-        if name is None:
-            raise DesignError("probe", "is missing", f"name one of {', '.join(self.places)}")
-        if name not in self.places:
-            raise DesignError("probe", f'"{name}" is not a probe', closest(name, self.places))
-        return name
-
-    def _cavity(self, index: int | None, *, change: bool) -> float:
-        count = len(self.mesh.cavities)
-        if index is not None and index >= count:
-            raise DesignError("cavity", f"there are {count} cavities, {index} is past the last")
-        chosen = range(count) if index is None else [index]
-        now = sum(self.cavity_volumes[i] for i in chosen)
-        before = sum(float(self.mesh.cavities[i].volume) for i in chosen)
-        return now - before if change else now
+    def _value(self, target: Target) -> float:
+        return metric_named(target.metric).value(self, target)
 
     @cached_property
     def metrics(self) -> Mapping[str, float]:
         """The design's objectives and constraints by name, or everything that needs no choice."""
-        asked: dict[str, Objective | Constraint] = {
-            **self.design.objectives,
-            **self.design.constraints,
-        }
-        values = {
-            name: self.metric(
-                target.metric, probe=target.probe, axis=target.axis, cavity=target.cavity
-            )
-            for name, target in asked.items()
-        }
-        free = set(metrics.METRICS) - metrics.PROBE_METRICS
+        asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
+        values = {name: self._value(target) for name, target in asked.items()}
+        free = {name for name, metric in METRICS.items() if not metric.needs}
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
+
+    @cached_property
+    def penetration(self) -> Penetration:
+        """Where the body is in itself or in its floor, and how deep."""
+        return penetration_of(self.design, self.mesh, self.positions)
+
+    @cached_property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is doubtful about this result: where, what, and what to try; empty if nothing is."""
+        found = warnings_at(self.design, self.mesh, self.positions, self.fields)
+        if self.stable is False:
+            what, hint = "is not stable under constant loads", "lower the load"
+            found = (Diagnostic("warning", "equilibrium", what, hint), *found)
+        if self.status == "ok" and self.load_factor != 1.0 and self.solver["way"] != "volume":
+            what = f"is that of {format_percent(self.load_factor)} of the loads"
+            hint = "lower the loads to what the body carries"
+            found = (Diagnostic("warning", "equilibrium", what, hint), *found)
+        return found
+
+    def _lines(self) -> Iterator[str]:
+        yield f"{self.design.name}: {self.status}, {self.message}"
+        yield from shortened([moved_in_words(*probe) for probe in self.probes.items()])
+        asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
+        for name, target in asked.items():
+            kind = METRICS[target.metric].kind
+            yield f"{name}: {format_quantity(rounded(self.metrics[name]), kind)}"
+        yield from shortened([f"warning: {found}" for found in self.warnings])
 
     def show(self) -> LivePage:
         """Show the design as a page that is alive: in a notebook, or as a file with ``save``.
 
-        The page begins at the unloaded shape and comes to this result when time runs.
+        The page begins at this result; its Play shows the way there from the unloaded shape.
         """
         # `studio` lies above `simulation` in the layers; this convenience reaches up when called.
         from voxsoft.studio.html import page_of
@@ -232,9 +244,7 @@ class Result:
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
-        pressures = [
-            self.load_factor * value for value in _pressures(self.design, len(self.mesh.cavities))
-        ]
+        pressures = [self.load_factor * value for value in _pressures(self.design, self.mesh)]
         return {
             "status": self.status,
             "message": self.message,
@@ -246,11 +256,18 @@ class Result:
             },
             "metrics": dict(self.metrics),
             "cavities": [
-                {"volume": volume, "rest_volume": float(cavity.volume), "pressure": pressure}
+                {
+                    "name": cavity.name,
+                    "volume": volume,
+                    "rest_volume": float(cavity.volume),
+                    "pressure": pressure,
+                }
                 for volume, cavity, pressure in zip(
                     self.cavity_volumes, self.mesh.cavities, pressures, strict=True
                 )
             ],
+            "penetration": self.penetration.depth,
+            "warnings": [warning.summary() for warning in self.warnings],
             "reaction": list(self.reaction),
             "load": list(self.load),
             "voxels": len(self.mesh.tets) // 5 if self.mesh.voxel_size else None,
@@ -263,16 +280,24 @@ class Result:
         }
 
 
-def _component(vector: NDArray[np.float64], axis: str | None) -> float:
-    return float(np.linalg.norm(vector) if axis is None else vector["xyz".index(axis)])
+def moved_in_words(name: str, moved: NDArray[np.float64]) -> str:
+    """Write the displacement of a probe in mm.
+
+    Examples
+    --------
+    >>> moved_in_words("tip", np.array([0.0, 1e-3, -2.5e-3]))
+    'tip: moved (0.000, 1.000, -2.500) mm'
+    """
+    shown = ", ".join(f"{round(1e3 * component, 3) + 0.0:.3f}" for component in moved)
+    return f"{name}: moved ({shown}) mm"
 
 
-def _pressures(design: Design, count: int) -> list[float]:
+def _pressures(design: Design, mesh: Mesh) -> list[float]:
     """The final pressure in Pa in each cavity."""
-    pressures = [0.0] * count
-    for load in design.loads:
+    pressures = [0.0] * len(mesh.cavities)
+    for number, load in enumerate(design.loads):
         if load.kind == "pressure":
             final = load.history.factor[-1] if load.history else 1.0
-            for index in range(count) if load.cavity == "all" else [load.cavity]:
+            for index in chosen_cavities(load.cavity, mesh, f"loads[{number}].cavity"):
                 pressures[index] += final * load.value
     return pressures

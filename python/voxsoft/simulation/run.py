@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 
 from voxsoft import _core
-from voxsoft.design import Design, Solver
-from voxsoft.materials import Hyperelastic, Rigid
-from voxsoft.simulation.equilibrium import check_solver, find_equilibrium, sentence
+from voxsoft.design import Design, Solver, require_design
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.equilibrium import find_equilibrium, sentence
+from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.rest import quickest_rest, relax_fully
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
-from voxsoft.units import format_percent
+from voxsoft.simulation.ways import DYNAMICS, STATICS, Way, check_solver, way_of
+from voxsoft.units import format_percent, format_quantity, si_value
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
@@ -30,7 +32,7 @@ DEFAULT_RECORD_INTERVAL = 0.02
 def simulate(
     design: Design | Setup,
     *,
-    record_interval: float | None = None,
+    record_interval: float | str | None = None,
     frames: bool = False,
     progress: ProgressCallback | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
@@ -40,19 +42,20 @@ def simulate(
     Designs of hyperelastic parts, and those with layers, are solved by statics, Newton's method on
     the equilibrium. Others are brought to rest by dynamic relaxation, which is quick and knows no
     time, or, where its first 200 steps leave more than 0.6 of the load out of balance, by statics.
-    With any of `end_time`, `time_step`, `substeps`, `iterations`, `retardation` or a
-    `damping` rate, real time is simulated (Algorithm 3 of the paper, extended position-based
-    dynamics); all come to rest in the same state. Real time is damped critically on the way to
-    rest and not at all on the way to an end time, unless `damping` says otherwise.
+    With any of `end_time`, `max_time`, `time_step`, `substeps`, `iterations`, `retardation`, or a
+    `damping` that is not ``"auto"``, real time is simulated (Algorithm 3 of the paper, extended
+    position-based dynamics); all come to rest in the same state. Real time is damped critically
+    on the way to rest and not at all on the way to an end time, unless `damping` says otherwise.
 
     Parameters
     ----------
     design
         What to simulate; a :class:`Setup` saves meshing again.
     record_interval
-        Record probes every so many seconds; default 1/50 s in runs over time.
+        Time between two records of the probes, in s or with its unit, ``"50 ms"``; default 1/50 s.
+        For runs over time only.
     frames
-        Whether to record all vertices as well.
+        Whether to record all vertices as well. For runs over time only.
     progress
         Called about ten times a second with (steps, time, residual); an exception it raises
         ends the run.
@@ -72,7 +75,8 @@ def simulate(
     NoCavityError, DisconnectedError
         Special cases of that, which a study counts apart.
     SimulationError
-        Settings that contradict each other, or a tangent too large for the memory.
+        A setting that would not be used, with what it belongs to and what to write; or a tangent
+        too large for the memory.
 
     Examples
     --------
@@ -81,22 +85,27 @@ def simulate(
     >>> result.status
     'ok'
     """
-    given = design.design if isinstance(design, Setup) else design
+    given = design.design if isinstance(design, Setup) else require_design(design)
+    if record_interval is not None:
+        record_interval = si_value(record_interval, "time", "record_interval", positive=True)
     solver = _settings(given.solver, settings)
-    check_solver(solver)
+    check_solver(given, solver, {"record_interval": record_interval, "frames": frames})
     if isinstance(design, Setup):
         setup = design
+        _check_refinement(setup, settings)
     else:
         setup = Setup.of(design, may_fly=solver.end_time is not None, refine=solver.refine)
     started = time.perf_counter()
-    if wants_statics(setup.design, solver):
+    way = way_of(given, solver)
+    if way in STATICS:
         used, report = find_equilibrium(setup, solver, progress)
-    elif _wants_time(solver):
+    elif way in DYNAMICS:
         used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
-    elif solver.method == "auto" and solver.damping is None:
+    elif way is Way.QUICKEST:
         used, report = quickest_rest(setup, solver, progress)
     else:
         used, report = relax_fully(setup, solver, progress)
+    used["refine"] = refinement(setup)
     return result_of(setup, used, report, time.perf_counter() - started)
 
 
@@ -138,31 +147,23 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
 
 
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
-    return own if not changes else Solver(**{**own.model_dump(), **changes})
+    return own if not changes else own.replace(**changes)
 
 
-def wants_statics(design: Design, solver: Solver) -> bool:
-    """Whether a solver's settings mean the statics solver for a design."""
-    if solver.method != "auto":
-        return solver.method == "statics"
-    materials = [design.material_of(part) for part in design.parts]
-    hyperelastic = all(isinstance(material, Hyperelastic) for material in materials)
-    stiff = design.layers or any(isinstance(material, Rigid) for material in materials)
-    path = (solver.control, solver.steps, solver.volume_ratio, solver.first_step)
-    asked = any(value is not None for value in path)
-    stiff = bool(stiff) and not _wants_time(solver)
-    return asked or stiff or (hyperelastic and not _wants_time(solver) and solver.damping is None)
+def refinement(setup: Setup) -> int:
+    """Into how many along each axis the voxels of a setup's design were cut."""
+    return max(1, round(setup.design.voxel_size / voxel_size(setup.mesh)))
 
 
-def _wants_time(solver: Solver) -> bool:
-    timed = (
-        solver.end_time,
-        solver.time_step,
-        solver.substeps,
-        solver.iterations,
-        solver.retardation,
-    )
-    return any(value is not None for value in timed) or isinstance(solver.damping, float)
+def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:
+    """A setup is meshed already: it cannot be refined any more."""
+    asked, done = settings.get("refine"), refinement(setup)
+    if asked is not None and asked != done:
+        raise SimulationError(
+            "solver.refine",
+            f"is {asked}, and the voxels of this setup are cut into {done} along each axis",
+            f"make it by Setup.of(design, refine={asked}), or simulate the design",
+        )
 
 
 def _dynamics(
@@ -174,8 +175,9 @@ def _dynamics(
     progress: ProgressCallback | None,
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     damping = _damping_rate(solver)
+    interval = record_interval or max(DEFAULT_RECORD_INTERVAL, solver.time_step or 0.0)
     asked: dict[str, Any] = {
-        "time_step": solver.time_step or DEFAULT_TIME_STEP,
+        "time_step": _time_step(solver, interval),
         "substeps": solver.substeps,
         "iterations": solver.iterations or 1,
         "damping": damping,
@@ -184,15 +186,30 @@ def _dynamics(
         "max_time": solver.max_time or DEFAULT_MAX_TIME,
         "tolerance": solver.tolerance or DEFAULT_DYNAMIC_TOLERANCE,
     }
+    unused = {"end_time"} if solver.end_time is None else {"max_time", "tolerance"}
+    told = {name: value for name, value in asked.items() if name not in unused}
     report = problem.simulate(
         **asked,
-        record_interval=record_interval or DEFAULT_RECORD_INTERVAL,
+        record_interval=interval,
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         frames=frames,
         progress=progress,
     )
-    used = {"method": "xpbd", "way": "dynamics", **asked, "substep": report["substep"]}
+    used = {"method": "xpbd", "way": "dynamics", **told, "substep": report["substep"]}
     return used | {"damping": "critical" if damping is None else damping}, report
+
+
+def _time_step(solver: Solver, interval: float) -> float:
+    """The length of a step in s: probes are recorded after whole steps."""
+    if solver.time_step is None:
+        return min(DEFAULT_TIME_STEP, interval)
+    if interval < solver.time_step:
+        raise SimulationError(
+            "record_interval",
+            f"is shorter than the time_step of {format_quantity(solver.time_step, 'time')}",
+            "record after whole steps, or shorten the step",
+        )
+    return solver.time_step
 
 
 def _damping_rate(solver: Solver) -> float | None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft._memory import shortage
 from voxsoft.design import (
     Clamp,
     Design,
@@ -22,19 +23,26 @@ from voxsoft.design import (
     Traction,
 )
 from voxsoft.design import History as LoadHistory
+from voxsoft.design.chamber import chosen_cavities
 from voxsoft.design.discretize import mesh_of
-from voxsoft.errors import DesignError, DisconnectedError, NoCavityError
+from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.metrics import Place
+from voxsoft.simulation.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
-from voxsoft.simulation.materials import solid_materials
-from voxsoft.simulation.places import Place, on_the_body, place_of, vertices_in
+from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
 
 Triangles = NDArray[np.int32]
 
+#: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
+#: (lattice) and 810 (rubber), half as much again for what is not a block.
+BYTES_PER_VOXEL: Final = 1_200
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class Setup:
     """A design made ready for a solver.
 
@@ -43,7 +51,8 @@ class Setup:
     design
         Where it came from.
     mesh
-        Its tetrahedra. Chambers that layers close are among its cavities.
+        Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
+        names of the design's chambers.
 
     Raises
     ------
@@ -58,8 +67,12 @@ class Setup:
     design: Design
     mesh: Mesh
 
+    def __repr__(self) -> str:
+        return f"Setup({self.design.name!r}, {self.mesh!r})"
+
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mesh", sealed(self.mesh, self.layers))
+        closed = sealed(self.mesh, self.layers)
+        object.__setattr__(self, "mesh", with_chamber_names(self.design, closed))
 
     @classmethod
     def of(cls, design: Design, *, may_fly: bool | None = None, refine: int | None = None) -> Setup:
@@ -82,15 +95,22 @@ class Setup:
         DisconnectedError
             A piece of the body is held by no clamp.
         NoCavityError
-            A pressure is asked for and there is no such cavity.
+            A pressure is asked for, or a chamber named, and there is no such cavity.
+        SimulationError
+            The problem does not fit in the memory.
         """
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
+        voxels = len(setup.mesh.tets) // 5
+        if short := shortage(voxels * BYTES_PER_VOXEL):
+            what = f"the problem of {voxels:,} voxels {short}"
+            raise SimulationError("voxel_size", what, "make the voxels larger")
         setup.check(may_fly=may_fly)
         return setup
 
     def check(self, *, may_fly: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
+        check_chambers(self.design, self.mesh)
         self._check_cavities()
         timed = self.design.solver.end_time is not None
         if not (timed if may_fly is None else may_fly):
@@ -118,34 +138,16 @@ class Setup:
     @cached_property
     def problem(self) -> _core.Problem:
         """The problem of the Rust core, with the design's own materials."""
-        mesh = self.mesh
-        blocks = mesh.tet_voxel if mesh.tet_voxel is not None else np.arange(len(mesh.tets))
-        return _core.Problem(
-            mesh.vertices,
-            mesh.tets.astype(np.uint32),
-            mesh.tet_part - np.uint8(1),
-            blocks.astype(np.uint32),
-            self._cores(self.materials),
-            self._parts(),
-        )
+        return core_problem(self.mesh, core_materials(self.design, self.materials), self._parts())
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
-        return self.problem.with_materials(self._cores(materials))
+        return self.problem.with_materials(core_materials(self.design, materials))
 
     @cached_property
     def materials(self) -> list[Material]:
         """The material of each part, with something stiff in place of what is rigid."""
         return solid_materials(self.design)
-
-    def _cores(self, materials: list[Material]) -> list[Any]:
-        """What the core takes for each part: its material and its fibers."""
-        return [
-            (*material.core[:4], [fiber.core for fiber in part.fibers], *material.core[5:])
-            if part.fibers
-            else material.core
-            for part, material in zip(self.design.parts, materials, strict=True)
-        ]
 
     def _parts(self) -> _core.ProblemParts:
         parts = _core.ProblemParts()
@@ -165,7 +167,7 @@ class Setup:
                 down = np.asarray(load.direction) / np.linalg.norm(load.direction)
                 parts.gravity((load.value * down).tolist(), history)
             elif isinstance(load, Pressure):
-                for cavity in self._pressurized(load):
+                for cavity in self.pressurized(load, where):
                     voids = (cavity.void_tets.astype(np.uint32), cavity.void_parts)
                     triangles = cavity.triangles.astype(np.uint32)
                     parts.pressure(triangles, load.value, history, voids)
@@ -177,13 +179,12 @@ class Setup:
                 self._add_traction(parts, load, where, history)
         if self.design.floor is not None:
             parts.floor(self.design.floor.z)
-        if self.mesh.fractions is not None:
-            parts.fractions(self.mesh.fractions, self.mesh.moments)
         return parts
 
-    def _pressurized(self, load: Pressure) -> Sequence[MeshCavity]:
-        cavities = self.mesh.cavities
-        return cavities if load.cavity == "all" else [cavities[load.cavity]]
+    def pressurized(self, load: Pressure, where: str) -> Sequence[MeshCavity]:
+        """The cavities that a pressure is in; `where` is the place an error names."""
+        chosen = chosen_cavities(load.cavity, self.mesh, f"{where}.cavity")
+        return [self.mesh.cavities[index] for index in chosen]
 
     def _add_traction(
         self, parts: _core.ProblemParts, load: Traction, where: str, history: _CoreHistory
@@ -239,12 +240,9 @@ class Setup:
                     where,
                     "there is no enclosed cavity to put a pressure in",
                     "make walls and caps at least one voxel thick, or the voxels smaller; "
-                    "`voxsoft check` shows where a chamber leaks",
+                    "the check of the design shows where a chamber leaks",
                 )
-            if load.cavity != "all" and load.cavity >= count:
-                raise NoCavityError(
-                    f"{where}.cavity", f"{load.cavity} is past the last of {count} cavities"
-                )
+            self.pressurized(load, where)
 
     def _check_support(self) -> None:
         """Every piece must be held, unless it may lie on a floor."""
@@ -299,6 +297,31 @@ def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | Non
     reached = np.bincount(labels, weights=held[mesh.tets].any(axis=1), minlength=count)
     loose = [np.unique(mesh.tets[labels == label]) for label in np.flatnonzero(reached == 0)]
     return max(loose, key=len, default=None)
+
+
+def core_problem(mesh: Mesh, materials: list[Any], parts: _core.ProblemParts) -> _core.Problem:
+    """The problem of the Rust core.
+
+    Parameters
+    ----------
+    mesh
+        The body.
+    materials
+        One for each part, as :func:`~voxsoft.simulation.materials.core_materials` gives them.
+    parts
+        Membranes, clamps and loads.
+    """
+    if mesh.fractions is not None:
+        parts.fractions(mesh.fractions, mesh.moments)
+    blocks = mesh.tet_voxel if mesh.tet_voxel is not None else np.arange(len(mesh.tets))
+    return _core.Problem(
+        mesh.vertices,
+        mesh.tets.astype(np.uint32),
+        mesh.tet_part - np.uint8(1),
+        blocks.astype(np.uint32),
+        materials,
+        parts,
+    )
 
 
 _CoreHistory = tuple[list[float], list[float]] | None

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import DesignError, Problem
-from voxsoft.metrics import AXIS_METRICS, METRICS, PROBE_METRICS
+from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.units import KINDS, describe_dimension
 
@@ -52,30 +52,32 @@ def _problems_of_constraints(design: Design) -> Iterator[Problem]:
     for name, constraint in design.constraints.items():
         where = f"constraints.{name}"
         yield from _problems(constraint, where, "metric", design)
-        due = KINDS[METRICS.get(constraint.metric, constraint.kind)].dimension
+        if constraint.metric not in METRICS:
+            continue
+        due = KINDS[METRICS[constraint.metric].kind]
         came = KINDS[constraint.kind].dimension
-        if came != due and any((constraint.min, constraint.max)):
+        if came != due.dimension and any((constraint.min, constraint.max)):
             yield Problem(
                 where,
                 f"the bounds are {describe_dimension(came)}; {constraint.metric} is "
-                f"{describe_dimension(due)}",
-                f"write bounds such as {KINDS[METRICS[constraint.metric]].example}",
+                f"{describe_dimension(due.dimension)}",
+                f"write bounds such as {due.example}",
             )
 
 
 def _problems(
     target: Objective | Constraint, where: str, key: str, design: Design
 ) -> Iterator[Problem]:
-    metric = target.metric
-    if metric not in METRICS:
-        yield Problem(f"{where}.{key}", f'"{metric}" is not a metric', closest(metric, METRICS))
+    name = target.metric
+    if name not in METRICS:
+        yield Problem(f"{where}.{key}", f'"{name}" is not a metric', closest(name, METRICS))
         return
-    probes = design.probes
+    metric, probes = METRICS[name], design.probes
     if target.probe is not None and target.probe not in probes:
         hint = closest(target.probe, probes)
         yield Problem(f"{where}.probe", f'"{target.probe}" is not a probe', hint)
-    if metric in PROBE_METRICS and target.probe is None and len(probes) != 1:
+    if "probe" in metric.needs and target.probe is None and len(probes) != 1:
         known = f"one of {', '.join(probes)}" if probes else "a probe, under [probes]"
-        yield Problem(f"{where}.probe", f"is missing: where is {metric} measured?", f"name {known}")
-    if target.axis is not None and metric not in AXIS_METRICS:
-        yield Problem(f"{where}.axis", f"{metric} has no direction", "leave the axis out")
+        yield Problem(f"{where}.probe", f"is missing: where is {name} measured?", f"name {known}")
+    for problem in metric.refusals(target):
+        yield Problem(f"{where}.{problem.where}", problem.what, problem.hint)

@@ -18,19 +18,21 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.studio import commands, events
-from voxsoft.studio.protocol import PROTOCOL, ProtocolError, decode
+from voxsoft.studio.protocol import ProtocolError, decode, encode
 from voxsoft.studio.security import Guard, cookie_name
 from voxsoft.studio.session import Session
 from voxsoft.studio.tab import Tab
-from voxsoft.studio.uploads import LARGEST_UPLOAD, safe_name
+from voxsoft.studio.uploads import safe_name
+from voxsoft.studio.wire import LARGEST_UPLOAD, PROTOCOL, CloseCode
 
 STATIC: Final = Path(__file__).with_name("static")
-#: Code by which a websocket is told that it speaks another protocol.
-OTHER_PROTOCOL: Final = 4000
 #: Seconds in which a tab must say hello.
 HELLO_WITHIN: Final = 20.0
 #: Wrong messages in a row after which a tab is cut off.
 MOST_WRONG: Final = 200
+
+#: What a websocket may say as it is closed [bytes].
+LONGEST_REASON: Final = 120
 
 #: Seconds between two looks whether somebody still waits for a body that is solved.
 LOOK_AGAIN: Final = 0.2
@@ -158,10 +160,10 @@ class _Pages:
         try:
             asked = await request.json()
             if not isinstance(asked, dict):
-                raise ValueError("an object is due")
+                raise ValueError("expected an object")
             options = asked.get("options") or {}
             if not isinstance(options, dict):
-                raise ValueError("options: an object is due")
+                raise ValueError("options: expected an object")
             found = await self._aside(self._session.export, str(asked.get("format", "")), options)
         except VoxSoftError as error:
             return _problem(422, error.where, error.what, error.hint)
@@ -177,7 +179,7 @@ class _Pages:
                 return
         except (TimeoutError, WebSocketDisconnect, RuntimeError):
             with contextlib.suppress(RuntimeError):
-                await socket.close(1008, "no hello")
+                await socket.close(CloseCode.NO_HELLO, "the page said no hello in time")
             return
         tabs = self._session.tabs
         tabs.join(tab)
@@ -212,12 +214,11 @@ class _Pages:
                 seq=hello.seq, where="hello", what=what, hint="reload the page"
             )
         else:
-            said = what if hello is None else "hello must come first"
-            error_event = events.Error(seq=0, where="hello", what=said)
-        from voxsoft.studio.protocol import encode
-
+            what = what if hello is None else "hello must come first"
+            error_event = events.Error(seq=0, where="hello", what=what)
         await socket.send_text(encode(error_event))
-        await socket.close(OTHER_PROTOCOL, "another protocol")
+        code = CloseCode.WRONG_MESSAGES if hello is None else CloseCode.OTHER_PROTOCOL
+        await socket.close(code, what.encode()[:LONGEST_REASON].decode(errors="ignore"))
         return False
 
     async def _listen(self, socket: WebSocket, tab: Tab) -> None:
@@ -229,7 +230,8 @@ class _Pages:
                 wrong += 1
                 tab.put(events.Error(seq=0, where=error.where, what=error.what, hint=error.hint))
                 if wrong >= MOST_WRONG:
-                    await socket.close(1008, "too many wrong messages")
+                    what = f"{wrong} messages in a row were none of the protocol's"
+                    await socket.close(CloseCode.WRONG_MESSAGES, what)
                     return
                 continue
             wrong = 0
@@ -280,9 +282,13 @@ async def _receive(socket: WebSocket) -> str | bytes:
 
 
 def _static(inner: Path) -> Response:
-    path = (STATIC / inner).resolve()
-    if not path.is_relative_to(STATIC.resolve()) or not path.is_file():
-        return _problem(404, str(inner), "there is no such file")
+    try:
+        path = (STATIC / inner).resolve()
+        is_ours = path.is_relative_to(STATIC.resolve()) and path.is_file()
+    except (OSError, ValueError):  # a name that no file can have: too long, or with a NUL
+        is_ours = False
+    if not is_ours:
+        return _problem(404, str(inner)[:80], "there is no such file")
     # The browser asks each time whether a file changed: another version keeps its names.
     return FileResponse(path, headers={"cache-control": "no-cache"})
 

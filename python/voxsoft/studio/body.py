@@ -23,6 +23,7 @@ from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.studio import events
+from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
 from voxsoft.studio.surface import Surface, pack_surface
 from voxsoft.units import format_quantity, parse
@@ -108,9 +109,14 @@ class StudioBody:
         return self.setup.mesh
 
     @cached_property
+    def loads(self) -> list[events.BodyLoad]:
+        """Each load with the range of its slider."""
+        return [_load(self.setup, index) for index in range(len(self.setup.design.loads))]
+
+    @property
     def load_values(self) -> list[float]:
         """Size of each load in the end, SI."""
-        return [_load(self.setup, index).value for index in range(len(self.setup.design.loads))]
+        return [load.value for load in self.loads]
 
     def under(self, factors: Sequence[float]) -> Setup:
         """The same body with each load so many times as large."""
@@ -118,10 +124,10 @@ class StudioBody:
             return self.setup
         design = self.setup.design
         loads = tuple(
-            load.model_copy(update={"value": _scaled(load.value, factor)})
+            load.replace(value=_scaled(load.value, factor))
             for load, factor in zip(design.loads, factors, strict=True)
         )
-        return Setup(design.model_copy(update={"loads": loads}), self.mesh)
+        return Setup(design.replace(loads=loads), self.mesh)
 
     def packed(self) -> bytes:
         """The surface as the page reads it."""
@@ -142,10 +148,7 @@ class StudioBody:
             for p in problems
         ]
         if report is not None:
-            findings = [
-                events.Finding(severity=f.severity, where=f.where, what=f.what, hint=f.hint)
-                for f in report.findings
-            ]
+            findings = [finding_of(found) for found in report.findings]
         problem = setup.problem if self.refusal is None else None
         return events.Body(
             topology=self.topology,
@@ -158,6 +161,7 @@ class StudioBody:
             voxel_size=mesh.voxel_size or 0.0,
             cavities=[
                 events.Cavity(
+                    name=cavity.name,
                     volume=float(cavity.volume),
                     area=float(cavity.area),
                     center=_point(rest[np.unique(cavity.triangles)].mean(axis=0)),
@@ -165,12 +169,12 @@ class StudioBody:
                 for cavity in mesh.cavities
             ],
             leaks=[] if report is None else [_leak(leak, self.voxels) for leak in report.leaks],
-            mass=0.0 if problem is None else problem.mass,
+            mass=None if problem is None else problem.mass,
             volume=mesh.volume,
             bounds=(_point(rest.min(axis=0)), _point(rest.max(axis=0))),
             findings=findings,
             clamps=_clamps(setup),
-            loads=[_load(setup, index) for index in range(len(setup.design.loads))],
+            loads=self.loads,
             probes=self._probes(),
             parts=_parts(setup.design),
             layers=_layers(setup, self.surface),
@@ -209,7 +213,7 @@ def _refuse_far_too_large(design: Design) -> None:
     if coarser < 2:
         return
     with suppress(ShapeError):  # nothing is left of the body: the full count tells
-        look = design.model_copy(update={"voxel_size": coarser * design.voxel_size})
+        look = design.replace(voxel_size=coarser * design.voxel_size)
         _refuse_too_large(voxels_of(look).count * coarser**3, within=4.0)
 
 
@@ -277,7 +281,7 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
     if isinstance(load, Gravity):
         value, kind, label = load.value, "acceleration", "gravity"
     elif isinstance(load, Pressure):
-        where = "all cavities" if load.cavity == "all" else f"cavity {load.cavity}"
+        where = "all cavities" if load.cavity == "all" else _named(load.cavity)
         value, kind, label = load.value, "pressure", f"pressure in {where}"
     elif isinstance(load, Force):
         value, kind, label = float(np.linalg.norm(load.value)), "force", "force"
@@ -293,6 +297,7 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
         kind=load.kind,
         label=label,
         value=value,
+        quantity=kind,
         unit=unit,
         factor=_factor(unit, kind),
         min=min(0.0, 2.0 * value),
@@ -300,6 +305,10 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
         at=at,
         direction=direction,
     )
+
+
+def _named(choice: str | int) -> str:
+    return f"cavity {choice}" if isinstance(choice, int) else f"chamber {choice}"
 
 
 def _scaled(value: Any, factor: float) -> Any:  # noqa: ANN401 - a number, or three
@@ -318,11 +327,10 @@ def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:
     where = f"loads[{index}]"
     try:
         if isinstance(load, Gravity):
-            top = rest.mean(axis=0)
-            return _point(top), _unit(np.asarray(load.direction))
+            direction = _unit(np.asarray(load.direction))
+            return _point(_entry(rest, np.asarray(direction))), direction
         if isinstance(load, Pressure):
-            cavities = setup.mesh.cavities
-            cavity = cavities[0 if load.cavity == "all" else load.cavity]
+            cavity = setup.pressurized(load, where)[0]
             return _point(rest[np.unique(cavity.triangles)].mean(axis=0)), (0.0, 0.0, 0.0)
         if isinstance(load, Traction):
             triangles = setup.loaded_triangles(load, where)
@@ -334,6 +342,20 @@ def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:
         return _point(rest[vertices].mean(axis=0)), _unit(np.asarray(load.value))
     except (VoxSoftError, IndexError):  # said among the findings
         return _point(rest.mean(axis=0)), (0.0, 0.0, 0.0)
+
+
+def _entry(rest: NDArray[np.float64], direction: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a line along a direction through the middle of a body comes into its bounds.
+
+    An arrow that ends there stands outside of the body: in its middle the head would be hidden.
+    """
+    middle: NDArray[np.float64] = rest.mean(axis=0)
+    behind = np.where(direction > 0.0, middle - rest.min(axis=0), rest.max(axis=0) - middle)
+    moves = np.abs(direction) > 1e-9  # along other axes the line never leaves the bounds
+    if not moves.any():
+        return middle
+    middle -= direction * float(np.min(behind[moves] / np.abs(direction[moves])))
+    return middle
 
 
 def _parts(design: Design) -> list[events.BodyPart]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.catalog import DISPLACEMENT, FIELDS
+from voxsoft.studio.fields import DISPLACEMENT, FIELDS
 from voxsoft.studio.frames import pack_points, value_at
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.surface import ShrunkTets, pack_tets

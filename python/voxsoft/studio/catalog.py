@@ -7,32 +7,18 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, get_args
 
-from voxsoft import metrics
 from voxsoft._core import __version__
 from voxsoft.calibration import usual_ranges
+from voxsoft.calibration.methods import METHODS
 from voxsoft.design import Design, families
 from voxsoft.materials import Material, card_names, load_card
+from voxsoft.metrics import METRICS
 from voxsoft.search.samplers import SAMPLERS, SINGLE_OBJECTIVE
 from voxsoft.studio import events
-from voxsoft.studio.protocol import PROTOCOL
+from voxsoft.studio.commands import RestMethod
+from voxsoft.studio.fields import FIELDS
+from voxsoft.studio.wire import PROTOCOL
 from voxsoft.units import UnitOf
-
-#: Number of the field that is zero wherever nothing has moved.
-DISPLACEMENT: Final = 0
-#: Fields that color the body, by the number that frames carry.
-FIELDS: Final = (
-    events.Field(
-        id=DISPLACEMENT, name="displacement", title="Displacement", unit="m", signed=False
-    ),
-    events.Field(id=1, name="dx", title="Displacement along x", unit="m", signed=True),
-    events.Field(id=2, name="dy", title="Displacement along y", unit="m", signed=True),
-    events.Field(id=3, name="dz", title="Displacement along z", unit="m", signed=True),
-    events.Field(id=4, name="stretch", title="Largest principal stretch", unit="", signed=False),
-    events.Field(id=5, name="stress", title="Von Mises stress", unit="Pa", signed=False),
-    events.Field(id=6, name="energy", title="Strain energy density", unit="J/m^3", signed=False),
-    events.Field(id=7, name="pressure", title="Pressure (mean stress)", unit="Pa", signed=True),
-    events.Field(id=8, name="speed", title="Speed", unit="m/s", signed=False),
-)
 
 #: A length that moduli of lattice cards are told for [m]; they hardly depend on it.
 _USUAL_VOXEL: Final = 2e-3
@@ -50,17 +36,18 @@ def hello(runs_folder: Path) -> events.Hello:
             events.Sampler(name=name, title=title, single_objective=name in SINGLE_OBJECTIVE)
             for name, title in SAMPLERS.items()
         ],
-        calibration_methods=["genetic", "gradient", "cma-es", "tpe", "random", "nsga-ii", "gp"],
+        calibration_methods=list(METHODS),
         fit_ranges=_fit_ranges(),
-        methods=["auto", "xpbd", "statics"],
+        methods=list(get_args(RestMethod)),
         metrics=[
             events.Metric(
                 name=name,
-                kind=kind,
-                needs_probe=name in metrics.PROBE_METRICS,
-                needs_cavity=name.startswith("cavity"),
+                kind=metric.kind,
+                needs_probe="probe" in metric.needs,
+                needs_cavity="cavity" in metric.takes,
+                takes_percentile="percentile" in metric.takes,
             )
-            for name, kind in metrics.METRICS.items()
+            for name, metric in METRICS.items()
         ],
         fields=list(FIELDS),
         runs_folder=str(runs_folder),

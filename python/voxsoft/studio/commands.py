@@ -12,6 +12,8 @@ Count = Annotated[int, Meta(ge=0)]
 OneOrMore = Annotated[int, Meta(ge=1)]
 Positive = Annotated[float, Meta(gt=0)]
 ShortText = Annotated[str, Meta(max_length=300)]
+#: Solvers of the state at rest.
+RestMethod = Literal["auto", "statics", "xpbd"]
 #: Keys and indices from the top of a design document: ["parts", 0, "material"].
 Path = Annotated[list[str | int], Meta(min_length=1, max_length=50)]
 
@@ -63,9 +65,13 @@ class Redo(Command):
 
 
 class Save(Command):
-    """Write the document to its file, or to another."""
+    """Write the document to its file, or to another: a name in its folder, or a whole path.
+
+    A file of another document is replaced only with `overwrite`.
+    """
 
     path: ShortText | None = None
+    overwrite: bool = False
 
 
 class Play(Command):
@@ -93,7 +99,7 @@ class Rest(Command):
 class Solver(Command):
     """Choose the solver of `rest`."""
 
-    method: Literal["auto", "xpbd", "statics"]
+    method: RestMethod
 
 
 class Load(Command):
@@ -234,6 +240,12 @@ class CalibrateSpec(Entry, tag_field="kind", tag="calibrate"):
     workers: OneOrMore | None = None
 
 
+class Keep(Command):
+    """Keep what is on the screen as a run folder, with its live loads and pulls."""
+
+    name: ShortText | None = None
+
+
 class JobStart(Command):
     """Start a job on the document as it stands."""
 
@@ -340,6 +352,7 @@ AnyCommand = (
     | Pick
     | Probe
     | Ack
+    | Keep
     | JobStart
     | JobPause
     | JobResume

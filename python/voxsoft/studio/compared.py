@@ -8,8 +8,9 @@ from contextlib import suppress
 from typing import Any
 
 from voxsoft.design import Design
+from voxsoft.design.documents import with_whole_paths
 from voxsoft.errors import VoxSoftError
-from voxsoft.files.designs import read_document, read_text, with_whole_paths
+from voxsoft.files.designs import read_document, read_text
 from voxsoft.records import place
 from voxsoft.studio import events
 from voxsoft.studio.runs import RunList, kind_of, read_summary

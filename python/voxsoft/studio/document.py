@@ -8,14 +8,16 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.design import Design
+from voxsoft.design.documents import with_whole_paths
 from voxsoft.design.formula import is_formula
 from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
-from voxsoft.files.designs import LARGEST_FILE, read_document, read_text, with_whole_paths
+from voxsoft.files.designs import LARGEST_FILE, read_document, read_text
 from voxsoft.files.whole import write_whole
 from voxsoft.studio import events
 from voxsoft.studio.edits import with_value
 from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.uploads import safe_name
 from voxsoft.units import KINDS, format_quantity, parse
 
 #: Changes of the same place that follow each other within this time are undone together [s].
@@ -48,6 +50,10 @@ class DesignDocument:
         That of the last text that was good, or None if there was none.
     diagnostics
         What is wrong with the text as it stands.
+    saved
+        The text that its file holds, or None where there is no file.
+    restored
+        Whether the text comes from a draft: nobody knows what was changed in it.
     before, after
         Documents that were open before this one, with changes that were not saved, and after it:
         undo and redo lead there at the ends of this one's own changes.
@@ -62,6 +68,7 @@ class DesignDocument:
     source: PlainDocument | None = None
     diagnostics: list[events.Diagnostic] = field(default_factory=list)
     saved: str | None = None
+    restored: bool = False
     before: DesignDocument | None = field(default=None, repr=False)
     after: DesignDocument | None = field(default=None, repr=False)
     _former: dict[str, float] | None = None
@@ -71,7 +78,9 @@ class DesignDocument:
     _last_time: float = 0.0
 
     def __post_init__(self) -> None:
+        self._opened = self.text
         self._read()
+        self._first_name = None if self.design is None else self.design.name
 
     @classmethod
     def of_file(cls, path: Path) -> DesignDocument:
@@ -95,6 +104,21 @@ class DesignDocument:
     def dirty(self) -> bool:
         """Whether the text differs from what was saved last."""
         return self.text != self.saved
+
+    @property
+    def edited(self) -> bool:
+        """Whether the text differs from what was opened or saved last."""
+        if self.saved is None:
+            return self.restored or self.text != self._opened
+        return self.dirty
+
+    @property
+    def title(self) -> str:
+        """What to call it: its file, or the name that was given to the design since."""
+        name = None if self.design is None else self.design.name
+        if self.path is not None or name is None or name == self._first_name:
+            return self.name
+        return safe_name(f"{name}.toml")
 
     def replace(self, text: str, place: object = None, *, now: float | None = None) -> bool:
         """Take another text; returns whether it is another one.
@@ -174,7 +198,7 @@ class DesignDocument:
         FileError
             No file is known, or it cannot be written.
         """
-        target = (path or self.path or Path()).absolute()
+        target = self.target(path or self.path or Path())
         if path is None and self.path is None:
             raise FileError("save", "the document has no file yet", 'give a name like "arm.toml"')
         if target.suffix.lower() != ".toml":
@@ -190,15 +214,20 @@ class DesignDocument:
             self._former = self._values()
         return target
 
+    def target(self, path: Path) -> Path:
+        """Where a path leads that is written from the folder of the document."""
+        return (self.folder / path).absolute()
+
     def event(self) -> events.Document:
         """Everything as the page wants it."""
         design = self.design
         return events.Document(
             rev=self.rev,
             text=self.text,
-            name=self.name,
+            name=self.title,
             path=None if self.path is None else str(self.path),
-            dirty=self.dirty,
+            folder=str(self.folder),
+            dirty=self.edited,
             valid=self.valid,
             parameters=self._parameters(),
             design=None if design is None else design.model_dump(by_alias=True, exclude_none=True),

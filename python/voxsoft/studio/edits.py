@@ -91,7 +91,7 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         raise IndexError(f"{place(path)} is past the end")
     if isinstance(here, AoT):
         if not isinstance(value, Mapping):
-            raise TypeError("a table is due")
+            raise TypeError("expected a table")
         table = tomlkit.table()
         for key, inner in value.items():
             table[key] = _item(inner)

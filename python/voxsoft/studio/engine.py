@@ -10,8 +10,8 @@ from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.execute import execute
 from voxsoft.studio.exports import Shown
-from voxsoft.studio.obeying import obey
 from voxsoft.studio.outlet import Outlet
 from voxsoft.studio.stage import Stage
 from voxsoft.studio.tab import Tab
@@ -75,12 +75,12 @@ class Engine(threading.Thread):
         """Give a tab that took a frame the picture as it is now, if it has changed since."""
         self._inbox.put(lambda: self._stage.pictures.paint(tab))
 
-    def obey(self, command: commands.Command, tab: Tab) -> None:
+    def execute(self, command: commands.Command, tab: Tab) -> None:
         """Do what a command asks; what cannot be done is told to its tab."""
 
         def task() -> None:
             try:
-                obey(command, self._stage, tab)
+                execute(command, self._stage, tab)
             except VoxSoftError as error:
                 said = events.Error(
                     seq=command.seq, where=error.where, what=error.what, hint=error.hint

@@ -68,6 +68,7 @@ class Metric(Entry):
     kind: str
     needs_probe: bool
     needs_cavity: bool
+    takes_percentile: bool
 
 
 class FitRange(Entry):
@@ -134,12 +135,16 @@ class Diagnostic(Entry):
 
 
 class Document(Event):
-    """The document as it stands; `design` is that of the last text that was good (or null)."""
+    """The document as it stands; `design` is that of the last text that was good (or null).
+
+    `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+    """
 
     rev: int
     text: str
     name: str
     path: str | None
+    folder: str
     dirty: bool
     valid: bool
     parameters: list[Parameter]
@@ -151,8 +156,9 @@ class Document(Event):
 
 
 class Cavity(Entry):
-    """An enclosed space: volume in m³, area in m²."""
+    """An enclosed space: its name or an empty text, volume in m³, area in m²."""
 
+    name: str
     volume: float
     area: float
     center: Triple
@@ -166,12 +172,13 @@ class Leak(Entry):
 
 
 class Finding(Entry):
-    """What a check of the body found."""
+    """What a check found; `at` is a point of the unloaded body in m where it is seen."""
 
     severity: Severity
     where: str
     what: str
     hint: str = ""
+    at: Triple | None = None
 
 
 class BodyClamp(Entry):
@@ -184,12 +191,16 @@ class BodyClamp(Entry):
 
 
 class BodyLoad(Entry):
-    """A load with the range of its slider; value / factor is the number to show with `unit`."""
+    """A load with the range of its slider; value / factor is the number to show with `unit`.
+
+    `kind` is that of the load in a design, `quantity` what its size is.
+    """
 
     index: int
     kind: str
     label: str
     value: float
+    quantity: str
     unit: str
     factor: float
     min: float
@@ -226,7 +237,8 @@ class BodyPart(Entry):
 class Body(Event):
     """A new body: its topology follows as a binary message with the same id.
 
-    `smooth` says that the smooth surface of the shapes follows as well (kind 3).
+    `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
+    shapes follows as well (kind 3).
     """
 
     topology: int
@@ -239,7 +251,7 @@ class Body(Event):
     voxel_size: float
     cavities: list[Cavity]
     leaks: list[Leak]
-    mass: float
+    mass: float | None
     volume: float
     bounds: tuple[Triple, Triple]
     findings: list[Finding]
@@ -293,6 +305,66 @@ class Stat(Event):
     progress: float | None = None
     loads: list[float] = field(default_factory=list)
     grabs: list[GrabState] = field(default_factory=list)
+
+
+class MovedProbe(Entry):
+    """A probe and how far it moved, m."""
+
+    name: str
+    displacement: Triple
+
+
+class MetricValue(Entry):
+    """A metric of the body as it stands, SI; `kind` tells its unit."""
+
+    name: str
+    value: float | None
+    kind: str
+
+
+class Chamber(Entry):
+    """A chamber: volumes unloaded and now in m³, pressure in Pa."""
+
+    name: str
+    rest_volume: float
+    volume: float
+    pressure: float
+
+
+class Equilibrium(Event):
+    """The numbers of the state that `frame` shows, and what is doubtful about it.
+
+    `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
+    """
+
+    topology: int
+    frame: int
+    status: str
+    sentence: str
+    residual: str
+    seconds: float
+    probes: list[MovedProbe]
+    metrics: list[MetricValue]
+    chambers: list[Chamber]
+    largest_strain: float
+    warnings: list[Finding]
+
+
+class OverlapPlace(Entry):
+    """Where a body is in itself: how deep in m, and a point of it unloaded and now, m."""
+
+    depth: float
+    rest: Triple
+    now: Triple
+
+
+class Overlap(Event):
+    """Where the body is in itself as it is shown, the deepest place first; none where it is not."""
+
+    topology: int
+    depth: float
+    sentence: str
+    places: list[OverlapPlace]
 
 
 class Plot(Event):
@@ -545,6 +617,12 @@ class Saved(Event):
     path: str
 
 
+class FileExists(Event):
+    """A file that saving would replace: the page asks, and saves again with `overwrite`."""
+
+    path: str
+
+
 class Error(Event):
     """What could not be done, and what to try. `seq` is the command's, or 0."""
 
@@ -566,6 +644,8 @@ AnyEvent = (
     | Document
     | Body
     | Stat
+    | Equilibrium
+    | Overlap
     | Plot
     | Picked
     | Job
@@ -580,6 +660,7 @@ AnyEvent = (
     | Measured
     | Exported
     | Saved
+    | FileExists
     | Error
     | Log
 )

@@ -17,7 +17,10 @@ from voxsoft import files
 from voxsoft.errors import FileError
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
+from voxsoft.simulation.result import Status
+from voxsoft.simulation.state import result_at
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.events import GrabState
 from voxsoft.studio.html import export_page, page_of_body
 from voxsoft.units import parse
 
@@ -49,6 +52,10 @@ class Shown:
         What the plots show.
     factors
         How many times as large as in the design each load is.
+    pulls
+        The springs that pull by hand.
+    status, sentence, time
+        How the simulation stands, and at what time [s].
     """
 
     name: str
@@ -60,6 +67,25 @@ class Shown:
     units: Sequence[str]
     rows: Sequence[Sequence[float | None]] = field(repr=False)
     factors: Sequence[float] = ()
+    pulls: Sequence[GrabState] = ()
+    status: Status = "not-at-rest"
+    sentence: str = ""
+    time: float = 0.0
+
+    def measured(self) -> Result:
+        """The state as a result: the solver's where one found it, else measured as it stands.
+
+        Raises
+        ------
+        VoxSoftError
+            The body cannot be solved, or the state is not finite.
+        """
+        if self.result is not None:
+            return self.result
+        setup = self.body.under(self.factors)
+        return result_at(
+            setup, self.positions, status=self.status, message=self.sentence, time=self.time
+        )
 
 
 def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Path) -> Path:
@@ -166,10 +192,8 @@ def _table(shown: Shown) -> str:
 
 
 def _write_run(shown: Shown, target: Path) -> None:
-    if shown.result is None:
-        raise FileError("run", "there is no state at rest yet", "look for rest, then export again")
     folder = target.with_suffix("")
-    files.write_run(shown.result, folder)
+    files.write_run(shown.measured(), folder)
     _archive(folder, target)
 
 

@@ -8,14 +8,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.studio.surface import MAGIC
+from voxsoft.studio.wire import MAGIC, MessageKind
 
 Floats = NDArray[np.float64]
 
-FRAME: Final = 2
-PAUSED: Final = 1
-DIVERGED: Final = 2
-AT_REST: Final = 4
 _STEPS: Final = 65_535
 
 
@@ -44,7 +40,7 @@ def pack_points(
     Examples
     --------
     >>> packed = pack_points(
-    ...     np.eye(3), np.arange(3.0), topology=1, frame=0, time=0.0, seq=0, field=0, flags=PAUSED
+    ...     np.eye(3), np.arange(3.0), topology=1, frame=0, time=0.0, seq=0, field=0, flags=1
     ... )
     >>> len(packed)
     88
@@ -57,7 +53,7 @@ def pack_points(
     head = struct.pack(
         "<IBBHIIdII3f3f2f",
         MAGIC,
-        FRAME,
+        MessageKind.FRAME,
         flags,
         field,
         topology,
@@ -79,7 +75,7 @@ def value_at(packed: bytes, point: int) -> float:
     Examples
     --------
     >>> packed = pack_points(
-    ...     np.eye(3), np.arange(3.0), topology=1, frame=0, time=0.0, seq=0, field=0, flags=PAUSED
+    ...     np.eye(3), np.arange(3.0), topology=1, frame=0, time=0.0, seq=0, field=0, flags=1
     ... )
     >>> value_at(packed, 2)
     2.0

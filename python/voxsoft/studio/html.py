@@ -21,8 +21,9 @@ from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.catalog import FIELDS
+from voxsoft.studio.fields import FIELDS
 from voxsoft.studio.mover import TOLERANCE, inner_loads
+from voxsoft.studio.overlap_event import overlap_of
 
 #: The page without a scene, built with the studio's page.
 TEMPLATE: Final = Path(__file__).with_name("static") / "viewer.html"
@@ -43,6 +44,8 @@ class Notes(msgspec.Struct):
     #: Where the page shows the vertices first: x, y, z of each in m, as little-endian float64 in
     #: base64; None: unloaded.
     positions: str | None = None
+    #: Where the body is in itself there; None: nowhere, or unloaded.
+    overlap: events.Overlap | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,7 @@ def page_of_body(
         fields=list(FIELDS),
         body=_event(replace(body, setup=setup)),
         positions=None if positions is None else _packed(positions),
+        overlap=None if positions is None else _overlap(body, design, positions),
     )
     scene = _core.pack_scene(
         setup.problem,
@@ -135,6 +139,13 @@ def page_of_body(
         notes=msgspec.json.encode(notes).decode(),
     )
     return LivePage(_filled(scene, design.name))
+
+
+def _overlap(
+    body: StudioBody, design: Design, positions: NDArray[np.float64]
+) -> events.Overlap | None:
+    found = overlap_of(design, body.mesh, positions, body.topology)
+    return found if found.places else None
 
 
 def _event(body: StudioBody) -> events.Body:

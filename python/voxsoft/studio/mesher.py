@@ -78,7 +78,9 @@ class Mesher(threading.Thread):
                 continue
             self._done(body)
             if self._idle():
-                self._examined(body, body.report(), pack_smooth(wish.design, body.topology))
+                self._examined(
+                    body, body.report(), pack_smooth(wish.design, body.voxels, body.topology)
+                )
 
     def _body_of(self, wish: _Wish) -> StudioBody | None:
         """Make a body; None where that fails, which is told."""

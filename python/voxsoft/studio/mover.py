@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal
 
@@ -15,11 +16,15 @@ from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.message import Triple
 
-#: How far a motion is looked ahead: seconds of it, and vertices times steps, some 0.05 s of work.
+#: How far a motion is looked ahead: seconds of it, and vertices times steps of either kind, some
+#: 0.05 s of work.
 LONGEST_LOOK: Final = 1.0
-MOST_WORK: Final = 1_000_000
+MOST_WORK: Final = {"explicit": 1_000_000, "implicit": 4_000}
 #: Residual at which a body counts as at rest: small beside what a picture shows.
 TOLERANCE: Final = 1e-4
+
+#: Steps are whole numbers of frames' times up to rounding.
+_ROUNDING: Final = 1e-6
 
 Status = Literal["moving", "at-rest", "diverged"]
 
@@ -52,6 +57,7 @@ class Mover:
     loads: list[float] = field(default_factory=list)
     _held: dict[int, _Grab] = field(default_factory=dict)
     _due: float = 0.0
+    _solved: bool = False
 
     def __post_init__(self) -> None:
         body, solver = self.body, self.body.setup.design.solver
@@ -78,14 +84,26 @@ class Mover:
         int
             Steps that were taken: none where less than one is due.
         """
+        if self.implicit:
+            self._live.prefer_step(seconds)
         self._due += seconds / self._live.substep
-        wanted = int(self._due)
+        wanted = int(self._due + _ROUNDING)
         if wanted == 0:
             return 0
         self._due -= wanted
         report = self._live.advance_for(budget, wanted)
         self._take(report)
         return int(report["taken"])
+
+    @property
+    def unloaded(self) -> bool:
+        """Whether the body has its unloaded shape still."""
+        return self.steps == 0 and not self._solved
+
+    @property
+    def implicit(self) -> bool:
+        """Whether steps are as long as the time between two frames, each solved for its end."""
+        return self._live.method == "implicit"
 
     def time_to_rest(self) -> float | None:
         """Look ahead, unseen, how long the body takes to come to rest from its unloaded shape [s].
@@ -95,9 +113,9 @@ class Mover:
         float or None
             None where it has moved already, is pulled, or does not rest soon.
         """
-        if self.steps > 0 or self._held:
+        if not self.unloaded or self._held:
             return None
-        work = MOST_WORK // max(1, len(self.body.mesh.vertices))
+        work = MOST_WORK[self._live.method] // max(1, len(self.body.mesh.vertices))
         report = self._live.advance(min(work, round(LONGEST_LOOK / self._live.substep)))
         self._live.reset()
         return float(report["time"]) if report["status"] == "at-rest" else None
@@ -127,10 +145,9 @@ class Mover:
         self.loads[index] = factor * final
         self.state = "moving"
 
-    @property
-    def factors(self) -> list[float]:
-        """How many times as large as in the design each load is."""
-        pairs = zip(self.loads, self._final, strict=True)
+    def factors_of(self, loads: Sequence[float]) -> list[float]:
+        """How many times as large as in the design some loads are."""
+        pairs = zip(loads, self._final, strict=True)
         return [load / final if final else 1.0 for load, final in pairs]
 
     def grab(self, number: int, vertex: int, target: Triple, stiffness: float, shown: int) -> None:
@@ -178,14 +195,14 @@ class Mover:
                 self._live.set_load(inner, None)
         self.loads = list(self._final)
         self.time, self.steps, self.state = 0.0, 0, "moving"
-        self._due = 0.0
+        self._due, self._solved = 0.0, False
         self.residual = self.elastic = self.kinetic = None
         self.breakdown = None
 
     def go_to_rest(self, positions: NDArray[np.float64], residual: float, elastic: float) -> None:
         """Take the state at rest that a solver found, at the present time."""
         self._live.seek(positions, self.time)
-        self.state = "at-rest"
+        self.state, self._solved = "at-rest", True
         self.residual, self.elastic, self.kinetic = residual, elastic, 0.0
 
     def positions(self) -> NDArray[np.float64]:
@@ -215,10 +232,10 @@ class Mover:
 
 def inner_loads(body: StudioBody, index: int) -> range:
     """The core's loads that one load of the design became: one for each cavity."""
-    cavities = len(body.mesh.cavities)
+    setup = body.setup
     counts = [
-        cavities if isinstance(load, Pressure) and load.cavity == "all" else 1
-        for load in body.setup.design.loads
+        len(setup.pressurized(load, f"loads[{number}]")) if isinstance(load, Pressure) else 1
+        for number, load in enumerate(setup.design.loads)
     ]
     first = sum(counts[:index])
     return range(first, first + counts[index])

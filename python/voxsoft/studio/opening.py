@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
-from typing import Final
 
 from voxsoft.design import families
 from voxsoft.errors import FileError, VoxSoftError
@@ -12,10 +11,8 @@ from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.edits import with_value
 from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.task import DESIGN, Task
-from voxsoft.studio.uploads import design_of_array, design_of_mesh
+from voxsoft.studio.uploads import MESHES, design_of_array, design_of_mesh
 from voxsoft.units import format_quantity
-
-_MESHES: Final = (".stl", ".obj", ".ply")
 
 
 def template_document(name: str, home: Path) -> DesignDocument:
@@ -32,12 +29,22 @@ def template_document(name: str, home: Path) -> DesignDocument:
 def document_at(path: Path, home: Path) -> DesignDocument:
     """A design file, or the design of a run folder as a new document.
 
+    Only what has the name of a design file is read, as only such a file is ever saved: the page
+    shows the text of what it opens, and is no way to look at other files.
+
     Raises
     ------
     FileError
-        It cannot be read, or the folder holds no design.
+        It is no design file, cannot be read, or the folder holds no design.
     """
-    if not path.is_dir():
+    try:
+        is_folder = path.is_dir()
+    except OSError as error:
+        raise FileError(str(path)[:80], f"cannot be read: {error.strerror}") from None
+    if not is_folder and path.suffix.lower() != ".toml":
+        hint = 'name a file that ends in ".toml", or a run folder; drop meshes on the page'
+        raise FileError(str(path)[:200], "is no design file", hint)
+    if not is_folder:
         return DesignDocument.of_file(path)
     file, name = path / DESIGN, f"{path.name}.toml"
     with suppress(VoxSoftError):  # a folder that the studio did not write
@@ -64,7 +71,7 @@ def uploaded_document(file: Path, home: Path) -> DesignDocument:
         opened = DesignDocument.of_file(file)
         opened.path, opened.saved, opened.folder = None, None, home
         return opened
-    if file.suffix in _MESHES:
+    if file.suffix in MESHES:
         text = design_of_mesh(file)
     elif file.suffix == ".npy":
         text = design_of_array(file)

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Final
 
 from voxsoft.studio.sentences import slowed
+from voxsoft.studio.wire import PACES
 
-#: What can be chosen: simulated seconds for each second of the clock. As in pace.ts of the page.
-PACES: Final = (1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 50, 1 / 200)
 #: A motion that lasts less than this on the screen is hardly seen [s].
 SEEN: Final = 1.0
 #: The span over which the real-time factor is measured [s].

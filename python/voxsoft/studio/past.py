@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
+
+from voxsoft.studio.events import GrabState
 
 #: What all frames of a body may take together [bytes].
 ROOM: Final = 128 * 1024 * 1024
@@ -15,11 +18,16 @@ ROOM: Final = 128 * 1024 * 1024
 
 @dataclass(frozen=True, eq=False)
 class StoredFrame:
-    """One frame: its number, its time in s, and the positions of all vertices in m, (n, 3)."""
+    """One frame: its number, its time in s, and the positions of all vertices in m, (n, 3).
+
+    `loads` and `pulls` are those of that moment.
+    """
 
     number: int
     time: float
     positions: NDArray[np.float32] = field(repr=False)
+    loads: tuple[float, ...] = ()
+    pulls: tuple[GrabState, ...] = ()
 
 
 class Past:
@@ -44,9 +52,17 @@ class Past:
         self._frames: deque[StoredFrame] = deque()
         self.bytes = 0
 
-    def keep(self, number: int, time: float, positions: NDArray[np.float64]) -> None:
+    def keep(
+        self,
+        number: int,
+        time: float,
+        positions: NDArray[np.float64],
+        loads: Sequence[float] = (),
+        pulls: Sequence[GrabState] = (),
+    ) -> None:
         """Store a frame; numbers must grow by one."""
-        frame = StoredFrame(number, time, positions.astype(np.float32))
+        moved = positions.astype(np.float32)
+        frame = StoredFrame(number, time, moved, tuple(loads), tuple(pulls))
         self._frames.append(frame)
         self.bytes += frame.positions.nbytes
         while self.bytes > self._room and len(self._frames) > 1:

@@ -11,19 +11,24 @@ import numpy as np
 
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
+from voxsoft.simulation.result import Status
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas, Moment
 from voxsoft.studio.exports import Shown
-from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED
+from voxsoft.studio.hands import Hands
 from voxsoft.studio.mover import Mover
 from voxsoft.studio.pace import Pace, RealTimeFactor
 from voxsoft.studio.past import Past, StoredFrame
 from voxsoft.studio.plots import Plots
 from voxsoft.studio.sentences import at_rest, diverged, said_time
+from voxsoft.studio.wire import FrameFlag
 
 #: How a search for rest may have ended, in the words of the page.
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
+_IDLE: Final = Hands((), ())
+#: What a run that is kept of a state is said to be.
+_KEPT: Final[dict[events.SimulationState, Status]] = {"at-rest": "ok", "diverged": "diverged"}
 
 
 @dataclass(eq=False)
@@ -69,17 +74,27 @@ class Playback:
     plots: Plots = field(default_factory=Plots)
     result: Result | None = None
     _mover: Mover | None = None
+    _hands: Hands | None = None
     _speed: RealTimeFactor = field(default_factory=RealTimeFactor)
     _step_ms: float = 0.0
 
     def begin(self, body: StudioBody) -> None:
-        """Take another body, unloaded and at time zero."""
+        """Take another body, unloaded and at time zero; what hands did to the one before stays."""
+        if self._mover is not None and self._hands is None:
+            self._hands = Hands.on(self._mover)
         self.body, self.canvas = body, Canvas(body)
         self.plots.begin(body)
         self._mover, self.result, self.shown = None, None, None
         self.past, self.frame = Past(), 0
         self.state, self.progress, self.pace.rest_in = "paused", None, None
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
+        if body.refusal is None and self._hands is not None:
+            self._mover = None if self._hands.idle else self._hands.lay_on(body)
+            self._hands = None
+
+    def let_go(self) -> None:
+        """Forget what hands did, as another document is opened."""
+        self._hands = _IDLE
 
     def reset(self) -> None:
         """Go back to the unloaded shape at time zero."""
@@ -121,7 +136,7 @@ class Playback:
             Nothing can move.
         """
         mover = self.require_mover()
-        if mover.steps == 0:
+        if mover.unloaded:
             self.pace.rest_in = mover.time_to_rest()
 
     def choose_pace(self, factor: float | None) -> None:
@@ -171,7 +186,7 @@ class Playback:
             return
         self.frame += 1
         positions = mover.positions()
-        self.past.keep(self.frame, mover.time, positions)
+        self.past.keep(self.frame, mover.time, positions, mover.loads, mover.grabs())
         self.plots.record(mover, positions)
         if mover.state == "at-rest":
             self.state, self.sentence = "at-rest", at_rest(mover.time, mover.tolerance)
@@ -189,9 +204,12 @@ class Playback:
         said = f"{result.message[:1].upper()}{result.message[1:]}"
         self.sentence = f"{said}, in {said_time(result.seconds)}."
         mover = self.require_mover()
+        for pull in mover.grabs():  # no solver knows of them
+            mover.release(pull.id)
         mover.go_to_rest(result.positions, result.residual, result.elastic_energy)
         self.frame += 1
-        self.past.keep(self.frame, self.time, result.positions)
+        self.past.keep(self.frame, self.time, result.positions, mover.loads)
+        self.plots.record(mover, result.positions)
 
     @property
     def moving(self) -> bool:
@@ -218,7 +236,7 @@ class Playback:
         """How many times as large as in the design each load is."""
         if self._mover is None:
             return [1.0] * len(self.require_body().setup.design.loads)
-        return self._mover.factors
+        return self._mover.factors_of(self._mover.loads if self.shown is None else self.shown.loads)
 
     def release(self, number: int) -> bool:
         """Take a pull away; whether there was anything that could be pulled."""
@@ -273,7 +291,26 @@ class Playback:
             units=plot.units,
             rows=plot.rows,
             factors=self.factors,
+            pulls=self.pulls,
+            status=_KEPT.get(self.state, "not-at-rest"),
+            sentence=self._standing(),
+            time=self.time,
         )
+
+    @property
+    def pulls(self) -> Sequence[events.GrabState]:
+        """The springs that pull in what is shown."""
+        if self.shown is not None:
+            return self.shown.pulls
+        return [] if self._mover is None else self._mover.grabs()
+
+    def _standing(self) -> str:
+        """How the shown state came about, in words."""
+        if self.state == "at-rest":
+            return f"at rest after {said_time(self.time)}"
+        if self._mover is None or self._mover.unloaded:
+            return "the unloaded shape"
+        return f"as it stood at {said_time(self.time)}, not at rest"
 
     def require_body(self) -> StudioBody:
         """The body.
@@ -319,7 +356,7 @@ class Playback:
         return self._mover
 
     def _flags(self) -> int:
-        flags = 0 if self.moving else PAUSED
+        flags = FrameFlag(0) if self.moving else FrameFlag.PAUSED
         if self.state == "diverged":
-            flags |= DIVERGED
-        return flags | AT_REST if self.state == "at-rest" else flags
+            flags |= FrameFlag.DIVERGED
+        return flags | FrameFlag.AT_REST if self.state == "at-rest" else flags

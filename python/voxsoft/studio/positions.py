@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 from voxsoft.errors import Problem, VoxSoftError
-from voxsoft.files.designs import steps_of
 from voxsoft.files.toml_text import line_of
+from voxsoft.records import steps_of
 from voxsoft.studio.events import Diagnostic
 
 _IN_FILE: Final = re.compile(r", line (\d+)(?:, column (\d+))?")

@@ -16,12 +16,8 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.studio.commands import AnyCommand
 from voxsoft.studio.events import Event
 
-#: Raised when a message changes its meaning; page and server must agree.
-PROTOCOL: Final = 1
 #: Longest text message that is read, bytes.
 LONGEST_MESSAGE: Final = 12_000_000
-#: Frames that may be under way to a tab.
-CREDITS: Final = 2
 
 _decoder: Final[msgspec.json.Decoder[AnyCommand]] = msgspec.json.Decoder(AnyCommand)
 _encoder: Final = msgspec.json.Encoder()

@@ -47,7 +47,7 @@ def recipe_of(folder: Path) -> events.Recipe:
         python=python,
         command="" if command is None else shlex.join(["voxsoft", *command]),
         seed=getattr(task.spec, "seed", None),
-        version=str(told.get("versions", {}).get("voxsoft", "")),
+        version=str(told.get("versions", {}).get("voxsoft", task.version)),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Protocol
 from voxsoft.errors import VoxSoftError
 from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.rest import DEFAULT_TOLERANCE
+from voxsoft.simulation.ways import settings_at_rest
 from voxsoft.studio.body import StudioBody
 from voxsoft.units import format_percent
 
@@ -67,7 +68,8 @@ class RestSearch(threading.Thread):
         say: Callable[[], None]
         try:
             setup = self._body.under(self._factors)
-            result = simulate(setup, progress=self._tell, method=self._method, end_time=None)
+            settings = {**settings_at_rest(), "method": self._method}
+            result = simulate(setup, progress=self._tell, **settings)
             say = lambda: self._listener.found(self, result)  # noqa: E731
         except _StoppedError:
             return
@@ -85,9 +87,8 @@ class RestSearch(threading.Thread):
             raise _StoppedError
         if math.isfinite(residual):
             self._largest = max(self._largest, residual)
-        sentence = (
-            f"Looking for rest: step {steps:,}, residual {format_percent(residual)} of the load"
-        )
+        left = f"residual {format_percent(residual)} of the load"
+        sentence = f"Solving for equilibrium: step {steps:,}, {left}"
         self._listener.searching(self, sentence, digits_lost(residual, self._largest))
 
 

@@ -186,7 +186,7 @@ def read_summary(folder: Path) -> dict[str, Any]:
     except (ValueError, RecursionError) as error:
         raise FileError(str(file), f"is damaged: {error}") from None
     if not isinstance(told, dict):
-        raise FileError(str(file), "is damaged: an object is due")
+        raise FileError(str(file), "is damaged: expected an object")
     return told
 
 
@@ -234,7 +234,7 @@ def _with_units(values: dict[str, float], folder: Path) -> str:
         else:
             told = tomllib.loads((folder / "design.toml").read_text(encoding="utf-8"))
         for name, target in told["objectives"].items():
-            kinds[name] = METRICS[target.get("maximize") or target["minimize"]]
+            kinds[name] = METRICS[target.get("maximize") or target["minimize"]].kind
     return ", ".join(
         f"{name} {format_quantity(float(f'{value:.4g}'), kinds.get(name, 'number'))}"
         for name, value in values.items()

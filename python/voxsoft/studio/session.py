@@ -1,18 +1,20 @@
 """What all tabs share: the document, the body, the jobs and the runs.
 
-Long because every command that is not about time is obeyed here, one short method each.
+Long because every command that is not about time is carried out here, one short method each.
 """
 
 from __future__ import annotations
 
-import re
 import shutil
 import threading
 import uuid
+from contextlib import suppress
 from functools import singledispatchmethod
 from pathlib import Path
 from typing import Any, Final
 
+from voxsoft import _core
+from voxsoft._folders import folder_name
 from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.cards import load_card_file, save_card
 from voxsoft.files.run_folder import make_folder
@@ -27,6 +29,7 @@ from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
 from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.jobs import Jobs
+from voxsoft.studio.kept import keep
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.opening import (
     document_at,
@@ -37,6 +40,7 @@ from voxsoft.studio.opening import (
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.recipes import recipe_of
+from voxsoft.studio.running import draw
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
@@ -146,7 +150,7 @@ class Session:
     @singledispatchmethod
     def _obey(self, command: commands.Command, tab: Tab) -> None:
         """Do what a command asks; the engine does what is about time and pictures."""
-        self.engine.obey(command, tab)
+        self.engine.execute(command, tab)
 
     @_obey.register
     def _(self, command: commands.Hello, tab: Tab) -> None:
@@ -190,6 +194,11 @@ class Session:
     @_obey.register
     def _(self, command: commands.Save, tab: Tab) -> None:
         path = None if command.path is None else Path(command.path)
+        if path is not None and not command.overwrite:
+            there = self.document.target(path)
+            if there.exists() and there != self.document.path:
+                self.tabs.tell_one(tab, events.FileExists(path=str(there)))
+                return
         written = self.document.save(path)
         self._keep_draft(now=True)
         self.tabs.tell(self.document.event())
@@ -256,6 +265,26 @@ class Session:
     # Jobs
 
     @_obey.register
+    def _(self, command: commands.Keep, tab: Tab) -> None:
+        shown = self._shown()
+        folder = self._free_folder(command.name or f"{shown.body.setup.design.name}-run")
+        try:
+            sentence = keep(shown, self.document.folder, folder)
+        except VoxSoftError:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+        self.tabs.tell(events.Saved(what="run", path=str(folder)))
+        self.tabs.tell(events.Log(level="info", text=f"kept {sentence}"))
+        self._runs_changed()
+        # The picture takes longer than the run: what is asked next must not wait for it.
+        threading.Thread(target=self._draw, args=(shown, folder), daemon=True).start()
+
+    def _draw(self, shown: Shown, folder: Path) -> None:
+        with suppress(VoxSoftError, OSError):
+            draw(shown.measured(), folder)
+            self._runs_changed()
+
+    @_obey.register
     def _(self, command: commands.JobStart, tab: Tab) -> None:
         spec, document = command.spec, self.document
         if not document.valid or document.design is None:
@@ -272,6 +301,7 @@ class Session:
             base=str(document.folder),
             spec=spec,
             tables=tables,
+            version=_core.__version__,
         )
         self.jobs.start(task, folder)
         self._runs_changed()
@@ -328,7 +358,7 @@ class Session:
         card = card_of(folder)
         if card is None:
             raise FileError(command.job, "holds no material card", "wait until it is done")
-        found = load_card_file(card).model_copy(update={"name": command.name})
+        found = load_card_file(card).replace(name=command.name)
         target = self.document.folder / f"{safe_name(command.name + '.toml')}"
         save_card(found, target)
         self.tabs.tell(events.Saved(what="card", path=str(target)))
@@ -363,7 +393,7 @@ class Session:
 
     def _free_folder(self, name: str) -> Path:
         """A folder among the runs that is not there yet."""
-        stem = re.sub(r"[^A-Za-z0-9._-]+", "-", name).strip("-.") or "run"
+        stem = folder_name(name, "run")
         for number in range(1, 10_000):
             folder = self.runs / (stem if number == 1 else f"{stem}-{number}")
             if not folder.exists():
@@ -475,13 +505,13 @@ class Session:
             return document
         file = draft.file
         if source is None and file is None:
-            return DesignDocument(draft.text, draft.name, folder=self._home)
+            return DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
         document = document_at(source or file or Path(), self._home)
         if file is not None and file == document.path:
             if document.replace(draft.text):
                 self._notes.append("Changes that were not saved are back; undo goes to the file.")
         else:
-            unsaved = DesignDocument(draft.text, draft.name, folder=self._home)
+            unsaved = DesignDocument(draft.text, draft.name, folder=self._home, restored=True)
             if file is not None:
                 unsaved = DesignDocument.of_file(file)
                 unsaved.replace(draft.text)

@@ -8,8 +8,11 @@ from typing import Final
 
 from voxsoft.simulation import Result
 from voxsoft.simulation.check import CheckReport
+from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.equilibrium import Measurement
 from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.overlap import OverlapWatch
 from voxsoft.studio.pictures import Pictures
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.rest import RestSearch
@@ -39,8 +42,10 @@ class Stage:
         self.outlet = outlet
         self.playback = Playback()
         self.pictures = Pictures(self.playback, outlet)
+        self.overlaps = OverlapWatch(self.playback, outlet)
         self._later = later
         self._search: RestSearch | None = None
+        self._equilibrium: events.Equilibrium | None = None
         self._last_stat = self._last_plot = 0.0
 
     # The body
@@ -48,6 +53,7 @@ class Stage:
     def show(self, body: StudioBody, *, loaded: bool = False) -> None:
         """Take another body, unloaded and at time zero, and look for its rest where asked."""
         self.stop_search()
+        self._equilibrium = None
         self.playback.begin(body)
         self.pictures.begin(body)
         self.outlet.tell(self.playback.plots.whole())
@@ -79,6 +85,7 @@ class Stage:
     def forget(self) -> None:
         """Stop time, as another document is opened."""
         self.playback.wants_play = False
+        self.playback.let_go()
         if self.playback.moving:
             self.playback.state = "paused"
 
@@ -86,6 +93,9 @@ class Stage:
         """Show a new tab what there is."""
         self.pictures.welcome(tab)
         self.outlet.tell_one(tab, self.playback.stat())
+        self.overlaps.welcome(tab)
+        if self._equilibrium is not None:
+            self.outlet.tell_one(tab, self._equilibrium)
 
     # Time
 
@@ -113,7 +123,10 @@ class Stage:
         started = time.perf_counter()
         self.playback.take_frame(FRAME_TIME, budget=FRAME_TIME * SHARE_OF_FRAME)
         self.pictures.paint_all()
+        self.overlaps.look()
         now, moving = time.perf_counter(), self.playback.moving
+        if self.playback.state == "at-rest":
+            self.measure()
         if not moving or now - self._last_plot > PLOT_TIME:
             self.tell_plot()
         if not moving or now - self._last_stat > STAT_TIME:
@@ -137,7 +150,11 @@ class Stage:
         if body.refusal is not None:
             raise body.refusal
         self.stop_search()
-        playback.state, playback.sentence, playback.progress = "solving", "Looking for rest", 0.0
+        playback.state, playback.sentence, playback.progress = (
+            "solving",
+            "Solving for equilibrium",
+            0.0,
+        )
         self._search = RestSearch(body, playback.factors, playback.method, self)
         self._search.start()
         self.tell_stat()
@@ -171,11 +188,36 @@ class Stage:
             self.playback.go_to_rest(result)
             self.pictures.forget()
             self.painted()
+            self.tell_plot()
+            self.measure()
 
     def _not_found(self, search: RestSearch, sentence: str) -> None:
         if search is self._search:
             self._search, self.playback.progress = None, None
             self.halt(sentence)
+
+    def cancel_search(self) -> None:
+        """Give up the search at the user's wish, and say so."""
+        if self._search is not None:
+            self.stop_search()
+            self.playback.state, self.playback.progress = "paused", None
+            self.playback.sentence = "Canceled: the body is where it was"
+
+    def measure(self) -> None:
+        """Tell the numbers of the equilibrium that is shown, once they are known."""
+        playback = self.playback
+        body, shown = playback.require_body(), playback.shown_as("", "")
+
+        def told(equilibrium: events.Equilibrium) -> None:
+            self._later(lambda: self._measured(equilibrium))
+
+        Measurement(shown.measured, told, body.topology, playback.frame).start()
+
+    def _measured(self, equilibrium: events.Equilibrium) -> None:
+        body = self.playback.body
+        if body is not None and equilibrium.topology == body.topology:
+            self._equilibrium = equilibrium
+            self.outlet.tell(equilibrium)
 
     # Telling
 
@@ -188,6 +230,7 @@ class Stage:
         """Paint for every tab, and tell the numbers that go with it."""
         self.pictures.paint_all()
         self.tell_stat()
+        self.overlaps.look()
 
     def tell_plot(self) -> None:
         """Tell the rows of the plots that no tab has got yet."""

@@ -17,18 +17,20 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
+from voxsoft.design.documents import with_whole_paths
 from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
-from voxsoft.files.designs import read_document, read_text, with_whole_paths
+from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.simulation import Setup, simulate
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.catalog import FIELDS
-from voxsoft.studio.frames import AT_REST, DIVERGED, PAUSED, pack_points
+from voxsoft.studio.fields import FIELDS
+from voxsoft.studio.frames import pack_points
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.specimen import read_specimen
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
 from voxsoft.studio.surface import Surface, pack_surface
 from voxsoft.studio.task import DESIGN, Task
+from voxsoft.studio.wire import FrameFlag
 from voxsoft.study.trial import Trial
 
 #: What a run leaves of its body.
@@ -40,7 +42,10 @@ _TOPOLOGY: Final = 1
 _DISPLACEMENT: Final = FIELDS[0]
 #: Fields that tell something of a body at rest.
 _FIELDS: Final = tuple(each for each in FIELDS if each.name != "speed")
-_FLAGS: Final = {"ok": PAUSED | AT_REST, "diverged": PAUSED | DIVERGED}
+_FLAGS: Final = {
+    "ok": FrameFlag.PAUSED | FrameFlag.AT_REST,
+    "diverged": FrameFlag.PAUSED | FrameFlag.DIVERGED,
+}
 
 
 class StillCancelledError(Exception):
@@ -70,7 +75,7 @@ class Still:
 
     def packed(self) -> bytes:
         """Write it as the page reads it: the surface, then a frame for each field."""
-        mesh, flags = self.setup.mesh, _FLAGS.get(self.status, PAUSED)
+        mesh, flags = self.setup.mesh, _FLAGS.get(self.status, FrameFlag.PAUSED)
         surface = Surface.of(mesh)
         messages = [pack_surface(surface, mesh, _TOPOLOGY)]
         try:

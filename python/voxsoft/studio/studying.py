@@ -12,7 +12,7 @@ from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import FileError, StudyError, VoxSoftError
 from voxsoft.files.toml_text import write_toml
 from voxsoft.metrics import METRICS
-from voxsoft.simulation import check_targets, simulate
+from voxsoft.simulation import check_solver, check_targets, simulate
 from voxsoft.studio import events
 from voxsoft.studio.commands import SpaceRange, StudySpec
 from voxsoft.studio.progress import Progress
@@ -66,7 +66,8 @@ def run_study(task: Task, progress: Progress) -> str:
     found = study.result()
     good = sum(trial.feasible for trial in found.trials)
     best = "" if found.best is None else f"; best {_best_of(study, found.best)}"
-    return f"{len(found.trials)} designs, {good} of them good{best}."
+    doubts = "".join(f" Warning: {warning}." for warning in found.warnings)
+    return f"{len(found.trials)} designs, {good} of them good{best}.{doubts}"
 
 
 def study_of(task: Task, folder: Path) -> Study:
@@ -87,7 +88,8 @@ def study_of(task: Task, folder: Path) -> Study:
     constraints = _targets(Constraint, spec.constraints)
     study = Study(design, space, objectives, constraints, folder=folder, seed=spec.seed)
     targets = {"objectives": study.objectives, "constraints": study.constraints}
-    check_targets(design.model_copy(update=targets))
+    check_targets(design.replace(**targets))
+    check_solver(design)
     return study
 
 
@@ -173,7 +175,7 @@ def trial_event(job: str, trial: Trial, *, front: bool = False) -> events.Trial:
         seconds=trial.seconds,
         feasible=trial.feasible,
         front=front,
-        message=trial.message,
+        message=". ".join(filter(None, (trial.message, *trial.warnings))),
     )
 
 
@@ -181,7 +183,7 @@ def trials_event(job: str, result: StudyResult) -> events.Trials:
     """All trials of a study as the page wants them."""
     front = {trial.number for trial in result.pareto_front} if result.ranking else set()
     kinds = dict(result.kinds)
-    kinds |= {name: METRICS[each.metric] for name, each in result.objectives.items()}
+    kinds |= {name: METRICS[each.metric].kind for name, each in result.objectives.items()}
     return events.Trials(
         job=job,
         parameters=list(result.parameters),
@@ -204,7 +206,7 @@ def _targets(model: type[Any], given: dict[str, dict[str, Any]] | None) -> dict[
 
 def _said(study: Study, value: float) -> str:
     name, objective = next(iter(study.objectives.items()))
-    return f"{name} {format_quantity(float(f'{value:.4g}'), METRICS[objective.metric])}"
+    return f"{name} {format_quantity(float(f'{value:.4g}'), METRICS[objective.metric].kind)}"
 
 
 def _best_of(study: Study, trial: Trial) -> str:

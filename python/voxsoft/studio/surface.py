@@ -11,15 +11,11 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import MeshError
 from voxsoft.mesh import Mesh
+from voxsoft.studio.wire import CAVITY, MAGIC, MessageKind, TopologyFlag
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.uint32]
 
-MAGIC: Final = 0x31465856  # "VXF1"
-TOPOLOGY: Final = 1
-SHRUNK_TETS: Final = 2
-#: Bit of a triangle's tag that says that it faces a cavity.
-CAVITY: Final = 0x80
 #: Three indices of a vertex fit in one number of 64 bits up to here.
 MOST_VERTICES: Final = 1 << 21
 #: Length of an edge of a shrunk tetrahedron over that of the whole one, as in the core's frames.
@@ -127,7 +123,7 @@ def pack_surface(surface: Surface, mesh: Mesh, topology: int) -> bytes:
     """Write the topology of a surface as the page reads it."""
     return _pack(
         topology,
-        TOPOLOGY,
+        TopologyFlag.SURFACE,
         mesh.voxel_size or 0.0,
         mesh.vertices[surface.vertices],
         surface.triangles,
@@ -141,7 +137,7 @@ def pack_tets(tets: ShrunkTets, mesh: Mesh, topology: int) -> bytes:
     edges = np.zeros((0, 2), dtype=np.uint32)
     points = tets.points(mesh.vertices)
     size = mesh.voxel_size or 0.0
-    return _pack(topology, SHRUNK_TETS, size, points, tets.triangles, edges, tets.tags)
+    return _pack(topology, TopologyFlag.SHRUNK_TETS, size, points, tets.triangles, edges, tets.tags)
 
 
 def _pack(
@@ -156,7 +152,7 @@ def _pack(
     head = struct.pack(
         "<IBBHIIdIII28x",
         MAGIC,
-        TOPOLOGY,
+        MessageKind.TOPOLOGY,
         flags,
         0,
         topology,

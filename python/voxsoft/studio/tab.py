@@ -10,7 +10,8 @@ from typing import Final, Protocol
 
 from voxsoft.studio import events
 from voxsoft.studio.commands import View
-from voxsoft.studio.protocol import CREDITS, encode
+from voxsoft.studio.protocol import encode
+from voxsoft.studio.wire import CREDITS, CloseCode
 
 #: Messages that wait for a tab before it is cut off; it comes back and gets all anew.
 LONGEST_QUEUE: Final = 5_000
@@ -18,8 +19,6 @@ LONGEST_QUEUE: Final = 5_000
 MOST_ROWS: Final = 20_000
 #: Events that tell all of something: a newer one makes those that wait useless.
 _STATES: Final = (events.Document, events.Body, events.Runs, events.Stat)
-#: Code by which a websocket says "try again later".
-TRY_AGAIN: Final = 1013
 
 
 class Socket(Protocol):
@@ -134,7 +133,7 @@ class Tab:
             self.closed = True
             self._queue.clear()
             self._closing = asyncio.ensure_future(
-                self.socket.close(TRY_AGAIN, "the tab does not keep up")
+                self.socket.close(CloseCode.TRY_AGAIN, "the tab does not keep up")
             )
 
     def ack(self) -> None:

@@ -8,8 +8,9 @@ from typing import Final
 import msgspec
 
 from voxsoft.design import Design
+from voxsoft.design.documents import with_whole_paths
 from voxsoft.errors import FileError
-from voxsoft.files.designs import read_document, with_whole_paths
+from voxsoft.files.designs import read_document
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.whole import write_whole
 from voxsoft.studio.commands import CalibrateSpec, RunSpec, StudySpec
@@ -32,7 +33,10 @@ class Table(msgspec.Struct):
 
 
 class Task(msgspec.Struct):
-    """A job: its kind by `spec`, the design as text, and where relative paths begin."""
+    """A job: its kind by `spec`, the design as text, and where relative paths begin.
+
+    `version` is that of the VoxSoft which began it, empty where that was not noted.
+    """
 
     id: str
     name: str
@@ -40,6 +44,7 @@ class Task(msgspec.Struct):
     base: str
     spec: RunSpec | StudySpec | CalibrateSpec
     tables: list[Table] = msgspec.field(default_factory=list)
+    version: str = ""
 
     @property
     def kind(self) -> JobKind:

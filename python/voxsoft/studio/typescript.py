@@ -1,4 +1,6 @@
-"""Write the protocol's types as TypeScript: ``python -m voxsoft.studio.typescript``.
+"""Write the protocol's types and constants as TypeScript.
+
+``python -m voxsoft.studio.typescript``.
 
 The text goes to ``studio/src/protocol.ts``; a test compares the two.
 """
@@ -9,13 +11,28 @@ import inspect
 import json
 import sys
 from collections.abc import Iterator
+from enum import IntEnum, IntFlag
 from typing import Any, Final
 
 from msgspec import inspect as types
 
 from voxsoft.studio.commands import AnyCommand, Command
 from voxsoft.studio.events import AnyEvent, Event
-from voxsoft.studio.protocol import CREDITS, PROTOCOL
+from voxsoft.studio.wire import (
+    CAVITY,
+    CREDITS,
+    HEADER,
+    LARGEST_UPLOAD,
+    MAGIC,
+    PACES,
+    PROTOCOL,
+    CloseCode,
+    FrameFlag,
+    MessageKind,
+    TopologyFlag,
+)
+from voxsoft.units import COMMON_UNITS, KINDS, parse_any
+from voxsoft.units.kinds import describe_dimension
 
 _HEAD: Final = """\
 // Written by `python -m voxsoft.studio.typescript`; change python/voxsoft/studio instead.
@@ -27,6 +44,15 @@ _SIMPLE: Final[dict[type[types.Type], str]] = {
     types.IntType: "number",
     types.NoneType: "null",
     types.StrType: "string",
+}
+#: Numbers of the page by name, with what is said of them.
+_NUMBERS: Final = {
+    "PROTOCOL": (PROTOCOL, "Page and server must speak the same."),
+    "CREDITS": (CREDITS, "Frames that the server sends before it waits for an `ack`."),
+    "LARGEST_UPLOAD": (LARGEST_UPLOAD, "Largest file that the server takes, bytes."),
+    "MAGIC": (MAGIC, "First four bytes of a binary message."),
+    "HEADER": (HEADER, "Length of the head of a binary message, bytes."),
+    "CAVITY": (CAVITY, "Bit of a triangle's tag that says that it faces a cavity."),
 }
 
 
@@ -43,9 +69,11 @@ def typescript() -> str:
     received = _reachable(events)
     blocks = [
         _HEAD,
-        f"export const PROTOCOL = {PROTOCOL};\n",
-        "/** Frames that the server sends before it waits for an `ack`. */\n"
-        f"export const CREDITS = {CREDITS};\n",
+        *(_constant(name, value, about) for name, (value, about) in _NUMBERS.items()),
+        _constant("PACES", PACES, "Speeds of time: simulated seconds for each of the clock."),
+        *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
+        _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),
+        _constant("COMMON_UNITS", _units(), "Units of daily use: SI units in one, and exponents."),
         "export type Triple = [number, number, number];\n",
     ]
     for struct in {**sent, **received}.values():
@@ -53,6 +81,40 @@ def typescript() -> str:
     blocks.append(_union("AnyCommand", commands))
     blocks.append(_union("AnyEvent", events))
     return "\n".join(blocks)
+
+
+def _constant(name: str, value: object, about: str) -> str:
+    end = " as const" if isinstance(value, dict | tuple) else ""
+    if isinstance(value, dict):  # one entry a line
+        rows = "".join(f"  {json.dumps(key)}: {json.dumps(row)},\n" for key, row in value.items())
+        return f"/** {about} */\nexport const {name} = {{\n{rows}}}{end};\n"
+    return f"/** {about} */\nexport const {name} = {json.dumps(value)}{end};\n"
+
+
+def _codes(codes: type[IntEnum] | type[IntFlag]) -> str:
+    about = inspect.cleandoc(codes.__doc__ or "").splitlines()[0]
+    return _constant(codes.__name__, {code.name: code.value for code in codes}, about)
+
+
+def _kinds() -> dict[str, dict[str, object]]:
+    """Each kind with its SI unit, the one its numbers are completed with, and its article."""
+    found: dict[str, dict[str, object]] = {}
+    for kind in KINDS.values():
+        si = [unit for unit in kind.units if parse_any(f"1 {unit}").value == 1.0]
+        found[kind.name] = {
+            "si": si[0] if si else "1",
+            "written": kind.units[0] if kind.units else "",
+            "called": describe_dimension(kind.dimension),
+            "dimension": list(kind.dimension),
+        }
+    return found
+
+
+def _units() -> dict[str, list[object]]:
+    return {
+        unit: [parse_any(f"1 {unit}").value, list(dimension)]
+        for unit, dimension in COMMON_UNITS.items()
+    }
 
 
 def _members(union: Any) -> list[types.StructType]:  # noqa: ANN401 - a union is no type to mypy

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import re
 import zipfile
 import zlib
 from pathlib import Path
@@ -12,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from voxsoft._folders import folder_name
 from voxsoft.errors import FileError
 from voxsoft.files import write_mesh
 from voxsoft.files.run_folder import make_folder
@@ -20,17 +20,14 @@ from voxsoft.shapes import TriangleMesh
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Voxels
 
-#: Largest file that is taken [bytes].
-LARGEST_UPLOAD: Final = 64 * 1024 * 1024
 #: What the files of an archive may take together when unpacked [bytes].
 LARGEST_ARCHIVE: Final = 512 * 1024 * 1024
 #: Files in an archive.
 MOST_FILES: Final = 2_000
-KINDS: Final = (".toml", ".stl", ".obj", ".ply", ".npy", ".csv", ".zip")
+MESHES: Final = (".stl", ".obj", ".ply", ".off", ".mesh", ".msh", ".vtk", ".vtu")
+KINDS: Final = (".toml", *MESHES, ".npy", ".csv", ".zip")
 #: Cells along the longest side of a mesh that is dropped on the page.
 _FIRST_CELLS: Final = 32
-
-_UNSAFE: Final = re.compile(r"[^A-Za-z0-9._-]+")
 
 
 def safe_name(name: str) -> str:
@@ -53,8 +50,7 @@ def safe_name(name: str) -> str:
         raise FileError(
             plain[:80] or "upload", "is no kind of file that is read here", f"use {' '.join(KINDS)}"
         )
-    stem = _UNSAFE.sub("-", stem).strip("-.")[:80] or "upload"
-    return f"{stem}{suffix}"
+    return f"{folder_name(stem, 'upload')}{suffix}"
 
 
 def design_of_mesh(file: Path, unit: str = "mm") -> str:
@@ -95,7 +91,7 @@ def design_of_array(file: Path) -> str:
     except (OSError, ValueError, EOFError) as error:
         raise FileError(file.name, f"is no array of NumPy: {error}") from None
     if array.ndim != 3 or array.dtype.kind not in "biuf":
-        what = f"holds {array.dtype} of shape {array.shape}; three axes of numbers are due"
+        what = f"holds {array.dtype} of shape {array.shape}; expected three axes of numbers"
         raise FileError(file.name, what)
     surface = file.with_suffix(".stl")
     write_mesh(surface, Voxels.from_array(array != 0, 1e-3).mesh())

@@ -6,8 +6,9 @@ Optuna nor the rest of this package.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING
+
+from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
     from voxsoft.study.event import ProgressCallback, TrialEvent
@@ -31,23 +32,16 @@ __all__ = [
     "evaluate_design",
 ]
 
-_HOME_OF: Final = {
-    "Choices": "space",
-    "Gate": "gate",
-    "Outcome": "outcome",
-    "ProgressCallback": "event",
-    "Range": "space",
-    "Study": "study",
-    "StudyResult": "result",
-    "Trial": "trial",
-    "TrialEvent": "event",
-    "evaluate_design": "outcome",
+_HOMES = {
+    "Choices": "voxsoft.study.space",
+    "Gate": "voxsoft.study.gate",
+    "Outcome": "voxsoft.study.outcome",
+    "ProgressCallback": "voxsoft.study.event",
+    "Range": "voxsoft.study.space",
+    "Study": "voxsoft.study.study",
+    "StudyResult": "voxsoft.study.result",
+    "Trial": "voxsoft.study.trial",
+    "TrialEvent": "voxsoft.study.event",
+    "evaluate_design": "voxsoft.study.outcome",
 }
-
-
-def __getattr__(name: str) -> Any:  # noqa: ANN401 - any public object
-    if name not in _HOME_OF:
-        raise AttributeError(f"module 'voxsoft.study' has no attribute '{name}'")
-    value = getattr(import_module(f"voxsoft.study.{_HOME_OF[name]}"), name)
-    globals()[name] = value
-    return value
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

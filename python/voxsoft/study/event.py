@@ -22,12 +22,15 @@ class TrialEvent:
         feasible.
     done, total
         Finished trials, earlier runs included, and how many there will be.
+    doubts
+        What is doubtful about the best trial, each in a sentence.
     """
 
     trial: Trial
     best: float | None
     done: int
     total: int
+    doubts: tuple[str, ...] = ()
 
     @property
     def number(self) -> int:

@@ -24,7 +24,7 @@ class Gate:
     """Holds back the trials of a study that have not begun.
 
     It is closed and opened by any thread of the process that runs the study. Workers of this
-    machine obey at once; trials that were handed to another executor, or to a cluster, go on.
+    machine stop and go on at once; trials handed to another executor, or to a cluster, go on.
 
     Examples
     --------
@@ -51,6 +51,11 @@ class Gate:
         if self._shared is None:
             return 0
         return max(0, int(self._shared.begun.get_obj().value) - self._stored)
+
+    @property
+    def waiting(self) -> int:
+        """How many workers hold a trial back because the gate is closed."""
+        return 0 if self._shared is None else int(self._shared.waiting.get_obj().value)
 
     def close(self) -> None:
         """Let no further trial begin."""
@@ -82,26 +87,31 @@ class SharedGate:
     def __init__(self, context: BaseContext) -> None:
         self.closed: Any = context.RawValue(c_int32, 0)
         self.begun: Synchronized[int] = context.Value(c_int32, 0)
+        self.waiting: Synchronized[int] = context.Value(c_int32, 0)
 
     def through(self, task: Callable[..., Answer], *arguments: object) -> Answer:
         """Do a task once the gate is open."""
-        while not self._entered():
-            time.sleep(_LOOK)
+        if not self._entered():
+            _count(self.waiting, 1)
+            while not self._entered():
+                time.sleep(_LOOK)
+            _count(self.waiting, -1)
         return task(*arguments)
 
     def _entered(self) -> bool:
         if self.closed.value:
             return False
         # Counted before the second look: a gate that is closed with none counted holds all.
-        self._count(1)
+        _count(self.begun, 1)
         if not self.closed.value:
             return True
-        self._count(-1)
+        _count(self.begun, -1)
         return False
 
-    def _count(self, change: int) -> None:
-        with self.begun.get_lock():
-            self.begun.value += change
+
+def _count(number: Synchronized[int], change: int) -> None:
+    with number.get_lock():
+        number.value += change
 
 
 _gate_of_worker: SharedGate | None = None

@@ -19,7 +19,7 @@ from typing import Any, Final, Self
 
 from optuna.storages.journal import BaseJournalBackend
 
-from voxsoft.errors import StudyError
+from voxsoft.errors import StorageError, StudyError
 
 # A killed process loses nothing that was written. A power failure can lose what the operating
 # system has not yet put on the disk: at most this many seconds of it.
@@ -57,7 +57,8 @@ class StudyJournal(BaseJournalBackend):
         try:
             self._file = os.open(path, flags | getattr(os, "O_BINARY", 0), 0o666)
         except OSError as error:
-            raise StudyError(str(path), f"cannot be opened: {error.strerror}") from None
+            kind = StorageError if write else StudyError
+            raise kind(str(path), f"cannot be opened: {error.strerror}") from None
         try:
             if write:
                 _lock(self._file, path)
@@ -89,7 +90,7 @@ class StudyJournal(BaseJournalBackend):
 
         Raises
         ------
-        StudyError
+        StorageError
             The disk is full, or the file cannot be written for another reason. What was written
             before stays readable, and writing can go on once there is room.
         """
@@ -111,7 +112,7 @@ class StudyJournal(BaseJournalBackend):
         except OSError as error:
             with contextlib.suppress(OSError):  # a half line left here is dropped when reopened
                 os.ftruncate(self._file, size)
-            raise StudyError(
+            raise StorageError(
                 str(self._path),
                 f"cannot be written: {error.strerror}",
                 "make room and start the study again; every finished trial is kept",

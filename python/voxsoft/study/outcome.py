@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from voxsoft.design import Design
 from voxsoft.errors import DisconnectedError, NoCavityError, VoxSoftError
-from voxsoft.simulation import Status, simulate
+from voxsoft.simulation import Result, Status, simulate
+from voxsoft.study.indexed_cavities import IndexedCavities
 
 
 @dataclass(frozen=True)
@@ -25,12 +26,18 @@ class Outcome:
         In SI units. An ``ok`` outcome holds every objective and constraint under its name.
     seconds
         Wall-clock time of the evaluation.
+    warnings
+        What is doubtful about the numbers, each in a sentence.
+    cavities
+        Where the cavities are, if the design means any by an index.
     """
 
     status: Status
     message: str = ""
     metrics: Mapping[str, float] = field(default_factory=dict)
     seconds: float = 0.0
+    warnings: tuple[str, ...] = ()
+    cavities: IndexedCavities = field(default_factory=IndexedCavities)
 
 
 #: Evaluates a design in a worker process; it is sent there by pickle.
@@ -53,18 +60,32 @@ def evaluate_design(design: Design) -> Outcome:
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> evaluate_design(families.cylinder(wall="15 mm", radius="15 mm")).status
+    >>> evaluate_design(families.cylinder(wall="20 mm", radius="20 mm")).status
     'no-cavity'
     """
     started = time.perf_counter()
     try:
         result = simulate(design)
-        outcome = Outcome(result.status, result.message, dict(result.metrics))
+        outcome = outcome_of_result(result, dict(result.metrics))
     except NoCavityError as error:
         outcome = Outcome("no-cavity", str(error))
     except DisconnectedError as error:
         outcome = Outcome("disconnected", str(error))
     except VoxSoftError as error:
         outcome = Outcome("failed", str(error))
-    seconds = time.perf_counter() - started
-    return Outcome(outcome.status, outcome.message, outcome.metrics, seconds)
+    return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def outcome_of_result(result: Result, metrics: Mapping[str, float]) -> Outcome:
+    """Make an outcome of a result, with what is doubtful about it.
+
+    Parameters
+    ----------
+    result
+        How the simulation ended.
+    metrics
+        Its numbers in SI units.
+    """
+    warnings = tuple(str(warning) for warning in result.warnings)
+    cavities = IndexedCavities.of(result.design, result.mesh)
+    return Outcome(result.status, result.message, metrics, 0.0, warnings, cavities)

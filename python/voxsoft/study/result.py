@@ -4,28 +4,36 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, Final, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import Shown, counted, rounded
 from voxsoft.design import Objective
-from voxsoft.errors import MissingPackageError, StudyError
+from voxsoft.errors import MissingPackageError, StorageError, StudyError
+from voxsoft.metrics import METRICS
 from voxsoft.records import closest
-from voxsoft.simulation import Status
+from voxsoft.simulation import Diagnostic, Status
+from voxsoft.study.indexed_cavities import switched_cavities
 from voxsoft.study.trial import Trial
+from voxsoft.units import format_quantity
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True)
-class StudyResult:
+#: Trials that a printed result lists.
+_SHOWN: Final = 3
+
+
+@dataclass(frozen=True, repr=False)
+class StudyResult(Shown):
     """All finished trials of a study.
 
     Attributes
@@ -52,6 +60,27 @@ class StudyResult:
     parameters: tuple[str, ...]
     kinds: Mapping[str, str] = field(default_factory=dict)
 
+    def _lines(self) -> Iterator[str]:
+        found = [f"{number:,} {status}" for status, number in self.counts.items() if number]
+        yield f"{self.name}: {counted(len(self.trials), 'trial')}: {', '.join(found) or 'none'}"
+        for rank, trial in enumerate(self.ranking[:_SHOWN], start=1):
+            yield f"{rank}. {self._in_words(trial)}"
+        if len(self.objectives) > 1:
+            yield f"{counted(len(self.pareto_front), 'trial')} on the Pareto front"
+
+    def _in_words(self, trial: Trial) -> str:
+        sizes = [f"{k} {_quantity(v, self.kinds.get(k))}" for k, v in trial.parameters.items()]
+        asked = self.objectives.items()
+        values = [
+            f"{name} {_quantity(trial.objectives[name], _kind_of(target))}"
+            for name, target in asked
+        ]
+        return f"{', '.join(values)} at {', '.join(sizes)}"
+
+    def _repr_html_(self) -> str:
+        """The table of all trials, as pandas shows it."""
+        return str(self.table().to_html(max_rows=20))
+
     @property
     def counts(self) -> dict[Status, int]:
         """Number of trials by status; every status is there, also with 0."""
@@ -62,6 +91,11 @@ class StudyResult:
     def best(self) -> Trial | None:
         """The best feasible trial by the first objective, or None if there is none."""
         return self.ranking[0] if self.ranking else None
+
+    @cached_property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Why trials cannot be compared: cavities meant by an index that changes its meaning."""
+        return tuple(switched_cavities(self.trials))
 
     @cached_property
     def ranking(self) -> tuple[Trial, ...]:
@@ -159,8 +193,8 @@ class StudyResult:
         pandas.DataFrame
             Columns: ``number``, ``status``, the parameters, the objectives, other metrics,
             ``feasible``, ``same_as`` (the trial that solved the same design), ``seconds``,
-            ``hash``, ``message``. SI units; missing numbers are NaN, never 0. A name that is
-            taken gets its role in brackets, ``number (parameter)``.
+            ``hash``, ``message``, ``warnings``. SI units; missing numbers are NaN, never 0. A name
+            that is taken gets its role in brackets, ``number (parameter)``.
         """
         import pandas as pd
 
@@ -177,6 +211,7 @@ class StudyResult:
             "seconds": [trial.seconds for trial in self.trials],
             "hash": [trial.hash for trial in self.trials],
             "message": [trial.message for trial in self.trials],
+            "warnings": ["; ".join(trial.warnings) for trial in self.trials],
         }
         columns: dict[str, Any] = {}
 
@@ -214,7 +249,7 @@ class StudyResult:
         """
         if find_spec("pyarrow") is None:
             raise MissingPackageError(
-                "to_parquet", "needs the package pyarrow", 'pip install "voxsoft[parquet]"'
+                "to_parquet", "needs the package pyarrow", "pip install pyarrow"
             )
         _write(path, lambda: self.table().to_parquet(path, index=False, engine="pyarrow"))
 
@@ -230,8 +265,10 @@ class StudyResult:
                 "number": best.number,
                 "parameters": dict(best.parameters),
                 "objectives": dict(best.objectives),
+                "warnings": list(best.warnings),
             },
             "pareto_front": [trial.number for trial in self.pareto_front],
+            "warnings": [warning.summary() for warning in self.warnings],
             "folder": None if self.folder is None else str(self.folder),
         }
 
@@ -250,6 +287,16 @@ class StudyResult:
         return [self._sign(name) * trial.objectives[name] for name in self.objectives]
 
 
+def _kind_of(target: Objective) -> str | None:
+    return METRICS[target.metric].kind if target.metric in METRICS else None
+
+
+def _quantity(value: object, kind: str | None) -> str:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return str(value)
+    return f"{value:.4g}" if kind is None else format_quantity(rounded(value), kind)
+
+
 def _numbers(values: list[Any]) -> NDArray[np.float64]:
     if all(isinstance(value, int | float) for value in values):
         return np.array(values, dtype=np.float64)
@@ -261,4 +308,5 @@ def _write(path: str | os.PathLike[str], write: Callable[[], object]) -> None:
     try:
         write()
     except OSError as error:
-        raise StudyError(os.fspath(path), f"cannot be written: {error.strerror or error}") from None
+        reason = error.strerror or str(error)
+        raise StorageError(os.fspath(path), f"cannot be written: {reason}") from None

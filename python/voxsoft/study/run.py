@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import Any, Final
 
@@ -72,6 +72,7 @@ class StudyRun:
     _twins: dict[str, list[_Job]] = field(default_factory=dict)
     _solved: dict[str, tuple[int, Outcome]] = field(default_factory=dict)
     _best: float | None = None
+    _doubts: tuple[str, ...] = ()
     _done: int = 0
 
     def __post_init__(self) -> None:
@@ -158,11 +159,13 @@ class StudyRun:
     def _recover(self, lost: list[_Job]) -> None:
         """Go on after a worker died: it takes all trials of its pool with it.
 
-        Each of them is tried once more, alone, so that the one to blame fails and no other.
+        Each of them is tried once more, alone, so that the one to blame fails and no other. A
+        broken pool answers nothing any more, and may forget trials that it took as it broke: those
+        count as lost without a wait.
         """
         for future in list(self._running):
             job = self._running.pop(future)
-            if isinstance(future.exception(), BrokenExecutor):
+            if not future.done() or isinstance(future.exception(), BrokenExecutor):
                 lost.append(job)
             else:
                 self._take(job, future)
@@ -188,8 +191,7 @@ class StudyRun:
 
     def _share(self, job: _Job) -> None:
         number, outcome = self._solved[job.hash]
-        shared = Outcome(outcome.status, outcome.message, outcome.metrics)
-        self._store(job.number, shared, job.hash, number)
+        self._store(job.number, replace(outcome, seconds=0.0), job.hash, number)
 
     def _store(self, number: int, outcome: Outcome, design_hash: str, same_as: int | None) -> None:
         record = record_of(outcome, design_hash, same_as)
@@ -203,7 +205,7 @@ class StudyRun:
         self._learn(trial, outcome)
         if self.progress is not None:
             total = max(self.total, self._done)
-            self.progress(TrialEvent(trial, self._best, self._done, total))
+            self.progress(TrialEvent(trial, self._best, self._done, total, self._doubts))
 
     def _tell(self, number: int, outcome: Outcome) -> None:
         """Tell the sampler. Designs that cannot be solved are pruned: it learns to avoid them."""
@@ -222,7 +224,8 @@ class StudyRun:
             name, objective = next(iter(self.objectives.items()))
             better = min if objective.direction == "minimize" else max
             value = trial.objectives[name]
-            self._best = value if self._best is None else better(value, self._best)
+            if self._best is None or better(value, self._best) != self._best:
+                self._best, self._doubts = value, trial.warnings
 
 
 def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Outcome:
@@ -243,5 +246,5 @@ def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Ou
     if wrong:
         value = outcome.metrics.get(wrong[0], "missing")
         message = f'the objective "{wrong[0]}" is {value}'
-        return Outcome("failed", message, outcome.metrics, outcome.seconds)
+        return replace(outcome, status="failed", message=message)
     return outcome

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -14,7 +15,7 @@ from voxsoft.design.variation import with_number
 from voxsoft.errors import DisconnectedError, NoCavityError, StudyError, VoxSoftError
 from voxsoft.search.gradient_sampler import Answer
 from voxsoft.simulation import gradient, simulate
-from voxsoft.study.outcome import Outcome
+from voxsoft.study.outcome import Outcome, outcome_of_result
 from voxsoft.study.trial import OUTCOME_KEY
 
 # Residual of each solution: slopes are as right as the state.
@@ -65,15 +66,14 @@ def evaluate_slopes(design: Design, parameters: Sequence[str]) -> Outcome:
                 for target, slopes in found.items()
                 for name, value in slopes.items()
             }
-        outcome = Outcome(result.status, result.message, metrics)
+        outcome = outcome_of_result(result, metrics)
     except NoCavityError as error:
         outcome = Outcome("no-cavity", str(error))
     except DisconnectedError as error:
         outcome = Outcome("disconnected", str(error))
     except VoxSoftError as error:
         outcome = Outcome("failed", str(error))
-    seconds = time.perf_counter() - started
-    return Outcome(outcome.status, outcome.message, outcome.metrics, seconds)
+    return replace(outcome, seconds=time.perf_counter() - started)
 
 
 def answers_of(

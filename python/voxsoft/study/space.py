@@ -15,8 +15,8 @@ from pydantic import Field, model_validator
 
 from voxsoft.design import Design, Parameter
 from voxsoft.errors import StudyError, VoxSoftError
-from voxsoft.records import Record, closest
-from voxsoft.units import format_quantity, parse_any, round_significant
+from voxsoft.records import Record, closest, plain_values
+from voxsoft.units import format_quantity, is_pint, parse_any, quantity_of, round_significant
 
 Choice = bool | int | float | str
 
@@ -49,8 +49,10 @@ class Range(Record):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if not self.low < self.high:
-            raise StudyError("", f"runs from {self.low:g} to {self.high:g}; low < high is due")
-        if self.step is not None and not 0 < self.step <= self.high - self.low:
+            raise StudyError("", f"runs from {self.low:g} to {self.high:g}; expected low < high")
+        # 15 mm - 10 mm is less than 5 mm in the last digit.
+        room = round_significant(self.high - self.low)
+        if self.step is not None and not 0 < self.step <= room:
             what = f"{self.step:g} does not fit between {self.low:g} and {self.high:g}"
             raise StudyError("step", what, "give a positive step smaller than the range")
         if self.log and self.low <= 0:
@@ -133,8 +135,8 @@ def read_space(given: Mapping[str, object], design: Design | None) -> dict[str, 
     ----------
     given
         By name: a :class:`Range` or :class:`Choices`; a tuple ``(low, high)``,
-        ``(low, high, step)`` or ``(low, high, "log")``; or a list of choices. Numbers are SI;
-        texts such as ``"5 mm"`` carry their unit.
+        ``(low, high, step)`` or ``(low, high, "log")``; or a list or array of choices. Numbers are
+        SI; texts such as ``"5 mm"`` carry their unit.
     design
         The parametric design, whose parameters are then the only names allowed.
 
@@ -176,6 +178,7 @@ def _read_domain(name: str, given: object, design: Design | None) -> Domain:
 def _read(given: object, parameter: Parameter | None) -> Domain:
     if isinstance(given, Range | Choices):
         return given
+    given = plain_values(given)
     if isinstance(given, list):
         # Without a parameter a text may be anything, "00-50" a material: it stays as it is.
         values = given if parameter is None else [_number(value, parameter) for value in given]
@@ -192,10 +195,10 @@ def _read(given: object, parameter: Parameter | None) -> Domain:
 
 
 def _number(value: Any, parameter: Parameter | None) -> Any:  # noqa: ANN401 - the models check it
-    """Bring a text with a unit to SI; leave everything else."""
-    if not isinstance(value, str):
+    """Bring a text with a unit, and a quantity of pint, to SI; leave everything else."""
+    if not isinstance(value, str) and not is_pint(value):
         return value
-    quantity = parse_any(value, where="")
+    quantity = quantity_of(value, "") if is_pint(value) else parse_any(value, where="")
     if parameter is not None and quantity.dimension != parameter.dimension:
         raise StudyError("", f'"{value}" has another unit than the parameter, a {parameter.kind}')
     return quantity.value

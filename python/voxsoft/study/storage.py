@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 import optuna
 from optuna.storages import BaseStorage, JournalStorage
 
-from voxsoft.errors import StudyError
+from voxsoft.errors import StorageError, StudyError
 from voxsoft.study.definition import require_same
 from voxsoft.study.journal import StudyJournal
 
@@ -137,9 +137,8 @@ class TrialStorage:
             folder.mkdir(parents=True, exist_ok=True)
             (folder / DEFINITION_NAME).write_text(text, encoding="utf-8")
         except OSError as error:
-            raise StudyError(
-                str(error.filename or folder), f"cannot be written: {error.strerror}"
-            ) from None
+            where = str(error.filename or folder)
+            raise StorageError(where, f"cannot be written: {error.strerror}") from None
 
 
 @contextlib.contextmanager
@@ -153,7 +152,7 @@ def _database_errors(where: str) -> Iterator[None]:
     except (optuna.exceptions.StorageInternalError, SQLAlchemyError) as error:
         cause = str(error.__cause__ or error).splitlines()[0]
         hint = "check the address of the storage; finished trials are kept"
-        raise StudyError(where, f"the storage failed: {cause}", hint) from error
+        raise StorageError(where, f"the storage failed: {cause}", hint) from error
     except ImportError as error:
         hint = "install the driver of that database with pip"
         raise StudyError(where, f"the storage needs a package: {error}", hint) from error

@@ -15,7 +15,8 @@ from optuna.samplers import BaseSampler
 from optuna.storages import BaseStorage
 from optuna.trial import FrozenTrial
 
-from voxsoft.design import Constraint, Design, Objective, families
+from voxsoft._folders import folder_name
+from voxsoft.design import Constraint, Design, Objective, families, require_design
 from voxsoft.errors import StudyError
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.study.definition import definition
@@ -88,7 +89,7 @@ class Study:
     >>> from concurrent.futures import ThreadPoolExecutor
     >>> from voxsoft.design import families
     >>> with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as threads:
-    ...     study = Study(families.cylinder(), {"wall": ("5 mm", "10 mm", "5 mm")}, folder=folder)
+    ...     study = Study(families.sphere(), {"wall": ("5 mm", "10 mm", "5 mm")}, folder=folder)
     ...     result = study.grid(executor=threads)
     >>> result.counts["ok"], result.best.parameters
     (2, {'wall': 0.005})
@@ -107,7 +108,9 @@ class Study:
         seed: int = 0,
         evaluate: Evaluate = evaluate_design,
     ) -> None:
-        family = families.cylinder() if family is None else family
+        family = families.paper_cylinder() if family is None else family
+        if not callable(family):
+            require_design(family, "family")
         self.name = name or _name_of(family)
         self.family, self.seed, self._evaluate = family, seed, evaluate
         self.space = _read_space(family, space)
@@ -120,7 +123,10 @@ class Study:
                 "are missing",
                 'write {"rise": {"maximize": "displacement", "probe": "top", "axis": "z"}}',
             )
-        place = Path(folder or Path("studies", self.name)) if storage is None else storage
+        # Of a design, once for all trials; a function may return one with other probes each time.
+        self._asked = None if own is None else self._asking(own)
+        usual = Path("studies", folder_name(self.name, "study"))
+        place = Path(folder or usual) if storage is None else storage
         self.folder = place if isinstance(place, Path) else None
         self._storage = TrialStorage(
             self.name,
@@ -128,6 +134,9 @@ class Study:
             definition(family, self.space, self.objectives, self.constraints, evaluate, seed),
             place,
         )
+
+    def __repr__(self) -> str:
+        return f"<Study {self.name}: {', '.join(self.objectives)} over {', '.join(self.space)}>"
 
     def grid(
         self,
@@ -226,7 +235,7 @@ class Study:
             After Ctrl-C; finished trials are stored, and the message says how to go on.
         """
         if budget < 1 or (batch is not None and batch < 1):
-            raise StudyError("budget" if budget < 1 else "batch", "at least 1 is due")
+            raise StudyError("budget" if budget < 1 else "batch", "expected at least 1")
         if sampler == "grid":
             return self.grid(
                 executor=executor,
@@ -317,15 +326,16 @@ class Study:
 
     def _build(self, parameters: Mapping[str, Any]) -> Design:
         """Make the design of one trial, which asks for what the study asks."""
-        family = self.family
-        if isinstance(family, Design):
-            design = family.with_parameters(**parameters)
-        else:
-            design = family(**parameters)
-            if not isinstance(design, Design):
-                raise TypeError(f"{_name_of(family)} returned {design!r}; a Design is due")
-        targets = {"objectives": self.objectives, "constraints": self.constraints}
-        return design.model_copy(update=targets)
+        if self._asked is not None:
+            return self._asked.with_parameters(**parameters)
+        design = self.family(**parameters) if callable(self.family) else self.family
+        if not isinstance(design, Design):
+            raise TypeError(f"{_name_of(self.family)} returned {design!r}; expected a Design")
+        return self._asking(design)
+
+    def _asking(self, design: Design) -> Design:
+        """The design with the objectives and constraints of the study."""
+        return design.replace(objectives=self.objectives, constraints=self.constraints)
 
     def _violations(self, trial: FrozenTrial) -> tuple[float, ...]:
         return violations(trial.user_attrs[OUTCOME_KEY]["metrics"], self.constraints)
@@ -369,7 +379,7 @@ def _read_space(family: Family, given: Mapping[str, object] | None) -> dict[str,
         return space_of(family) if given is None else read_space(given, family)
     if given is None:
         raise StudyError(
-            "space", "is due where the family is a function", 'write {"wall": (0.005, 0.015)}'
+            "space", "is missing: the family is a function", 'write {"wall": (0.005, 0.015)}'
         )
     return read_space(given, None)
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from optuna.trial import FrozenTrial
 
 from voxsoft.design import Constraint
 from voxsoft.simulation import Status
+from voxsoft.study.indexed_cavities import IndexedCavities
 from voxsoft.study.outcome import Outcome
 from voxsoft.units import round_significant
 
@@ -42,6 +43,10 @@ class Trial:
         was evaluated itself.
     seconds
         Wall-clock time of the evaluation; 0 for a shared outcome.
+    warnings
+        What is doubtful about the numbers, each in a sentence.
+    cavities
+        Where the cavities are, if the design means any by an index.
     """
 
     number: int
@@ -54,6 +59,8 @@ class Trial:
     hash: str
     same_as: int | None
     seconds: float
+    warnings: tuple[str, ...] = ()
+    cavities: IndexedCavities = field(default_factory=IndexedCavities)
 
 
 def rounded(parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -79,14 +86,23 @@ def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[s
         "message": outcome.message,
         "metrics": {name: float(value) for name, value in outcome.metrics.items()},
         "seconds": outcome.seconds,
+        "warnings": list(outcome.warnings),
         "hash": design_hash,
         "same_as": same_as,
+        "cavities": outcome.cavities.record(),
     }
 
 
 def outcome_of(record: Mapping[str, Any]) -> Outcome:
     """Read back the outcome that :func:`record_of` wrote."""
-    return Outcome(record["status"], record["message"], record["metrics"], record["seconds"])
+    return Outcome(
+        record["status"],
+        record["message"],
+        record["metrics"],
+        record["seconds"],
+        _warnings(record),
+        IndexedCavities.read(record.get("cavities")),
+    )
 
 
 def read_trial(
@@ -116,7 +132,14 @@ def read_trial(
         hash=record["hash"],
         same_as=record["same_as"],
         seconds=record["seconds"],
+        warnings=_warnings(record),
+        cavities=IndexedCavities.read(record.get("cavities")),
     )
+
+
+def _warnings(record: Mapping[str, Any]) -> tuple[str, ...]:
+    """Those of a record; journals that are older than warnings have none."""
+    return tuple(record.get("warnings", ()))
 
 
 def violations(

@@ -20,6 +20,8 @@ DASK_TIMEOUT: Final = 10.0
 #: What a worker process takes with a small body: 25 MB were measured, its share of common pages
 #: included, and as much again for larger ones.
 _WORKER_BYTES: Final = 50 * 10**6
+#: Seconds for the thread that minds a pool whose processes were killed to see it.
+_MANAGER_PATIENCE: Final = 5.0
 
 Answer = TypeVar("Answer")
 
@@ -76,7 +78,7 @@ def make_workers(
     if executor is not None and scheduler is not None:
         raise StudyError("scheduler", "cannot be used together with an executor", "give one")
     if count is not None and count < 1:
-        raise StudyError("workers", f"{count} is not possible; at least 1 is due")
+        raise StudyError("workers", f"{count} is not possible; expected at least 1")
     if scheduler is not None:
         return DaskCluster(scheduler)
     slots = count or _usable_cores()
@@ -113,11 +115,17 @@ class LocalProcesses:
 
     def close(self, *, now: bool) -> None:
         """End the processes, also those that run a task if `now`."""
-        if now:
-            # Python 3.14 has kill_workers() for this; earlier ones keep the same table.
-            for process in list((self._pool._processes or {}).values()):
-                process.kill()
-        self._pool.shutdown(wait=not now, cancel_futures=True)
+        if not now:
+            self._pool.shutdown(cancel_futures=True)
+            return
+        # Python 3.14 has kill_workers() for this; earlier ones keep the same tables.
+        manager: Any = self._pool._executor_manager_thread  # a thread, unlike what typeshed says
+        for process in list((self._pool._processes or {}).values()):
+            process.kill()
+        self._pool.shutdown(wait=False, cancel_futures=True)
+        if manager is not None:
+            # It closes its pipe; the end of the program, which writes to it, must not come between.
+            manager.join(_MANAGER_PATIENCE)
 
     def _start(self) -> None:
         methods = multiprocessing.get_all_start_methods()
@@ -176,16 +184,17 @@ class DaskCluster:
             import distributed
         except ImportError:
             raise MissingPackageError(
-                "scheduler", "needs the package distributed", 'pip install "voxsoft[dask]"'
+                "scheduler", "needs the package distributed", "pip install distributed"
             ) from None
         client: Any = distributed.Client
         try:
             self._client: Any = client(address, set_as_default=False, timeout=DASK_TIMEOUT)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError) as error:  # TypeError: TLS without certificates
             raise StudyError(
                 "scheduler",
                 f'"{address}" does not answer: {error}',
-                "start one with `dask scheduler`, and give its address, tcp://host:port",
+                "start one with `dask scheduler`, and give its address, tcp://host:port; tls:// "
+                "needs certificates in Dask's configuration",
             ) from None
         self._executor: Any = self._client.get_executor(pure=False)
 

@@ -48,11 +48,15 @@ from voxsoft.units.text import (
     COMMON_UNITS,
     format_percent,
     format_quantity,
+    is_pint,
     parse,
     parse_any,
+    quantity_of,
     round_significant,
+    write_exactly,
 )
 from voxsoft.units.types import (
+    EXACT,
     FILE_CONTEXT,
     Acceleration,
     Angle,
@@ -80,10 +84,14 @@ from voxsoft.units.types import (
     Vector,
     Volume,
     read_from_file,
+    si_value,
+    to_si,
+    writes_exactly,
 )
 
 __all__ = [
     "COMMON_UNITS",
+    "EXACT",
     "FILE_CONTEXT",
     "KINDS",
     "Acceleration",
@@ -130,6 +138,7 @@ __all__ = [
     "format_quantity",
     "g",
     "inch",
+    "is_pint",
     "kN",
     "kPa",
     "kg",
@@ -143,9 +152,14 @@ __all__ = [
     "parse",
     "parse_any",
     "psi",
+    "quantity_of",
     "rad",
     "read_from_file",
     "round_significant",
     "s",
+    "si_value",
+    "to_si",
     "um",
+    "write_exactly",
+    "writes_exactly",
 ]

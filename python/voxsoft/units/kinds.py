@@ -42,7 +42,7 @@ class Quantity:
 class Number(float):
     """What a formula without dimension evaluates to.
 
-    A plain float stands for SI where a unit is due; this one is known to be no quantity.
+    A plain float stands for SI where a unit belongs; this one is known to be no quantity.
     """
 
 

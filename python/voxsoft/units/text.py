@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SIGNIFICANT_DIGITS: Final = 12
 
 _LONGEST_TEXT: Final = 120
+_LONGEST_SHOWN: Final = 40  # degrees of an angle in radians have digits without end
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?")
 _JOINT: Final = r"(\s*[*/]\s*|\s+)"
 _NAME: Final = r"([A-Za-z\u00b5\u03bc°%]+|1)(?:\^?(-?[1-9]))?(?![\d.])"
@@ -78,7 +79,7 @@ def parse(text: str, kind: str, *, where: str = "") -> float:
     >>> parse("5", "length")
     Traceback (most recent call last):
     ...
-    voxsoft.errors.UnitError: length: "5" has no unit; a length is due. Try: write "5 mm"
+    voxsoft.errors.UnitError: length: "5" has no unit; expected a length. Try: write "5 mm"
     """
     due = KINDS[kind]
     where = where or kind
@@ -89,7 +90,7 @@ def parse(text: str, kind: str, *, where: str = "") -> float:
     if quantity.dimension != due.dimension:
         raise UnitError(
             where,
-            f'"{text}" is {describe_dimension(quantity.dimension)}; {_due(due)}',
+            f'"{text}" is {describe_dimension(quantity.dimension)}; {_expected(due)}',
             _suggest(number, due),
         )
     return quantity.value
@@ -153,6 +154,32 @@ def format_quantity(value: float, kind: str) -> str:
     return f"{_plain(number)} {unit}"
 
 
+def write_exactly(value: float, kind: str) -> str:
+    """Write an SI value with a unit, with as many digits as it takes to read the same value back.
+
+    Twelve digits do for whatever a person typed; :func:`format_quantity` always stops there.
+
+    Examples
+    --------
+    >>> write_exactly(0.005, "length"), write_exactly(0.1 + 0.2, "length")
+    ('5 mm', '300.00000000000004 mm')
+    >>> parse(write_exactly(0.001 / 3, "length"), "length") == 0.001 / 3
+    True
+    """
+    text = format_quantity(value, kind)
+    if not math.isfinite(value) or value == 0 or not KINDS[kind].units:
+        return text
+    if parse(text, kind) == value:
+        return text
+    unit = text.rpartition(" ")[2]
+    digits = Decimal(repr(value))
+    longer = f"{_DECIMAL.divide(digits, _exact_factor(unit)).normalize(_DECIMAL)} {unit}"
+    if len(longer) <= _LONGEST_SHOWN and parse(longer, kind) == value:
+        return longer
+    si = next(unit for unit in KINDS[kind].units if _exact_factor(unit) == 1)
+    return f"{value!r} {si}"
+
+
 def round_significant(value: float) -> float:
     """Round to the 12 significant digits that identify a design."""
     return float(f"{value:.{SIGNIFICANT_DIGITS}g}")
@@ -182,7 +209,7 @@ def _split(text: str, where: str, due: Kind | None) -> tuple[str, str]:
         what = f'"{shown}" does not start with a number'
         if stripped.startswith("="):
             what = f'"{shown}" is a formula, which only a design file or table can hold'
-        raise UnitError(where, f"{what}; {_due(due)}" if due else what, f'write "{example}"')
+        raise UnitError(where, f"{what}; {_expected(due)}" if due else what, f'write "{example}"')
     unit = stripped[match.end() :].strip()
     if unit.startswith(","):
         raise UnitError(where, f'"{text}" has a decimal comma', "use a decimal point")
@@ -193,7 +220,7 @@ def _without_unit(number: str, text: str, where: str, due: Kind) -> float:
     value = _finite(float(number), text, where)
     if value == 0 or not due.units:
         return value
-    raise UnitError(where, f'"{text}" has no unit; {_due(due)}', _suggest(number, due))
+    raise UnitError(where, f'"{text}" has no unit; {_expected(due)}', _suggest(number, due))
 
 
 @lru_cache(maxsize=1024)  # a study reads the bounds and constants of its family for every trial
@@ -209,8 +236,8 @@ def _finite(value: float, text: str, where: str) -> float:
     return value
 
 
-def _due(kind: Kind) -> str:
-    return "a plain number is due" if not kind.units else f"{kind.article} is due"
+def _expected(kind: Kind) -> str:
+    return "expected a plain number" if not kind.units else f"expected {kind.article}"
 
 
 def _suggest(number: str, kind: Kind) -> str:
@@ -233,6 +260,48 @@ def _unit(unit: str, text: str, where: str) -> tuple[Decimal, Dimension]:
         total = _DECIMAL.multiply(total, _DECIMAL.power(factor, power))
         dimension = dimension.times(of_name, power)
     return total, dimension
+
+
+def is_pint(value: object) -> bool:
+    """Whether a value is a quantity of pint, from whatever registry; pint is not loaded for it."""
+    return hasattr(value, "magnitude") and hasattr(value, "to_base_units")
+
+
+def quantity_of(value: Any, where: str) -> Quantity:  # noqa: ANN401 - pint is loaded by its users
+    """Read a quantity of pint.
+
+    Parameters
+    ----------
+    value
+        The quantity; one number, not an array.
+    where
+        The place to name in an error.
+
+    Raises
+    ------
+    UnitError
+        Not one number, or a unit that mechanics does not know.
+
+    Examples
+    --------
+    >>> import pint
+    >>> quantity_of(pint.Quantity(10, "mm"), "radius").value
+    0.01
+    """
+    try:
+        number = float(value.magnitude)
+    except (TypeError, ValueError):
+        raise UnitError(where, f'"{value}" is not one number', "give one quantity") from None
+    if not math.isfinite(number):
+        raise UnitError(where, f'"{value}" is not a finite number')
+    factor, dimension = Decimal(1), Dimension()
+    for name, power in value.unit_items():
+        known, of_name = _named_unit(name, str(value), where)
+        if power != int(power):
+            raise UnitError(where, f'"{value}" has a unit to a broken power')
+        factor = _DECIMAL.multiply(factor, _DECIMAL.power(known, int(power)))
+        dimension = dimension.times(of_name, int(power))
+    return Quantity(float(_DECIMAL.multiply(Decimal(repr(number)), factor)), dimension)
 
 
 @cache

@@ -12,7 +12,7 @@ from pydantic_core import core_schema
 
 from voxsoft.errors import UnitError
 from voxsoft.units.kinds import KINDS, Dimension, Number, Quantity, describe_dimension
-from voxsoft.units.text import format_quantity, parse
+from voxsoft.units.text import format_quantity, is_pint, parse, quantity_of, write_exactly
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -25,6 +25,15 @@ FILE_CONTEXT: Final[Mapping[str, str]] = {"source": "file"}
 def read_from_file(info: core_schema.ValidationInfo) -> bool:
     """Whether a validation reads a file, where a number needs its unit."""
     return (info.context or {}).get("source") == "file"
+
+
+#: Serialization context under which numbers are written with all their digits, not with twelve.
+EXACT: Final[Mapping[str, bool]] = {"exact": True}
+
+
+def writes_exactly(info: core_schema.SerializationInfo) -> bool:
+    """Whether what is written must read back to the same bits."""
+    return bool((info.context or {}).get("exact"))
 
 
 _INFINITIES: Final = ("inf", "+inf", "-inf")
@@ -47,9 +56,10 @@ class UnitOf:
 
     Notes
     -----
-    Accepts text with a unit, a :class:`Quantity` of the right dimension, and a plain number,
+    Accepts text with a unit, a :class:`Quantity` or one of pint, and a plain number,
     which is SI; but under the context ``{"source": "file"}`` only zero may be plain.
-    In JSON mode a value is written as text with a unit.
+    In JSON mode a value is written as text with a unit, to 12 significant digits, or under the
+    context :data:`EXACT` to as many as it has.
 
     Examples
     --------
@@ -80,25 +90,30 @@ class UnitOf:
         if isinstance(value, Number):
             value = Quantity(float(value), Dimension())
         if isinstance(value, Quantity):
-            zero = value.value == 0 and value.dimension == Dimension()
-            if value.dimension != kind.dimension and not zero:
-                came = describe_dimension(value.dimension)
-                raise UnitError(self.kind, f"the formula gives {came}; {self._due} is due")
-            return value.value
+            return self._of_kind(value, "the formula gives ")
+        if is_pint(value):
+            return self._of_kind(quantity_of(value, self.kind), f'"{value}" is ')
         if isinstance(value, bool) or not isinstance(value, Real):
             raise UnitError(
                 self.kind,
-                f"{_shown(value)} is not a quantity; {self._due} is due",
+                f"{_shown(value)} is not a quantity; expected {self._due}",
                 f'write "{kind.example}"' if kind.units else "write a number",
             )
         number = _to_float(value)
         if from_file and kind.units and number != 0 and math.isfinite(number):
             raise UnitError(
                 self.kind,
-                f"{value} has no unit; {self._due} is due",
+                f"{value} has no unit; expected {self._due}",
                 f'write "{number:g} {kind.units[0]}"',
             )
         return number
+
+    def _of_kind(self, value: Quantity, came: str) -> float:
+        zero = value.value == 0 and value.dimension == Dimension()
+        if value.dimension != KINDS[self.kind].dimension and not zero:
+            what = f"{came}{describe_dimension(value.dimension)}; expected {self._due}"
+            raise UnitError(self.kind, what)
+        return value.value
 
     def _within_bounds(self, number: float, value: object) -> float:
         shown = _shown(value) if isinstance(value, str) else format_quantity(number, self.kind)
@@ -122,14 +137,17 @@ class UnitOf:
         return core_schema.with_info_plain_validator_function(
             lambda value, info: self.read(value, from_file=read_from_file(info)),
             serialization=core_schema.plain_serializer_function_ser_schema(
-                self._written, when_used="json"
+                self._written, info_arg=True, when_used="json"
             ),
         )
 
-    def _written(self, value: float) -> str | float:
-        if not KINDS[self.kind].units or not math.isfinite(value):
+    def _written(self, value: float, info: core_schema.SerializationInfo) -> str | float:
+        if math.isinf(value):
+            return str(value)  # no number of JSON, and what a file says anyway
+        if not KINDS[self.kind].units:
             return value
-        return format_quantity(value, self.kind) if value else 0
+        write = write_exactly if writes_exactly(info) else format_quantity
+        return write(value, self.kind) if value else 0
 
     def __get_pydantic_json_schema__(
         self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
@@ -150,6 +168,62 @@ class UnitOf:
             "x-kind": kind.name,
         }
         return described_as
+
+
+def si_value(
+    value: object,
+    kind: str,
+    where: str,
+    *,
+    positive: bool = False,
+    non_negative: bool = False,
+) -> float:
+    """Read an argument of a function: an SI number, text with a unit, or a quantity of pint.
+
+    Parameters
+    ----------
+    value
+        What came.
+    kind
+        A key of :data:`voxsoft.units.KINDS`.
+    where
+        The argument's name, for the message.
+    positive, non_negative
+        As for :class:`UnitOf`.
+
+    Raises
+    ------
+    UnitError
+        It is none of these, of another kind, or out of bounds.
+
+    Examples
+    --------
+    >>> si_value("50 ms", "time", "record_interval")
+    0.05
+    >>> si_value(-1, "time", "record_interval", positive=True)
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.UnitError: record_interval: -1 s is not positive. Try: give a time above zero
+    """
+    try:
+        return UnitOf(kind, positive=positive, non_negative=non_negative).read(value)
+    except UnitError as error:
+        raise UnitError(where, error.what, error.hint) from None
+
+
+def to_si(value: object, kind: str, where: str) -> float:
+    """Bring text with a unit, or a quantity of pint, to SI; a number is SI already.
+
+    For arguments whose bounds the caller checks; :func:`si_value` checks them itself.
+
+    Examples
+    --------
+    >>> to_si("5 mm", "length", "voxel_size"), to_si(-1, "length", "x")
+    (0.005, -1.0)
+    """
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return _to_float(value)
+    return si_value(value, kind, where)
 
 
 def _to_float(value: Real) -> float:

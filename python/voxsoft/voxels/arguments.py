@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal
 
 import numpy as np
 
-from voxsoft.errors import VoxelError
+from voxsoft.errors import UnitError, VoxelError
+from voxsoft.units import to_si
 
 Axis = Literal["x", "y", "z"] | Sequence[float]
 Triple = tuple[float, float, float]
@@ -41,11 +42,27 @@ def margins(place: str, cells: int | Sequence[int]) -> tuple[int, int, int]:
     return x, y, z
 
 
-def positive_length(place: str, value: float) -> float:
+def length(place: str, value: float | str) -> float:
+    """Return a length [m]: a number is one, text and quantities of pint are converted."""
+    try:
+        return to_si(value, "length", place)
+    except UnitError as error:
+        raise VoxelError(error.where, error.what, error.hint) from None
+
+
+def point(place: str, values: Sequence[float | str]) -> Triple:
+    """Return three finite lengths [m]."""
+    if isinstance(values, str) or not isinstance(values, Iterable):
+        raise VoxelError(place, f"got {values!r}; expected three numbers")
+    return triple(place, [length(place, value) for value in values])
+
+
+def positive_length(place: str, value: float | str) -> float:
     """Return a positive length [m]."""
+    value = length(place, value)
     if not (math.isfinite(value) and value > 0.0):
         raise VoxelError(place, f"got {value} m; expected a positive length")
-    return float(value)
+    return value
 
 
 def axis_vector(axis: Axis) -> Triple:

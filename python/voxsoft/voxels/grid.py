@@ -22,8 +22,10 @@ from voxsoft.voxels.arguments import (
     Axis,
     Triple,
     axis_vector,
+    length,
     margins,
     part_id,
+    point,
     positive_length,
     triple,
     whole,
@@ -61,7 +63,10 @@ class Voxels:
 
     @classmethod
     def empty(
-        cls, shape: Sequence[int], voxel_size: float, origin: Sequence[float] = (0.0, 0.0, 0.0)
+        cls,
+        shape: Sequence[int],
+        voxel_size: float | str,
+        origin: Sequence[float | str] = (0.0, 0.0, 0.0),
     ) -> Self:
         """Return an empty grid.
 
@@ -86,12 +91,17 @@ class Voxels:
         Voxels(2 x 3 x 4 cells of 5 mm, 10 x 15 x 20 mm, 0 filled)
         """
         nx, ny, nz = (whole("shape", n, 1, 2**31) for n in triple("shape", shape))
-        place = triple("origin", origin)
-        return cls(_core.Grid.empty((nx, ny, nz), place, float(voxel_size), memory_limit()))
+        place = point("origin", origin)
+        return cls(
+            _core.Grid.empty((nx, ny, nz), place, length("voxel_size", voxel_size), memory_limit())
+        )
 
     @classmethod
     def from_array(
-        cls, array: ArrayLike, voxel_size: float, origin: Sequence[float] = (0.0, 0.0, 0.0)
+        cls,
+        array: ArrayLike,
+        voxel_size: float | str,
+        origin: Sequence[float | str] = (0.0, 0.0, 0.0),
     ) -> Self:
         """Return a grid of given cells, for instance a segmented CT scan.
 
@@ -124,8 +134,10 @@ class Voxels:
         if cells.size and not (cells.min() >= 0 and cells.max() <= 255):
             found = f"holds {cells.min()} to {cells.max()}"
             raise VoxelError("array", f"{found}; parts are numbered 0 (empty) to 255")
-        place = triple("origin", origin)
-        return cls(_core.Grid.from_array(cells.astype(np.uint8), place, float(voxel_size)))
+        place = point("origin", origin)
+        return cls(
+            _core.Grid.from_array(cells.astype(np.uint8), place, length("voxel_size", voxel_size))
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Voxels.from_array, (self.array, self.voxel_size, self.origin)
@@ -228,7 +240,9 @@ class Voxels:
             raise VoxelError("cell", f"{(i, j, k)} lies outside the grid of {self.shape} cells")
         return Voxels(self._grid.with_cell((i, j, k), part_id(part)))
 
-    def fill_box(self, lower: Sequence[float], upper: Sequence[float], part: int = 1) -> Voxels:
+    def fill_box(
+        self, lower: Sequence[float | str], upper: Sequence[float | str], part: int = 1
+    ) -> Voxels:
         """Return a grid with the cells of a box given to a part, or emptied with ``part=0``.
 
         As for all fills, a cell is in when its center lies strictly inside; what lies outside the
@@ -247,11 +261,13 @@ class Voxels:
         >>> grid.fill_box((0, 0, 0), (0.04, 0.02, 0.01)).count
         8
         """
-        corners = np.sort([triple("lower", lower), triple("upper", upper)], axis=0)
+        corners = np.sort([point("lower", lower), point("upper", upper)], axis=0)
         low, high = (triple("box", corner) for corner in corners)
         return Voxels(self._grid.fill_box(low, high, part_id(part)))
 
-    def fill_sphere(self, center: Sequence[float], radius: float, part: int = 1) -> Voxels:
+    def fill_sphere(
+        self, center: Sequence[float | str], radius: float | str, part: int = 1
+    ) -> Voxels:
         """Return a grid with the cells of a sphere given to a part, or emptied with ``part=0``.
 
         Examples
@@ -260,16 +276,16 @@ class Voxels:
         >>> grid.fill_sphere((0.035, 0.035, 0.035), radius=0.02).count
         27
         """
-        place = triple("center", center)
+        place = point("center", center)
         return Voxels(
             self._grid.fill_sphere(place, positive_length("radius", radius), part_id(part))
         )
 
     def fill_cylinder(
         self,
-        base: Sequence[float],
-        radius: float,
-        height: float,
+        base: Sequence[float | str],
+        radius: float | str,
+        height: float | str,
         axis: Axis = "z",
         part: int = 1,
     ) -> Voxels:
@@ -296,10 +312,10 @@ class Voxels:
 
     def fill_tube(
         self,
-        base: Sequence[float],
-        outer_radius: float,
-        inner_radius: float,
-        height: float,
+        base: Sequence[float | str],
+        outer_radius: float | str,
+        inner_radius: float | str,
+        height: float | str,
         axis: Axis = "z",
         part: int = 1,
     ) -> Voxels:
@@ -314,23 +330,24 @@ class Voxels:
         80
         """
         inner = positive_length("inner_radius", inner_radius)
-        if not inner < outer_radius:
-            what = f"{inner:g} m is not less than outer_radius = {outer_radius:g} m"
+        outer = length("outer_radius", outer_radius)
+        if not inner < outer:
+            what = f"{inner:g} m is not less than outer_radius = {outer:g} m"
             raise VoxelError("inner_radius", what)
         return self._fill_tube(base, outer_radius, inner, height, axis, part)
 
     def _fill_tube(
         self,
-        base: Sequence[float],
-        outer: float,
+        base: Sequence[float | str],
+        outer: float | str,
         inner: float,
-        height: float,
+        height: float | str | str,
         axis: Axis,
         part: int,
     ) -> Voxels:
-        place, along = triple("base", base), axis_vector(axis)
-        radius, length = positive_length("radius", outer), positive_length("height", height)
-        return Voxels(self._grid.fill_tube(place, along, radius, inner, length, part_id(part)))
+        place, along = point("base", base), axis_vector(axis)
+        radius, high = positive_length("radius", outer), positive_length("height", height)
+        return Voxels(self._grid.fill_tube(place, along, radius, inner, high, part_id(part)))
 
     def fill_random(self, density: float, seed: int, part: int = 1) -> Voxels:
         """Return a grid where each cell was given to a part with a probability.

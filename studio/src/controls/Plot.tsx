@@ -156,7 +156,8 @@ function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Op
         stroke: css(one.color),
         width: 1.5,
         dash: one.dashed ? [5, 4] : undefined,
-        points: { show: one.points ?? false, size: 5 },
+        // A single row, as an equilibrium leaves it, is no line.
+        points: { show: (plot: uPlot) => one.points === true || plot.data[0].length < 2, size: 5 },
         spanGaps: true,
       })),
     ] as uPlot.Series[],

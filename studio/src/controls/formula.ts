@@ -70,13 +70,13 @@ export function writtenFormula(
   const text = typed.trim().replaceAll("−", "-");
   if (!text.startsWith("=") && !namesParameter(text, parameters)) return null;
   const body = text.replace(/^=/, "").trim();
-  if (body === "") return { problem: "a formula is due after the =" };
+  if (body === "") return { problem: "expected a formula after the =" };
   const read = evaluate(body, parameters);
   if ("problem" in read) return read.unsure ? { formula: `= ${body}` } : read;
   const zero = read.value === 0 && sameDimension(read.dimension, PLAIN);
   if (!zero && !sameDimension(read.dimension, due)) {
     const [came, wanted] = [read.dimension, due].map(describeDimension);
-    return { problem: `the formula gives ${came}; ${wanted} is due` };
+    return { problem: `the formula gives ${came}; expected ${wanted}` };
   }
   return { formula: `= ${body}` };
 }
@@ -126,7 +126,7 @@ class Reader {
 
   private expect(token: string): void {
     const came = this.token ? `"${this.token}"` : "the end";
-    if (!this.took(token)) this.fail(`"${token}" is due where ${came} stands`);
+    if (!this.took(token)) this.fail(`expected "${token}", but ${came} stands there`);
   }
 
   private sum(): Amount {
@@ -178,7 +178,7 @@ class Reader {
       if (found === null) throw new Refusal(`"${token}" has no value at present`, true);
       return found ?? this.fail(`"${token}" is not a parameter`);
     }
-    return this.fail(token ? `a value is due where "${token}" stands` : "is not complete");
+    return this.fail(token ? `expected a value, but "${token}" stands there` : "is not complete");
   }
 
   private call(name: "min" | "max"): Amount {
@@ -211,7 +211,7 @@ class Reader {
     if (!this.took("^")) return name;
     const sign = this.took("-") ? "-" : "";
     const exponent = this.take();
-    if (!/^[1-9]$/.test(exponent)) this.fail("an exponent from 1 to 9 is due after ^");
+    if (!/^[1-9]$/.test(exponent)) this.fail("expected an exponent from 1 to 9 after ^");
     return `${name}^${sign}${exponent}`;
   }
 

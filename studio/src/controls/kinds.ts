@@ -1,36 +1,11 @@
 // Kinds of quantity as the design's schema and the studies name them ("length", "modulus", ...).
+import { KINDS as ALL } from "../protocol";
 import { type Dimension, PLAIN } from "./dimension";
 import { type Amounts, NO_PARAMETERS, writtenFormula } from "./formula";
 import { factorOf, formatNumber, formatQuantity, isOneNumber, parseQuantity } from "./units";
 import { unitOf } from "./unitTable";
 
-interface Kind {
-  /** The SI unit. */
-  readonly si: string;
-  /** What a bare number counts in, spelled as design files spell it. */
-  readonly written: string;
-}
-
-const KINDS: Readonly<Record<string, Kind>> = {
-  length: { si: "m", written: "mm" },
-  area: { si: "m^2", written: "mm^2" },
-  volume: { si: "m^3", written: "mL" },
-  pressure: { si: "Pa", written: "kPa" },
-  modulus: { si: "Pa", written: "kPa" },
-  density: { si: "kg/m^3", written: "kg/m^3" },
-  mass: { si: "kg", written: "g" },
-  force: { si: "N", written: "N" },
-  acceleration: { si: "m/s^2", written: "m/s^2" },
-  time: { si: "s", written: "s" },
-  rate: { si: "1/s", written: "1/s" },
-  speed: { si: "m/s", written: "m/s" },
-  angle: { si: "rad", written: "deg" },
-  stiffness: { si: "N/m", written: "N/m" },
-  compliance: { si: "m/N", written: "m/N" },
-  "volume compliance": { si: "m^3/Pa", written: "m^3/Pa" },
-  energy: { si: "J", written: "J" },
-  number: { si: "1", written: "" },
-};
+const KINDS: Readonly<Record<string, (typeof ALL)[keyof typeof ALL]>> = ALL;
 
 /** The SI unit of a kind; kinds that are not known here count as plain numbers. */
 export function siUnit(kind: string): string {

@@ -1,4 +1,5 @@
 // The units that this page reads. VoxSoft knows more; what is not known here is left to it.
+import { COMMON_UNITS as COMMON_TABLE } from "../protocol";
 import { type Dimension, PLAIN, timesDimension } from "./dimension";
 
 export interface Unit {
@@ -9,45 +10,14 @@ export interface Unit {
 
 const LENGTH: Dimension = [1, 0, 0, 0];
 const VOLUME: Dimension = [3, 0, 0, 0];
-const MASS: Dimension = [0, 1, 0, 0];
 const TIME: Dimension = [0, 0, 1, 0];
-const ANGLE: Dimension = [0, 0, 0, 1];
-const FORCE: Dimension = [1, 1, -2, 0];
 const PRESSURE: Dimension = [-1, 1, -2, 0];
 const ENERGY: Dimension = [2, 1, -2, 0];
-const RATE: Dimension = [0, 0, -1, 0];
 
 type Rows = Readonly<Record<string, readonly [number, Dimension]>>;
 
 /** Units of daily use; inside a formula only these may follow the / or * of another unit. */
-const COMMON: Rows = {
-  um: [1e-6, LENGTH],
-  mm: [1e-3, LENGTH],
-  cm: [1e-2, LENGTH],
-  m: [1, LENGTH],
-  inch: [0.0254, LENGTH],
-  mg: [1e-6, MASS],
-  g: [1e-3, MASS],
-  kg: [1, MASS],
-  ms: [1e-3, TIME],
-  s: [1, TIME],
-  mN: [1e-3, FORCE],
-  N: [1, FORCE],
-  kN: [1e3, FORCE],
-  Pa: [1, PRESSURE],
-  kPa: [1e3, PRESSURE],
-  MPa: [1e6, PRESSURE],
-  GPa: [1e9, PRESSURE],
-  bar: [1e5, PRESSURE],
-  psi: [6894.757293168361, PRESSURE],
-  mJ: [1e-3, ENERGY],
-  J: [1, ENERGY],
-  mL: [1e-6, VOLUME],
-  L: [1e-3, VOLUME],
-  deg: [Math.PI / 180, ANGLE],
-  rad: [1, ANGLE],
-  Hz: [1, RATE],
-};
+const COMMON: Rows = COMMON_TABLE;
 
 const OTHERS: Rows = {
   in: [0.0254, LENGTH],

@@ -50,7 +50,7 @@ export function parseQuantity(text: string, shown: string): Parsed {
   const zero = read.value === 0 && sameDimension(read.dimension, PLAIN);
   if (!zero && !sameDimension(read.dimension, own.dimension)) {
     const [came, due] = [read.dimension, own.dimension].map(describeDimension);
-    return { problem: `“${typed}” is ${came}; ${due} is due` };
+    return { problem: `“${typed}” is ${came}; expected ${due}` };
   }
   return read;
 }
@@ -89,6 +89,24 @@ export function formatNumber(value: number, digits = 4): string {
       ? value.toExponential(Math.max(digits - 2, 1)).replace(/\.?0+e/, "e")
       : String(Number(value.toPrecision(digits)));
   return text.replaceAll("-", "−").replace("e+", "e");
+}
+
+// What rounding leaves of zero, by SI unit: beside bodies of millimeters and grams it is nothing. Places
+// are rounded to 1e-16 of a body's size, strains in voxels of a hundredth of it to 1e-14, and stress to that
+// part of a bulk modulus, of rubber 100 MPa at most: 1e-6 Pa, a strain of 1e-11 where Young's modulus is
+// 100 kPa. Energy densities are rounded to 1e-16 of a modulus, of 10 MPa at most.
+const NOTHING: Readonly<Record<string, number>> = {
+  m: 1e-12,
+  N: 1e-9,
+  J: 1e-15,
+  Pa: 1e-6,
+  "J/m^3": 1e-9,
+  "m/s": 1e-12,
+};
+
+/** A value that was computed, with zero where only rounding is left of it. */
+export function cleaned(value: number, si: string): number {
+  return Math.abs(value) < (NOTHING[si] ?? 0) ? 0 : value;
 }
 
 /** An SI value as text with the unit that people read, such as `20 mm`. */

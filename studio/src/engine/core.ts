@@ -13,6 +13,8 @@ interface Exports {
   vx_vertices(run: number): number;
   vx_loads(run: number): number;
   vx_shown(run: number): number;
+  vx_implicit(run: number): number;
+  vx_prefer_step(run: number, seconds: number): void;
   vx_advance(run: number, substeps: number): number;
   vx_set_load(run: number, load: number, factor: number): number;
   vx_grab(
@@ -116,6 +118,8 @@ export class CoreRun {
   readonly notes: string;
   /** The body's vertex of each point of the surface. */
   readonly shown: Uint32Array;
+  /** Whether a step solves for its end and may be as long as the time between two frames. */
+  readonly implicit: boolean;
 
   /** @internal */
   constructor(
@@ -125,8 +129,14 @@ export class CoreRun {
   ) {
     this.vertices = exports.vx_vertices(run);
     this.loads = exports.vx_loads(run);
+    this.implicit = exports.vx_implicit(run) !== 0;
     this.notes = new TextDecoder().decode(core.answer(exports.vx_notes(run)));
     this.shown = new Uint32Array(core.answer(exports.vx_shown(run)));
+  }
+
+  /** Ask for steps of another length, s; explicit ones are as long as they can be. */
+  preferStep(seconds: number): void {
+    this.exports.vx_prefer_step(this.run, seconds);
   }
 
   /** Take substeps, fewer if the body comes to rest or diverges. */

@@ -16,6 +16,8 @@ export interface Link {
   readonly attempt: number;
   readonly retryAt: number | null;
   readonly reason: string;
+  /** Whether a new load of the page helps where it was refused; else its address is not good. */
+  readonly reload?: boolean;
 }
 
 export interface EngineListener {

@@ -1,7 +1,5 @@
 // Binary messages of the engine: a 64-byte header, then arrays that go to the GPU as they are.
-
-const MAGIC = 0x31465856; // "VXF1", little-endian
-const HEADER = 64;
+import { FrameFlag, HEADER, MAGIC, MessageKind, TopologyFlag } from "../protocol";
 
 export type Triple = readonly [number, number, number];
 
@@ -17,7 +15,7 @@ export interface Topology {
   readonly triangles: Uint32Array;
   /** Edges of voxels, without face diagonals. */
   readonly edges: Uint32Array;
-  /** Of each triangle the part's index, or 128 + the cavity's index. */
+  /** Of each triangle the part's index, or CAVITY + the cavity's index. */
   readonly owners: Uint8Array;
 }
 
@@ -47,6 +45,8 @@ export interface Smooth {
   readonly topology: number;
   readonly vertices: Float32Array;
   readonly triangles: Uint32Array;
+  /** Of each triangle the part's index. */
+  readonly owners: Uint8Array;
 }
 
 export class FrameError extends Error {}
@@ -57,9 +57,9 @@ export function decode(buffer: ArrayBuffer): Topology | Frame | Smooth {
   const view = new DataView(buffer);
   if (view.getUint32(0, true) !== MAGIC) throw new FrameError("not a message of VoxSoft");
   const kind = view.getUint8(4);
-  if (kind === 1) return topology(buffer, view);
-  if (kind === 2) return frame(buffer, view);
-  if (kind === 3) return smooth(buffer, view);
+  if (kind === MessageKind.TOPOLOGY) return topology(buffer, view);
+  if (kind === MessageKind.FRAME) return frame(buffer, view);
+  if (kind === MessageKind.SMOOTH) return smooth(buffer, view);
   throw new FrameError(`unknown kind ${kind}`);
 }
 
@@ -94,7 +94,7 @@ function topology(buffer: ArrayBuffer, view: DataView): Topology {
   return {
     kind: "topology",
     id: view.getUint32(8, true),
-    tets: (view.getUint8(5) & 2) !== 0,
+    tets: (view.getUint8(5) & TopologyFlag.SHRUNK_TETS) !== 0,
     voxelSize: view.getFloat64(16, true),
     rest: new Float32Array(buffer, HEADER, 3 * n),
     triangles: new Uint32Array(buffer, trianglesAt, 3 * t),
@@ -114,9 +114,9 @@ function frame(buffer: ArrayBuffer, view: DataView): Frame {
     time: view.getFloat64(16, true),
     seq: view.getUint32(28, true),
     field: view.getUint16(6, true),
-    paused: (flags & 1) !== 0,
-    diverged: (flags & 2) !== 0,
-    atRest: (flags & 4) !== 0,
+    paused: (flags & FrameFlag.PAUSED) !== 0,
+    diverged: (flags & FrameFlag.DIVERGED) !== 0,
+    atRest: (flags & FrameFlag.AT_REST) !== 0,
     origin: triple(view, 32),
     scale: triple(view, 44),
     min: view.getFloat32(56, true),
@@ -128,12 +128,13 @@ function frame(buffer: ArrayBuffer, view: DataView): Frame {
 function smooth(buffer: ArrayBuffer, view: DataView): Smooth {
   const n = view.getUint32(24, true);
   const t = view.getUint32(28, true);
-  need(buffer, HEADER + 12 * n + 12 * t);
+  need(buffer, HEADER + 12 * n + 13 * t);
   return {
     kind: "smooth",
     topology: view.getUint32(8, true),
     vertices: new Float32Array(buffer, HEADER, 3 * n),
     triangles: new Uint32Array(buffer, HEADER + 12 * n, 3 * t),
+    owners: new Uint8Array(buffer, HEADER + 12 * n + 12 * t, t),
   };
 }
 

@@ -1,8 +1,6 @@
 // How fast time is shown: as fast as the clock, or so slow that a stiff body is seen to move.
 // The same choice as in pace.py of the server.
-
-/** What can be chosen: simulated seconds for each second of the clock. */
-export const PACES = [1, 1 / 2, 1 / 5, 1 / 10, 1 / 50, 1 / 200] as const;
+import { PACES } from "../protocol";
 
 /** A motion that lasts less than this on the screen is hardly seen, s. */
 const SEEN = 1;
@@ -11,7 +9,7 @@ const SPAN = 1000;
 
 /** The fastest pace at which a motion of some seconds lasts long enough to be seen. */
 export function paceFor(seconds: number): number {
-  return PACES.find((pace) => seconds / pace >= SEEN) ?? 1 / 200;
+  return PACES.find((pace) => seconds / pace >= SEEN) ?? (PACES.at(-1) as number);
 }
 
 /** "1×" for real time, "1/50" for fifty times slower. */

@@ -1,7 +1,8 @@
 // A scene that plays without a server: what the native session does, over the core in the page.
-// Nothing here knows whether it runs in a worker; time is handed in.
-import type { AnyEvent, BodyEvent, Field, GrabState, StatEvent } from "../protocol";
-import { PROTOCOL } from "../protocol";
+// Nothing here knows whether it runs in a worker; time is handed in. Long because it is one state with a
+// method for each command of the page.
+import type { AnyEvent, BodyEvent, Field, GrabState, OverlapEvent, StatEvent } from "../protocol";
+import { CREDITS, FrameFlag, PROTOCOL } from "../protocol";
 import { bytesOf } from "./base64";
 import type { CoreLook, CoreRun } from "./core";
 import type { Draft } from "./engine";
@@ -12,6 +13,8 @@ export type Run = Pick<
   CoreRun,
   | "notes"
   | "shown"
+  | "implicit"
+  | "preferStep"
   | "advance"
   | "setLoad"
   | "grab"
@@ -34,6 +37,8 @@ export interface Notes {
   readonly body: BodyEvent;
   /** Where the vertices are shown first: m, float64 in base64; null or absent: unloaded. */
   readonly positions?: string | null;
+  /** Where the body is in itself there. */
+  readonly overlap?: OverlapEvent | null;
 }
 
 export interface Audience {
@@ -41,17 +46,14 @@ export interface Audience {
   binary(message: ArrayBuffer): void;
 }
 
-// Flags of a frame.
-const PAUSED = 1;
-const DIVERGED = 2;
-const AT_REST = 4;
-const CREDITS = 2;
 /** Wall-clock time that one turn may take, ms: the rest belongs to drawing and input. */
 const TURN = 12;
 const TELL_EVERY = 100;
-/** How far a motion is looked ahead: seconds of it, and vertices times substeps. */
+/** How far a motion is looked ahead: seconds of it, and vertices times substeps, explicit and implicit ones. */
 const LONGEST_LOOK = 1;
-const MOST_WORK = 1_000_000;
+const MOST_WORK = { explicit: 1_000_000, implicit: 4_000 };
+/** The longest step of an implicit run: the time between two frames, s. */
+const FRAME = 1 / 60;
 const MOST_STORED = 64 * 1024 * 1024;
 
 export class Player {
@@ -79,6 +81,7 @@ export class Player {
   private probed: number[] = [];
   private rows: (number | null)[][] = [];
   private lastTold = -Infinity;
+  private overlapForgotten = false;
   private lastTurn: number | null = null;
   private readonly pace = new Pace();
   private readonly realTime = new RealTimeFactor();
@@ -123,6 +126,7 @@ export class Player {
       text: notes.text,
       name: notes.name,
       path: null,
+      folder: "",
       dirty: false,
       valid: true,
       parameters: [],
@@ -134,6 +138,7 @@ export class Player {
     });
     this.audience.event({ ...notes.body, smooth: false });
     this.audience.binary(this.run.topology(notes.body.topology));
+    if (notes.overlap && this.frame === 0) this.audience.event(notes.overlap);
     this.audience.event({ t: "log", level: "info", text: notes.sentence });
     this.tell();
   }
@@ -233,7 +238,8 @@ export class Player {
   private lookAhead(): void {
     if (this.look.time > 0 || this.grabs.size > 0) return;
     this.run.reset(); // a result that is shown first stands at time zero too
-    const work = Math.floor(MOST_WORK / Math.max(1, this.rest.length / 3));
+    const most = this.run.implicit ? MOST_WORK.implicit : MOST_WORK.explicit;
+    const work = Math.floor(most / Math.max(1, this.rest.length / 3));
     const look = this.run.advance(Math.min(work, Math.round(LONGEST_LOOK / this.look.substep)));
     this.run.reset();
     this.look = this.run.advance(0);
@@ -242,14 +248,16 @@ export class Player {
 
   /** Take the substeps of a time at the pace in force, as far as the clock allows. */
   private step(seconds: number, until: number, least = 0): void {
-    this.due = Math.max(least, this.due + (seconds * this.pace.factor) / this.look.substep);
+    if (this.run.implicit) this.run.preferStep(FRAME * this.pace.factor);
+    const length = this.run.implicit ? FRAME * this.pace.factor : this.look.substep;
+    this.due = Math.max(least, this.due + (seconds * this.pace.factor) / length);
     const wanted = Math.floor(this.due);
     if (wanted === 0) return; // in slow motion the next one is not due yet
     this.due -= wanted;
     const start = performance.now();
     let taken = 0;
     while (taken < wanted && (taken === 0 || performance.now() < until)) {
-      const count = Math.min(8, wanted - taken);
+      const count = this.run.implicit ? 1 : Math.min(8, wanted - taken);
       this.look = this.run.advance(count);
       taken += count;
       if (this.look.status !== "moving") break;
@@ -289,9 +297,9 @@ export class Player {
     const { topology } = this.notes.body;
     const { status } = this.look;
     const flags =
-      (this.playing ? 0 : PAUSED) |
-      (status === "diverged" ? DIVERGED : 0) |
-      (status === "at-rest" ? AT_REST : 0);
+      (this.playing ? 0 : FrameFlag.PAUSED) |
+      (status === "diverged" ? FrameFlag.DIVERGED : 0) |
+      (status === "at-rest" ? FrameFlag.AT_REST : 0);
     return this.run.frame(topology, this.frame, field, this.seq, flags);
   }
 
@@ -334,7 +342,7 @@ export class Player {
     const now = { positions: this.run.positions(), time: this.look.time };
     this.run.seek(old.positions, old.time);
     const { topology } = this.notes.body;
-    const packed = this.run.frame(topology, old.frame, this.field, this.seq, PAUSED);
+    const packed = this.run.frame(topology, old.frame, this.field, this.seq, FrameFlag.PAUSED);
     this.run.seek(now.positions, now.time);
     return packed;
   }
@@ -427,7 +435,16 @@ export class Player {
     this.rows = [];
   }
 
+  // What is known of overlaps is of the shape that is shown first alone.
+  private forgetOverlap(): void {
+    const { overlap } = this.notes;
+    if (!overlap || this.overlapForgotten || this.frame === 0) return;
+    this.overlapForgotten = true;
+    this.audience.event({ ...overlap, depth: 0, sentence: "", places: [] });
+  }
+
   private tell(): void {
+    this.forgetOverlap();
     if (this.rows.length > 0) this.tellPlot();
     this.audience.event(this.stat());
   }

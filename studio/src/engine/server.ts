@@ -1,15 +1,14 @@
 // The native core behind a websocket. Lost connections are opened again with growing pauses;
 // edits made meanwhile are kept and sent on the revision that the server then has.
 import type { AnyCommand, AnyEvent, EditCommand, TextCommand } from "../protocol";
-import { PROTOCOL } from "../protocol";
+import { CloseCode, PROTOCOL } from "../protocol";
 import type { Draft, Engine, EngineListener, Link } from "./engine";
 import { decode } from "./frames";
 
 const FIRST_PAUSE = 250;
 const LONGEST_PAUSE = 4000;
-// Codes of the server: the handshake was refused, or page and server disagree on the protocol.
-const POLICY = 1008;
-const PROTOCOL_MISMATCH = 4001;
+// Codes after which to come back would end the same way.
+const FINAL: readonly number[] = [CloseCode.OTHER_PROTOCOL, CloseCode.WRONG_MESSAGES];
 
 type Unsent = Omit<TextCommand, "seq"> | Omit<EditCommand, "seq">;
 
@@ -33,6 +32,7 @@ export class ServerEngine implements Engine {
   private timer: ReturnType<typeof setTimeout> | null = null;
   private unsent: Unsent[] = [];
   private greeted = false;
+  private opened = false;
 
   constructor(private readonly address: string) {}
 
@@ -77,8 +77,9 @@ export class ServerEngine implements Engine {
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     this.socket = socket;
-    this.greeted = false;
+    this.greeted = this.opened = false;
     socket.onopen = () => {
+      this.opened = true;
       this.send({ t: "hello", protocol: PROTOCOL, version: "studio" });
     };
     socket.onmessage = (message: MessageEvent<string | ArrayBuffer>) => {
@@ -111,15 +112,33 @@ export class ServerEngine implements Engine {
 
   private closed(socket: WebSocket, event: CloseEvent): void {
     if (socket !== this.socket || this.listener === null) return;
+    const opened = this.opened;
     this.socket = null;
-    this.greeted = false;
-    if (event.code === POLICY || event.code === PROTOCOL_MISMATCH) {
-      this.report({ state: "refused", retryAt: null, reason: event.reason });
+    this.greeted = this.opened = false;
+    if (FINAL.includes(event.code)) {
+      this.report({ state: "refused", retryAt: null, reason: event.reason, reload: true });
       return;
     }
+    this.comeBack(event.reason);
+    // A browser does not tell why a websocket could not be opened: a request for the page does.
+    if (!opened) void this.askWhy();
+  }
+
+  private comeBack(reason: string): void {
     const pause = pauseBefore(Math.max(1, this.attempt));
-    this.report({ state: "lost", retryAt: Date.now() + pause, reason: event.reason });
+    this.report({ state: "lost", retryAt: Date.now() + pause, reason });
     this.timer = setTimeout(() => this.open(), pause);
+  }
+
+  private async askWhy(): Promise<void> {
+    const reply = await fetch("/", { cache: "no-store" }).catch(() => null);
+    if (reply?.status !== 403 || this.listener === null || this.socket?.readyState === 1) return;
+    const said = (await reply.json().catch(() => null)) as { what?: string } | null;
+    if (this.timer !== null) clearTimeout(this.timer);
+    this.timer = null;
+    this.socket?.close();
+    this.socket = null;
+    this.report({ state: "refused", retryAt: null, reason: said?.what ?? "", reload: false });
   }
 
   private report(link: Omit<Link, "attempt">): void {

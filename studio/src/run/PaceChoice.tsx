@@ -1,5 +1,6 @@
 import { Select } from "../controls/Choice";
-import { PACES, paceName } from "../engine/pace";
+import { paceName } from "../engine/pace";
+import { PACES } from "../protocol";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 

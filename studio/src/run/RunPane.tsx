@@ -1,18 +1,21 @@
 import { Button, Empty, Progress, Section, Select } from "../controls/Choice";
 import { NumberField } from "../controls/NumberField";
 import { factorOf, formatEnergy, formatNumber, formatQuantity } from "../controls/units";
-import type { BodyLoad } from "../protocol";
+import type { BodyLoad, SolverCommand } from "../protocol";
 import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
 import { viewport } from "../view/instance";
+import { useOverlap } from "../view/overlap";
+import { EquilibriumCard, useEquilibrium } from "./EquilibriumCard";
 import "./run.css";
 
-const METHODS = [
-  { value: "auto", label: "Automatic" },
-  { value: "statics", label: "Statics (Newton)" },
-  { value: "xpbd", label: "XPBD (relaxation)" },
-];
+const METHOD_TITLES: Readonly<Record<SolverCommand["method"], string>> = {
+  auto: "Automatic",
+  statics: "Statics (Newton)",
+  xpbd: "XPBD (relaxation)",
+};
+const METHODS = Object.entries(METHOD_TITLES).map(([value, label]) => ({ value, label }));
 
 /** The simulation by hand: loads, pulls, solver, and where it stands. */
 export default function RunPane() {
@@ -29,6 +32,7 @@ export default function RunPane() {
   return (
     <div className="pane">
       <State />
+      <EquilibriumCard />
       <Section title="Loads">
         {body.loads.length === 0 && (
           <p className="muted">The design has no loads; pull on the body instead.</p>
@@ -45,6 +49,8 @@ export default function RunPane() {
 
 function State() {
   const stat = useStudio((state) => state.stat);
+  const overlaps = useOverlap() !== null;
+  const doubtful = (useEquilibrium()?.warnings.length ?? 0) > 0 || overlaps;
   if (!stat) return null;
   const facts: [string, string][] = [
     ["Real time", stat.state === "playing" ? `${formatNumber(stat.real_time_factor, 2)} ×` : "–"],
@@ -56,7 +62,9 @@ function State() {
   ];
   return (
     <Section title="State">
-      <p className={`run-sentence is-${stat.state}`}>{stat.sentence}</p>
+      <p className={`run-sentence is-${stat.state}${doubtful ? " is-doubtful" : ""}`}>
+        {stat.sentence}
+      </p>
       {stat.progress !== null && <Progress label="Solving" done={stat.progress} total={1} />}
       <dl className="facts">
         {facts.map(([name, value]) => (
@@ -139,21 +147,26 @@ function Pulls() {
 
 function Solver() {
   const solver = useStudio((state) => state.stat?.solver ?? "auto");
+  const solving = useStudio((state) => state.stat?.state === "solving");
   return (
-    <Section title="State at rest">
+    <Section title="Equilibrium">
       <Select
         label="Solver"
         value={solver}
         options={METHODS}
-        onChange={(method) => send({ t: "solver", method: method as "auto" | "statics" | "xpbd" })}
+        onChange={(method) => send({ t: "solver", method: method as SolverCommand["method"] })}
       />
       <div className="run-buttons">
-        <Button kind="primary" onClick={() => send({ t: "rest" })}>
-          Solve for rest
-        </Button>
-        <Button onClick={() => send({ t: "job_start", spec: { kind: "run" } })}>
-          Keep as a run
-        </Button>
+        {solving ? (
+          <Button kind="primary" onClick={() => send({ t: "pause" })}>
+            Cancel
+          </Button>
+        ) : (
+          <Button kind="primary" onClick={() => send({ t: "rest" })}>
+            Solve
+          </Button>
+        )}
+        <Button onClick={() => send({ t: "keep" })}>Keep as a run</Button>
       </div>
     </Section>
   );

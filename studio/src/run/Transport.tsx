@@ -1,5 +1,5 @@
 import { useEffect, useRef } from "react";
-import { Button } from "../controls/Choice";
+import { Button, Progress } from "../controls/Choice";
 import { stepFrames, togglePlay } from "../shell/actions";
 import { Icon } from "../shell/icons";
 import { currentEngine, send } from "../store/session";
@@ -66,16 +66,27 @@ export function Transport() {
       >
         <Icon name="reset" />
       </Button>
-      {currentEngine()?.kind === "server" && (
+      {currentEngine()?.kind === "server" && !solving && (
         <Button
           kind="quiet"
-          label="Solve for the state at rest (R)"
+          label="Solve for the equilibrium under these loads (R)"
           testId="rest"
-          disabled={solving}
           onClick={() => send({ t: "rest" })}
         >
-          <Icon name="rest" /> Rest
+          <Icon name="rest" /> Solve
         </Button>
+      )}
+      {solving && (
+        <span className="solving">
+          <Button
+            label="Cancel: the body stays as it is (Esc)"
+            testId="cancel"
+            onClick={() => send({ t: "pause" })}
+          >
+            Cancel
+          </Button>
+          <Progress label="Solving" done={stat?.progress ?? 0} total={1} />
+        </span>
       )}
       <PaceChoice />
       <input
@@ -92,7 +103,7 @@ export function Transport() {
       />
       <button
         type="button"
-        className={`live${past ? "" : " on"}`}
+        className={`live${playing ? " on" : ""}`}
         data-testid="live"
         aria-pressed={!past}
         title="Back to the present (L)"

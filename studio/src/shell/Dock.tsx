@@ -8,11 +8,11 @@ import {
   type SerializedDockview,
 } from "dockview-react";
 import "dockview-react/dist/styles/dockview.css";
-import { Component, type ReactNode, Suspense, useCallback, useEffect, useRef } from "react";
-import { Empty } from "../controls/Choice";
+import { Suspense, useCallback, useEffect, useRef } from "react";
 import { PANES, paneById } from "../panes/registry";
-import { keepAs, kept, type Mode, usePage } from "../store/page";
-import { add, build } from "./layouts";
+import { keepAs, kept, MODES, type Mode, usePage } from "../store/page";
+import { PaneFence } from "./Fence";
+import { add, build, holdsViews } from "./layouts";
 import "./dock.css";
 
 // Grows when the default layouts change, so that a kept layout of old does not hide new panes.
@@ -47,6 +47,12 @@ export function resetLayout(): void {
   if (dock) fill(dock, mode);
 }
 
+/** Forget the kept layouts of all modes: the next load builds their defaults. */
+export function forgetLayouts(): void {
+  dock = null; // what is on the page must not be kept again as it goes
+  for (const mode of MODES) keepAs(keyOf(mode), {});
+}
+
 export function maximizePane(id: string): void {
   const panel = dock?.getPanel(id);
   if (!panel) return;
@@ -60,11 +66,9 @@ function fill(api: DockviewApi, mode: Mode): void {
   filling = true;
   const saved = kept<KeptLayout>(keyOf(mode));
   try {
-    if (saved.layout && saved.edition === EDITION && saved.panes === knownPanes()) {
-      api.fromJSON(saved.layout);
-      return;
-    }
-    throw new Error("no layout kept");
+    const current = saved.edition === EDITION && saved.panes === knownPanes();
+    if (!current || !holdsViews(saved.layout)) throw new Error("no layout kept");
+    api.fromJSON(saved.layout);
   } catch {
     api.clear();
     build(api, mode, api.width, api.height);
@@ -79,34 +83,13 @@ function Pane(props: IDockviewPanelProps) {
   const Content = pane.component;
   return (
     <section className="pane-host" data-testid={`pane-${pane.id}`} aria-label={pane.title}>
-      <Fence title={pane.title}>
+      <PaneFence title={pane.title}>
         <Suspense fallback={null}>
           <Content />
         </Suspense>
-      </Fence>
+      </PaneFence>
     </section>
   );
-}
-
-/** A pane that fails says so and leaves the others alone. */
-class Fence extends Component<{ title: string; children: ReactNode }, { error: Error | null }> {
-  override state = { error: null as Error | null };
-
-  static getDerivedStateFromError(error: Error) {
-    return { error };
-  }
-
-  override render() {
-    if (!this.state.error) return this.props.children;
-    return (
-      <Empty title={`${this.props.title} stopped working`}>
-        <p>{this.state.error.message}</p>
-        <button type="button" className="button" onClick={() => this.setState({ error: null })}>
-          Try again
-        </button>
-      </Empty>
-    );
-  }
 }
 
 function Tab(props: IDockviewPanelHeaderProps) {
@@ -120,8 +103,16 @@ export function Dock() {
   const mode = usePage((page) => page.mode);
   const shown = useRef(mode);
   const save = useCallback(() => {
-    if (!dock || filling || dock.totalPanels === 0) return;
-    keepAs(keyOf(shown.current), { edition: EDITION, panes: knownPanes(), layout: dock.toJSON() });
+    if (!dock || filling) return;
+    const layout = dock.toJSON();
+    // While the page goes its groups are emptied one by one: that is nothing to come back to.
+    if (!holdsViews(layout)) return;
+    keepAs(keyOf(shown.current), { edition: EDITION, panes: knownPanes(), layout });
+  }, []);
+  useEffect(() => {
+    return () => {
+      dock = null;
+    };
   }, []);
 
   useEffect(() => {

@@ -1,8 +1,8 @@
 import { useEffect, useState } from "react";
+import { LARGEST_UPLOAD } from "../protocol";
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
 
-const MOST = 64 * 1024 * 1024;
 const TAKEN = [".toml", ".stl", ".obj", ".npy", ".zip"];
 
 /** Send a file to the server and open it; tables of measurements are taken by their own pane. */
@@ -16,10 +16,10 @@ export async function upload(file: File): Promise<void> {
     });
     return;
   }
-  if (file.size > MOST) {
+  if (file.size > LARGEST_UPLOAD) {
     toast({
       level: "error",
-      what: `${file.name} has ${Math.round(file.size / 1e6)} MB; at most 64 MB can be sent`,
+      what: `${file.name} has ${Math.round(file.size / 1e6)} MB; at most ${Math.round(LARGEST_UPLOAD / 2 ** 20)} MB can be sent`,
       hint: "Start the studio with it instead: voxsoft studio FILE.",
     });
     return;

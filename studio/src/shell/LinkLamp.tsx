@@ -1,4 +1,5 @@
 import { useEffect, useState } from "react";
+import { Button } from "../controls/Choice";
 import { useStudio } from "../store/studio";
 
 /** Whether the engine answers, in words: color alone tells nobody anything. */
@@ -41,8 +42,14 @@ export function LinkBand() {
     <div className="band" role="alert" data-testid="disconnected">
       {link.state === "refused" ? (
         <>
-          <b>VoxSoft refused this page.</b> {link.reason || "Its address has no valid token."} Open
-          the address that <code>voxsoft studio</code> printed last.
+          <b>VoxSoft refused this page:</b> {link.reason || "its address has no valid token"}.{" "}
+          {link.reload ? (
+            <Button onClick={() => location.reload()}>Reload the page</Button>
+          ) : (
+            <>
+              Open the address that <code>voxsoft studio</code> printed last.
+            </>
+          )}
         </>
       ) : (
         <>

@@ -2,11 +2,12 @@
 import { useEffect, useMemo, useRef, useState } from "react";
 import { Button } from "../controls/Choice";
 import { openSheet, setMode, usePage } from "../store/page";
-import { dismiss, useStudio } from "../store/studio";
 import { useView } from "../store/view";
 import { SCHEMES, schemeWords } from "../view/schemes";
 import { type Action, actions } from "./actions";
 import { Icon } from "./icons";
+import { DiscardSheet, SaveSheet } from "./SaveSheet";
+import { Toasts } from "./Toasts";
 import { STEPS, tourSeen } from "./tour";
 
 export function Sheets() {
@@ -26,6 +27,16 @@ export function Sheets() {
       {sheet === "palette" && <Palette />}
       {sheet === "shortcuts" && <Shortcuts />}
       {sheet === "tour" && <Tour />}
+      {sheet === "save" && (
+        <Scrim label="Save the design as" testId="save-sheet">
+          <SaveSheet />
+        </Scrim>
+      )}
+      {sheet === "discard" && (
+        <Scrim label="Changes that were not saved" testId="discard-sheet">
+          <DiscardSheet />
+        </Scrim>
+      )}
       <Toasts />
     </>
   );
@@ -203,7 +214,7 @@ function Shortcuts() {
 function Tour() {
   const [at, setAt] = useState(0);
   const step = STEPS[at];
-  useEffect(() => tourSeen(), []);
+  useEffect(tourSeen, []);
   useEffect(() => {
     if (step?.mode) setMode(step.mode);
   }, [step]);
@@ -232,34 +243,5 @@ function Tour() {
         </span>
       </div>
     </aside>
-  );
-}
-
-function Toasts() {
-  const toasts = useStudio((state) => state.toasts);
-  return (
-    <div className="toasts" aria-live="polite">
-      {toasts.map((toast) => (
-        <div key={toast.id} className={`toast ${toast.level}`} data-testid="toast">
-          <div>
-            <strong>{toast.what}</strong>
-            {toast.hint && <p>{toast.hint}</p>}
-          </div>
-          {toast.action && (
-            <Button
-              onClick={() => {
-                toast.action?.run();
-                dismiss(toast.id);
-              }}
-            >
-              {toast.action.label}
-            </Button>
-          )}
-          <Button icon kind="quiet" label="Close" onClick={() => dismiss(toast.id)}>
-            <Icon name="close" />
-          </Button>
-        </div>
-      ))}
-    </div>
   );
 }

@@ -1,22 +1,38 @@
-import { formatNumber, formatQuantity } from "../controls/units";
+import { formatKind } from "../controls/kinds";
+import { formatNumber } from "../controls/units";
+import { useEquilibrium } from "../run/EquilibriumCard";
 import { useStudio } from "../store/studio";
+import { useOverlap } from "../view/overlap";
+import { showPane } from "./actions";
 
 export function StatusLine() {
   const stat = useStudio((state) => state.stat);
   const body = useStudio((state) => state.body);
   const version = useStudio((state) => state.hello?.version);
+  const doubts = useEquilibrium()?.warnings.length ?? 0;
+  const overlaps = useOverlap() !== null;
   const running = useStudio(
     (state) => Object.values(state.jobs).filter((job) => job.state === "running").length,
   );
   return (
     <footer className="status-line" data-testid="status-line">
       <span
-        className={`sentence is-${stat?.state ?? "empty"}`}
+        className={`sentence is-${stat?.state ?? "empty"}${doubts > 0 || overlaps ? " is-doubtful" : ""}`}
         data-testid="sentence"
         aria-live="polite"
       >
         {stat?.sentence || idle(stat?.state, body !== null)}
       </span>
+      {doubts > 0 && (
+        <button
+          type="button"
+          className="badge warn"
+          data-testid="doubts"
+          onClick={() => showPane("run")}
+        >
+          {doubts === 1 ? "1 warning" : `${doubts} warnings`}
+        </button>
+      )}
       {running > 0 && (
         <span className="badge good">{running === 1 ? "1 job runs" : `${running} jobs run`}</span>
       )}
@@ -24,7 +40,7 @@ export function StatusLine() {
         <>
           <span>{body.voxels.toLocaleString("en")} voxels</span>
           <span>{body.tets.toLocaleString("en")} tets</span>
-          <span>{formatQuantity(body.mass, "kg", 3)}</span>
+          <span>{formatKind(body.mass, "mass", 3)}</span>
         </>
       )}
       {stat && stat.state === "playing" && (

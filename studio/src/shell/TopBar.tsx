@@ -34,12 +34,13 @@ export function TopBar() {
       <div
         className="document-name"
         data-testid="document-name"
-        title={document?.path ?? undefined}
+        title={document?.path ?? (document && `would be saved in ${document.folder}`) ?? undefined}
       >
         {document ? (
           <>
             <strong>{document.name || "untitled"}</strong>
             {document.dirty && <span className="muted">edited</span>}
+            {!document.dirty && !document.path && <span className="muted">not saved yet</span>}
             {!document.valid && <span className="badge bad">has errors</span>}
           </>
         ) : (

@@ -1,7 +1,15 @@
 // Every action with a name: the palette lists them, keys start them, the help sheet shows them.
 
 import { nextPace } from "../engine/pace";
-import { MODE_TITLES, MODES, openSheet, setMode, type ThemeChoice, usePage } from "../store/page";
+import {
+  MODE_TITLES,
+  MODES,
+  openSheet,
+  type Pending,
+  setMode,
+  type ThemeChoice,
+  usePage,
+} from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 
@@ -73,17 +81,20 @@ export function setTheme(theme: ThemeChoice): void {
 export function save(): void {
   const document = useStudio.getState().document;
   if (!document) return;
-  if (document.path) {
-    send({ t: "save" });
-    return;
-  }
-  const path = prompt("Save the design as", `${document.name || "design"}.toml`);
-  if (path) send({ t: "save", path });
+  if (document.path) send({ t: "save" });
+  else openSheet("save");
 }
 
 function simple(): Action[] {
   return [
     { id: "save", title: "Save the design", group: "Document", keys: ["Ctrl+S"], run: save },
+    {
+      id: "save-as",
+      title: "Save the design as…",
+      group: "Document",
+      keys: ["Ctrl+Shift+S"],
+      run: () => useStudio.getState().document && openSheet("save"),
+    },
     {
       id: "undo",
       title: "Undo",
@@ -163,10 +174,17 @@ function simple(): Action[] {
     },
     {
       id: "rest",
-      title: "Solve for the state at rest",
+      title: "Solve for the equilibrium",
       group: "Simulation",
       keys: ["r"],
       run: () => send({ t: "rest" }),
+    },
+    {
+      id: "cancel",
+      title: "Cancel solving",
+      group: "Simulation",
+      keys: ["Escape"],
+      run: () => useStudio.getState().stat?.state === "solving" && send({ t: "pause" }),
     },
     {
       id: "palette",
@@ -238,14 +256,17 @@ export function actions(): Action[] {
   return [...simple(), ...viewActions, ...modes, ...panes, ...templates];
 }
 
-type OpenDraft = {
-  t: "open";
-  what: "file" | "run" | "template" | "trial" | "upload";
-  name: string;
-};
+/** Open a document; where it takes the place of edited work, that is asked first. */
+export function openDocument(draft: Pending): void {
+  const edited = useStudio.getState().document?.dirty ?? false;
+  // Runs and designs of studies are looked at one after the other: undo leads back from those.
+  const asks = draft.what === "template" || draft.what === "file" || draft.what === "upload";
+  if (edited && asks) openSheet("discard", draft);
+  else openNow(draft);
+}
 
-/** Open a document. Nothing is asked: undo brings back what was not saved of the one before. */
-export function openDocument(draft: OpenDraft): void {
+/** Open a document without asking. */
+export function openNow(draft: Pending): void {
   send(draft);
 }
 
@@ -290,7 +311,7 @@ export function listenForKeys(): () => void {
   const onKey = (event: KeyboardEvent) => {
     const name = keyName(event);
     const owned = ownsKey(event.target, event.key);
-    const global = name === "Ctrl+K" || name === "Ctrl+S" || name === "Ctrl+Shift+P";
+    const global = ["Ctrl+K", "Ctrl+S", "Ctrl+Shift+S", "Ctrl+Shift+P"].includes(name);
     if (owned && !global) return;
     if (usePage.getState().sheet !== null && !global) return;
     const action = actions().find((one) => one.keys?.includes(name));

@@ -1,5 +1,5 @@
 // The five modes are layouts of the same panes around the same view; the model stays loaded.
-import type { DockviewApi } from "dockview-react";
+import type { DockviewApi, SerializedDockview } from "dockview-react";
 import { paneById } from "../panes/registry";
 import type { Mode } from "../store/page";
 
@@ -55,6 +55,23 @@ export const LAYOUTS: Readonly<Record<Mode, Layout>> = {
 
 // Below this width there is no column at the right.
 const NARROW = 1400;
+
+/** A node of a kept layout: a group with its panes, or nodes beside each other. */
+type KeptNode = SerializedDockview["grid"]["root"];
+
+/** Whether a kept layout has panes in its groups: one without would show an empty page. */
+export function holdsViews(layout: SerializedDockview | undefined): layout is SerializedDockview {
+  const shown = (node: KeptNode | undefined): string[] => {
+    if (!node) return [];
+    const { data } = node;
+    return Array.isArray(data) ? data.flatMap(shown) : (data?.views ?? []);
+  };
+  try {
+    return shown(layout?.grid?.root).some((id) => layout?.panels?.[id] !== undefined);
+  } catch {
+    return false; // what is kept is no layout at all
+  }
+}
 
 /** Leave out panes that are not there, and groups that are then empty. */
 export function present(groups: readonly Tabs[]): string[][] {

@@ -19,7 +19,7 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: "Let it move, and pull on it",
-    text: "Space starts and stops time. Every load has a slider that works while time runs. Press on the body and drag: a spring pulls at that vertex, and its force is shown. R solves for the state at rest.",
+    text: "Space starts and stops time. Every load has a slider that works while time runs. Press on the body and drag: a spring pulls at that vertex, and its force is shown. R solves for the equilibrium and gives its numbers.",
     mode: "simulate",
   },
   {
@@ -29,7 +29,7 @@ export const STEPS: readonly Step[] = [
   },
   {
     title: "Let it search, and take the result away",
-    text: "Choose parameters, goals and a budget; click any point of a plot to open that design. It goes on when the page is closed, and Runs keeps all of it. Export gives STL, VTU, CSV, pictures, or one page that is alive without VoxSoft.",
+    text: "Choose parameters, goals and a budget; click any point of a plot to open that design. It goes on when the page is closed, and Runs keeps all of it. Export gives STL, VTU, CSV, pictures, or a live page that needs no VoxSoft.",
     mode: "optimize",
   },
 ];

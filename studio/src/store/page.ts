@@ -1,6 +1,7 @@
 // What belongs to this page alone: mode, theme, open sheets. Kept between visits; the mode
 // stands in the address, so that a reload or a copied address shows the same.
 import { create } from "zustand";
+import type { OpenCommand } from "../protocol";
 import { finishTyping } from "./typing";
 
 export const MODES = ["design", "simulate", "calibrate", "optimize", "runs"] as const;
@@ -15,12 +16,16 @@ export const MODE_TITLES: Readonly<Record<Mode, string>> = {
 };
 
 export type ThemeChoice = "system" | "dark" | "light";
-export type Sheet = "palette" | "shortcuts" | "tour" | null;
+export type Sheet = "palette" | "shortcuts" | "tour" | "save" | "discard" | null;
+
+/** What is to be opened once the open design has been saved or given up. */
+export type Pending = Pick<OpenCommand, "t" | "what" | "name">;
 
 export interface Page {
   mode: Mode;
   theme: ThemeChoice;
   sheet: Sheet;
+  pending: Pending | null;
   /** The study or calibration that the panes speak of. */
   job: string | null;
 }
@@ -59,6 +64,7 @@ export const usePage = create<Page>(() => ({
   mode: "design",
   theme: "system",
   sheet: null,
+  pending: null,
   job: null,
   ...kept<Pick<Page, "theme">>(KEY),
   ...readAddress(),
@@ -69,8 +75,8 @@ export function setMode(mode: Mode): void {
   usePage.setState({ mode });
 }
 
-export function openSheet(sheet: Sheet): void {
-  usePage.setState({ sheet });
+export function openSheet(sheet: Sheet, pending: Pending | null = null): void {
+  usePage.setState({ sheet, pending });
 }
 
 /** The theme that is in force. */

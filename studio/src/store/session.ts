@@ -28,7 +28,9 @@ export function currentEngine(): Engine | null {
 /** Called whenever the engine has (again) answered, to tell it what this tab shows. */
 export function onReady(callback: () => void): () => void {
   ready.add(callback);
-  return () => ready.delete(callback);
+  return () => {
+    ready.delete(callback);
+  };
 }
 
 export function connect(chosen: Engine): void {

@@ -7,15 +7,18 @@ import type {
   CalibratedEvent,
   ComparedEvent,
   DocumentEvent,
+  EquilibriumEvent,
   GenerationEvent,
   HelloEvent,
   JobEvent,
   LogEvent,
   MeasuredEvent,
+  OverlapEvent,
   OverlayEvent,
   PickedEvent,
   RecipeEvent,
   RunsEvent,
+  SavedEvent,
   StatEvent,
   TrialEvent,
   TrialsEvent,
@@ -42,6 +45,9 @@ export interface Studio {
   document: DocumentEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
+  /** Where the body is in itself as it is shown. */
+  overlap: OverlapEvent | null;
+  equilibrium: EquilibriumEvent | null;
   picked: PickedEvent | null;
   jobs: Readonly<Record<string, JobEvent>>;
   trials: Readonly<Record<string, TrialsEvent>>;
@@ -52,6 +58,10 @@ export interface Studio {
   runs: RunsEvent | null;
   compared: ComparedEvent | null;
   measured: Readonly<Record<string, MeasuredEvent>>;
+  /** A file that is there already, which saving would replace. */
+  fileExists: string | null;
+  /** Grows with each design that was saved. */
+  saved: number;
   log: readonly LogLine[];
   toasts: readonly Toast[];
   /** Grows with each row of `history`, which itself stays the same object. */
@@ -68,6 +78,8 @@ export const useStudio = create<Studio>(() => ({
   document: null,
   body: null,
   stat: null,
+  overlap: null,
+  equilibrium: null,
   picked: null,
   jobs: {},
   trials: {},
@@ -78,6 +90,8 @@ export const useStudio = create<Studio>(() => ({
   runs: null,
   compared: null,
   measured: {},
+  fileExists: null,
+  saved: 0,
   log: [],
   toasts: [],
   plotted: 0,
@@ -86,14 +100,20 @@ export const useStudio = create<Studio>(() => ({
 
 let nextId = 1;
 
-/** Show a message that goes away by itself; errors stay until they are closed. */
+/** How long a message stays, ms: long enough to read it, longer where there is something to do. */
+const STAYS = { plain: 5_000, action: 10_000, error: 20_000 };
+
+/** Show a message that goes away by itself; an error stays in the log. */
 export function toast(message: Omit<Toast, "id">): number {
   const id = nextId++;
   useStudio.setState((state) => {
     const others = state.toasts.filter((one) => one.what !== message.what);
     return { toasts: [...others, { ...message, id }].slice(-MOST_TOASTS) };
   });
-  if (message.level !== "error") setTimeout(() => dismiss(id), message.action ? 10_000 : 5000);
+  const { level, what, hint, action } = message;
+  if (level === "error") note("error", [what, hint].filter(Boolean).join(" · "));
+  const stays = level === "error" ? "error" : action ? "action" : "plain";
+  setTimeout(() => dismiss(id), STAYS[stays]);
   return id;
 }
 
@@ -122,6 +142,12 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "stat":
       set({ stat: event });
+      break;
+    case "equilibrium":
+      set({ equilibrium: event });
+      break;
+    case "overlap":
+      set({ overlap: event });
       break;
     case "plot":
       set((state) => {
@@ -156,8 +182,12 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "measured":
       set((state) => ({ measured: { ...state.measured, [event.name]: event } }));
       break;
+    case "file_exists":
+      set({ fileExists: event.path });
+      break;
     case "saved":
-      toast({ level: "good", what: `Saved ${event.path}`, hint: "" });
+      if (event.what === "document") set((state) => ({ saved: state.saved + 1 }));
+      toast(savedToast(event));
       note("info", `saved ${event.path}`);
       break;
     case "exported":
@@ -169,11 +199,16 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
         what: event.where ? `${event.where}: ${event.what}` : event.what,
         hint: event.hint,
       });
-      note("error", [event.where, event.what, event.hint].filter(Boolean).join(" · "));
       break;
     case "log":
       note(event.level, event.text);
   }
+}
+
+function savedToast({ what, path }: SavedEvent): Omit<Toast, "id"> {
+  if (what !== "run") return { level: "good", what: `Saved ${path}`, hint: "" };
+  const name = path.split(/[\\/]/).at(-1);
+  return { level: "good", what: `Kept as ${name}`, hint: "It is the newest of the runs." };
 }
 
 /** Fold many trials and generations in at once: what shows them is drawn once. */

@@ -2,6 +2,7 @@
 // and the change between surface and tetrahedra.
 import { create } from "zustand";
 import type { ColormapName } from "../view/colormaps";
+import type { Clipped } from "../view/colorRange";
 import type { Scheme } from "../view/schemes";
 import { keepAs, kept } from "./page";
 
@@ -102,6 +103,8 @@ export interface Shown {
   high: number;
   min: number;
   max: number;
+  /** Values beyond the colors. */
+  clipped: readonly Clipped[];
   /** Length of the scale bar: meters, and pixels. */
   barLength: number;
   barPixels: number;
@@ -120,6 +123,7 @@ export const useShown = create<Shown>(() => ({
   high: 1,
   min: 0,
   max: 1,
+  clipped: [],
   barLength: 0,
   barPixels: 0,
   diverged: false,

@@ -1,9 +1,18 @@
 import { useState } from "react";
 import { Select } from "../controls/Choice";
-import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "../controls/units";
+import {
+  factorOf,
+  formatNumber,
+  formatQuantity,
+  parseQuantity,
+  shownUnit,
+  unitText,
+} from "../controls/units";
 import { useStudio } from "../store/studio";
 import { type RangeMode, setView, useShown, useView } from "../store/view";
 import { gradient } from "./colormaps";
+import { CLIP } from "./colorRange";
+import { viewport } from "./instance";
 
 const SHARES = [1, 0.75, 0.5, 0.25, 0];
 const RANGES: { value: RangeMode; label: string }[] = [
@@ -14,18 +23,24 @@ const RANGES: { value: RangeMode; label: string }[] = [
 
 /** The colors with their values; the ends of a locked range can be typed. */
 export function Legend() {
-  const { appearance, coloring, colormap, bands, range, field } = useView();
+  const { coloring, colormap, bands, range, field } = useView();
   const low = useShown((shown) => shown.low);
   const high = useShown((shown) => shown.high);
+  const clipped = useShown((shown) => shown.clipped);
   const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
   const [shut, setShut] = useState(false);
-  if (coloring !== "field" || appearance === "smooth" || !about) return null;
+  if (coloring !== "field" || !about) return null;
   const unit = shownUnit(about.unit);
   const factor = factorOf(unit);
   const lock = (mode: RangeMode) =>
     setView(mode === "locked" ? { range: mode, low, high } : { range: mode });
   return (
-    <aside className="legend" aria-label={`Colors: ${about.title}`} data-testid="legend">
+    <aside
+      ref={keepClear}
+      className="legend"
+      aria-label={`Colors: ${about.title}`}
+      data-testid="legend"
+    >
       <button
         type="button"
         className="legend-title"
@@ -57,10 +72,18 @@ export function Legend() {
                     />
                   );
                 }
-                return <span key={share}>{formatNumber(value / factor, 3)}</span>;
+                // Half way between two opposite ends is zero but for rounding.
+                const shown = Math.abs(value) < 1e-9 * (high - low) ? 0 : value;
+                return <span key={share}>{formatNumber(shown / factor, 3)}</span>;
               })}
             </div>
           </div>
+          {clipped.map((one) => (
+            <p key={one.end} className="muted legend-clipped" data-testid="legend-clipped">
+              clipped at {100 * CLIP} %; {one.end} {formatQuantity(one.value, about.unit, 3)} at{" "}
+              {place(one.at)}
+            </p>
+          ))}
           <Select
             bare
             label="Range of colors"
@@ -72,6 +95,16 @@ export function Legend() {
       )}
     </aside>
   );
+}
+
+function keepClear(legend: HTMLElement | null) {
+  return legend ? viewport().keepClearOf(legend) : undefined;
+}
+
+/** A place on the body at rest, in millimeters. */
+function place(at: readonly [number, number, number]): string {
+  const values = at.map((value) => formatNumber(Number((value * 1e3).toFixed(1)), 4));
+  return `(${values.join(", ")}) mm`;
 }
 
 function Limit(props: {

@@ -1,4 +1,5 @@
-import { useState } from "react";
+import { useRef, useState } from "react";
+import { useAway } from "../controls/away";
 import { Button, Select, Toggle } from "../controls/Choice";
 import { NumberField } from "../controls/NumberField";
 import { Icon } from "../shell/icons";
@@ -21,7 +22,13 @@ export function ViewBar(props: { view: Viewport }) {
   const view = useView();
   const fields = useStudio((state) => state.hello?.fields ?? []);
   const smooth = useStudio((state) => state.body?.smooth ?? false);
+  const recording = useShown((shown) => shown.recording);
   const [open, setOpen] = useState<"more" | "film" | null>(null);
+  const menus = useRef<HTMLDivElement>(null);
+  useAway(menus, open !== null, (by) => {
+    // While a film is made one plays with the body; what stops it stays at hand.
+    if (by === "escape" || !recording) setOpen(null);
+  });
   const appearances = APPEARANCES.map((one) => ({
     ...one,
     disabled: one.value === "smooth" && !smooth,
@@ -95,28 +102,30 @@ export function ViewBar(props: { view: Viewport }) {
       >
         <Icon name="tape" />
       </Button>
-      <Button
-        icon
-        kind="quiet"
-        label="More of the view"
-        pressed={open === "more"}
-        testId="view-more"
-        onClick={() => setOpen(open === "more" ? null : "more")}
-      >
-        <Icon name="settings" />
-      </Button>
-      <Button
-        icon
-        kind="quiet"
-        label="Picture and film"
-        pressed={open === "film"}
-        testId="view-film"
-        onClick={() => setOpen(open === "film" ? null : "film")}
-      >
-        <Icon name="camera" />
-      </Button>
-      {open === "more" && <More />}
-      {open === "film" && <Film view={props.view} close={() => setOpen(null)} />}
+      <div className="view-menus" ref={menus}>
+        <Button
+          icon
+          kind="quiet"
+          label="More of the view"
+          pressed={open === "more"}
+          testId="view-more"
+          onClick={() => setOpen(open === "more" ? null : "more")}
+        >
+          <Icon name="settings" />
+        </Button>
+        <Button
+          icon
+          kind="quiet"
+          label="Picture and film"
+          pressed={open === "film"}
+          testId="view-film"
+          onClick={() => setOpen(open === "film" ? null : "film")}
+        >
+          <Icon name="camera" />
+        </Button>
+        {open === "more" && <More />}
+        {open === "film" && <Film view={props.view} close={() => setOpen(null)} />}
+      </div>
       {view.section !== "off" && <SectionTools />}
     </div>
   );

@@ -1,6 +1,6 @@
 import { useEffect, useRef } from "react";
 import { Button, Empty } from "../controls/Choice";
-import { formatNumber, formatQuantity } from "../controls/units";
+import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { Transport } from "../run/Transport";
 import { openDocument } from "../shell/actions";
 import { send } from "../store/session";
@@ -9,6 +9,7 @@ import { setView, useShown, useView } from "../store/view";
 import { Cube } from "./Cube";
 import { viewport } from "./instance";
 import { Legend } from "./Legend";
+import { OverlapBanner } from "./OverlapBanner";
 import { ViewBar } from "./ViewBar";
 import "./view.css";
 
@@ -35,6 +36,7 @@ export default function ViewPane() {
             <Hover />
             <Picked />
             <Banner />
+            <OverlapBanner />
           </>
         ) : (
           !document && <Welcome />
@@ -106,7 +108,7 @@ function Badges() {
       {recording && <span className="badge bad">● recording</span>}
       {playing && fps > 0 && (
         <span className="badge" data-testid="fps">
-          {fps} frames/s{latency !== null ? ` · ${Math.round(latency)} ms behind the mouse` : ""}
+          {fps} frames/s{latency !== null ? ` · answers in ${Math.round(latency)} ms` : ""}
         </span>
       )}
     </div>
@@ -146,7 +148,7 @@ function Picked() {
       </header>
       <dl className="facts">
         <div>
-          <dt>At rest</dt>
+          <dt>Unloaded</dt>
           <dd>{place(picked.rest)} mm</dd>
         </div>
         <div>
@@ -156,7 +158,11 @@ function Picked() {
         {picked.values.map((value) => (
           <div key={value.field}>
             <dt>{fields?.find((one) => one.id === value.field)?.title ?? value.name}</dt>
-            <dd>{value.value === null ? "–" : formatQuantity(value.value, value.unit)}</dd>
+            <dd>
+              {value.value === null
+                ? "–"
+                : formatQuantity(cleaned(value.value, value.unit), value.unit)}
+            </dd>
           </div>
         ))}
       </dl>

@@ -19,7 +19,7 @@ import {
   Vector4,
 } from "three";
 import type { Frame, Topology } from "../engine/frames";
-import type { BodyLayer } from "../protocol";
+import { type BodyLayer, CAVITY } from "../protocol";
 import type { View } from "../store/view";
 import { texels } from "./colormaps";
 import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
@@ -35,8 +35,6 @@ export const CAVITY_COLORS = [
   "#b9a2f5",
   "#e8704a",
 ] as const;
-
-const CAVITY_BIT = 0x80;
 
 interface Shell {
   readonly owner: number;
@@ -196,6 +194,12 @@ export class BodyMesh {
     for (const sheet of this.sheets) this.group.add(sheet);
   }
 
+  /** The map of colors, and the range of the field in the frame and in the map. */
+  get coloring(): { lut: DataTexture; frame: Vector2; range: Vector2 } {
+    const { uFrameRange, uRange } = this.shared;
+    return { lut: this.lut, frame: uFrameRange!.value, range: uRange!.value };
+  }
+
   /** Whether a frame is one of this body in this kind of view. */
   suits(frame: Frame): boolean {
     return (
@@ -237,7 +241,7 @@ export class BodyMesh {
     const cut = view.section !== "off";
     this.triangles = 0;
     for (const { owner, mesh, stencils } of this.shells) {
-      const cavity = (owner & CAVITY_BIT) !== 0;
+      const cavity = (owner & CAVITY) !== 0;
       const { uniforms } = mesh.material;
       const through = view.cavities && !cavity;
       // Where the field is the same everywhere, as before the first step, a map tells nothing.

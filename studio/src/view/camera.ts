@@ -1,5 +1,6 @@
 // The camera: turns about a target, moves, zooms to the pointer, flies to standard views.
-// z is up. It never moves by itself, also when the body is meshed anew.
+// z is up. It never moves by itself, also when the body is meshed anew, but after one that comes
+// to rest outside of the picture.
 import { type Box3, OrthographicCamera, PerspectiveCamera, type Quaternion, Vector3 } from "three";
 
 const FIELD_OF_VIEW = 32;
@@ -35,6 +36,8 @@ export class CameraRig {
   private height = 1;
   private reach = 0.1;
   flat = false;
+  /** Whether it was placed by hand since it last was fitted to a body. */
+  steered = false;
   /** Grows whenever the camera is placed anew. */
   places = 0;
 
@@ -80,6 +83,7 @@ export class CameraRig {
   }
 
   turn(dx: number, dy: number): void {
+    this.steered = true;
     this.flight = null;
     this.pose.azimuth -= dx * 0.0075;
     this.pose.elevation = clampElevation(this.pose.elevation + dy * 0.0075);
@@ -87,6 +91,7 @@ export class CameraRig {
   }
 
   move(dx: number, dy: number): void {
+    this.steered = true;
     this.flight = null;
     const meter = 1 / this.pixelsPerMeter;
     const right = new Vector3(1, 0, 0).applyQuaternion(this.orientation);
@@ -97,6 +102,7 @@ export class CameraRig {
 
   /** Zoom so that what is under the pointer (in -1 to 1) stays under it. */
   zoom(factor: number, x: number, y: number): void {
+    this.steered = true;
     this.flight = null;
     const before = this.pose.distance;
     const next = Math.min(100, Math.max(1e-4, before * factor));
@@ -112,16 +118,26 @@ export class CameraRig {
   }
 
   look(view: StandardView): void {
+    this.steered = true;
     const [azimuth, elevation] = STANDARD_VIEWS[view];
     this.fly({ ...this.pose, target: this.pose.target.clone(), azimuth, elevation });
   }
 
   turnAbout(point: Vector3): void {
+    this.steered = true;
     this.fly({ ...this.pose, target: point.clone() });
+  }
+
+  /** Turn about a point, from no farther than some meters. */
+  closeTo(point: Vector3, most: number): void {
+    this.steered = true;
+    const distance = most > 0 ? Math.min(this.pose.distance, most) : this.pose.distance;
+    this.fly({ ...this.pose, target: point.clone(), distance });
   }
 
   fit(box: Box3, at_once = false): void {
     if (box.isEmpty()) return;
+    this.steered = false;
     const radius = Math.max(1e-5, box.getSize(new Vector3()).length() / 2);
     const narrow = Math.min(1, this.width / this.height);
     const distance = (1.12 * radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / narrow;
@@ -131,6 +147,21 @@ export class CameraRig {
       this.pose = to;
       this.place();
     } else this.fly(to);
+  }
+
+  /** Whether all of a box is in the picture. */
+  holds(box: Box3): boolean {
+    const corner = new Vector3();
+    for (let i = 0; i < 8; i++) {
+      corner.set(
+        (i & 1 ? box.max : box.min).x,
+        (i & 2 ? box.max : box.min).y,
+        (i & 4 ? box.max : box.min).z,
+      );
+      corner.project(this.camera);
+      if (Math.abs(corner.x) > 1 || Math.abs(corner.y) > 1) return false;
+    }
+    return true;
   }
 
   /** Go on with a flight; whether the camera has moved. */

@@ -11,6 +11,7 @@ import {
   Vector3,
 } from "three";
 import { formatNumber } from "../controls/units";
+import type { GrabState } from "../protocol";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { useView } from "../store/view";
@@ -40,7 +41,21 @@ export class Grabs {
   }
 
   begin(vertex: number, at: Vector3, toEye: Vector3): void {
-    const stiffness = useView.getState().stiffness;
+    const { stiffness } = useView.getState();
+    this.held = this.spring(this.nextId++, vertex, at.clone(), stiffness);
+    this.plane.setFromNormalAndCoplanarPoint(toEye, at);
+    this.tell(this.held);
+  }
+
+  /** Draw the springs that the engine has; a body that is meshed anew keeps them. */
+  adopt(states: readonly GrabState[]): void {
+    for (const { id, vertex, target, stiffness } of states) {
+      if (!this.pulls.has(id)) this.spring(id, vertex, new Vector3(...target), stiffness);
+      this.nextId = Math.max(this.nextId, id + 1);
+    }
+  }
+
+  private spring(id: number, vertex: number, target: Vector3, stiffness: number): Pull {
     const line = new Line(
       new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6), 3)),
       new LineBasicMaterial({ color: new Color(PULL_COLOR), depthTest: false, transparent: true }),
@@ -48,10 +63,9 @@ export class Grabs {
     line.frustumCulled = false;
     line.renderOrder = 8;
     this.group.add(line);
-    this.held = { id: this.nextId++, vertex, target: at.clone(), stiffness, line };
-    this.pulls.set(this.held.id, this.held);
-    this.plane.setFromNormalAndCoplanarPoint(toEye, at);
-    this.tell(this.held);
+    const pull = { id, vertex, target, stiffness, line };
+    this.pulls.set(id, pull);
+    return pull;
   }
 
   /** Move what is held to where a ray meets the plane of the grab. */

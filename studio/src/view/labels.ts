@@ -1,5 +1,6 @@
 // Words in the picture: HTML elements that follow points of the body, outside of React.
 import { type Camera, Vector3 } from "three";
+import { LINE, type Rect, standWords, type Word } from "./labelLayout";
 
 export interface Label {
   readonly key: string;
@@ -10,7 +11,9 @@ export interface Label {
     | "probe"
     | "cavity"
     | "leak"
+    | "overlap"
     | "extreme"
+    | "spot"
     | "force"
     | "tape";
   readonly text: string;
@@ -19,10 +22,6 @@ export interface Label {
   at(out: Vector3): Vector3;
   onClick?(): void;
 }
-
-const LINE = 21;
-// So many lines a label moves down to be read; a crowd beyond that shows its dots.
-const MOST_MOVED = 3;
 
 export class Labels {
   readonly element = document.createElement("div");
@@ -63,8 +62,9 @@ export class Labels {
     }
   }
 
-  place(camera: Camera, width: number, height: number): void {
-    const taken: { x: number; y: number; w: number }[] = [];
+  /** Put each word at its point, clear of the others and of what is pressed in the picture. */
+  place(camera: Camera, width: number, height: number, pressed: readonly Rect[] = []): void {
+    const seen: { element: HTMLElement; word: Word }[] = [];
     for (const { label, element } of this.shown.values()) {
       const at = label.at(this.point).project(camera);
       const visible = at.z > -1 && at.z < 1 && Math.abs(at.x) < 1.05 && Math.abs(at.y) < 1.05;
@@ -72,23 +72,22 @@ export class Labels {
       if (!visible) continue;
       const x = ((at.x + 1) / 2) * width;
       const y = ((1 - at.y) / 2) * height;
-      const w = 7 * label.text.length + 24;
-      const free = (moved: number) =>
-        !taken.some(
-          (one) =>
-            Math.abs(one.y - y - LINE * moved) < LINE - 1 && Math.abs(one.x - x) < (one.w + w) / 2,
-        );
-      // Labels that would lie over each other move down, and a line leads back to their point.
-      let moved = 0;
-      while (moved <= MOST_MOVED && !free(moved)) moved++;
-      const crowded = moved > MOST_MOVED && label.kind === "probe";
-      if (crowded) moved = 0;
-      else taken.push({ x, y: y + LINE * moved, w });
+      const minor = label.kind === "probe";
+      seen.push({ element, word: { x, y, width: 7 * label.text.length + 24, minor } });
+    }
+    const standing = standWords(
+      seen.map((one) => one.word),
+      pressed,
+    );
+    for (const [i, { element, word }] of seen.entries()) {
+      const { lines, left, crowded } = standing[i]!;
       element.classList.toggle("crowded", crowded);
-      element.classList.toggle("moved", moved > 0);
-      element.style.setProperty("--lead", `${LINE * moved}px`);
+      // A line leads back to the point, where the word stands right below it.
+      element.classList.toggle("moved", lines > 0 && left === 0);
+      element.style.setProperty("--lead", `${LINE * lines}px`);
       // Whole pixels: letters stay sharp, and a word that trembles stays where it is.
-      element.style.transform = `translate(${Math.round(x)}px, ${Math.round(y + LINE * moved)}px)`;
+      const [x, y] = [Math.round(word.x - left), Math.round(word.y + LINE * lines)];
+      element.style.transform = `translate(${x}px, ${y}px)`;
     }
   }
 }

@@ -2,11 +2,14 @@
 // turns it. Both are buttons over the picture, so that the keyboard reaches them too.
 import { Vector3 } from "three";
 import type { CameraRig } from "./camera";
+import type { Rect } from "./labelLayout";
 import { type Section, turned } from "./section";
 
 /** Least distance of the two grips, pixels: they stay apart also where the normal meets the eye. */
 const APART = 48;
 const LONGEST = 110;
+/** Half the size of a grip, as .section-grip has it. */
+const GRIP = 12;
 /** Radians for each pixel, and for each press of a key. */
 const TURN = 0.01;
 const KEY_TURN = Math.PI / 36;
@@ -32,6 +35,8 @@ const UP = new Vector3(0, 0, 1);
 
 export class SectionHandle {
   readonly element = document.createElement("div");
+  /** What of the picture its two grips take; nothing while there is no section. */
+  grips: readonly Rect[] = [];
   private readonly line = document.createElementNS("http://www.w3.org/2000/svg", "line");
   private readonly mover = grip("section-move", "Move the section: drag, or arrow keys", "↕");
   private readonly turner = grip("section-turn", "Turn the section: drag, or arrow keys", "⟳");
@@ -85,6 +90,7 @@ export class SectionHandle {
   place(width: number, height: number): void {
     const { on, middle, normal } = this.section;
     this.element.hidden = on.value === 0;
+    this.grips = [];
     if (this.element.hidden) return;
     const page = (point: Vector3) => {
       const at = point.project(this.rig.camera);
@@ -108,6 +114,10 @@ export class SectionHandle {
     const angle = Math.atan2(this.along.x, -this.along.y);
     put(this.mover, from, angle);
     put(this.turner, to, 0);
+    this.grips = [from, to].map(({ x, y }) => ({
+      ...{ left: x - GRIP, right: x + GRIP },
+      ...{ top: y - GRIP, bottom: y + GRIP },
+    }));
     this.mover.setAttribute("aria-valuenow", String(Math.round(100 * this.section.share)));
   }
 }

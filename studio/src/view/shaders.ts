@@ -11,7 +11,7 @@ vec3 placed() {
 }
 `;
 
-const COLORED = /* glsl */ `
+export const COLORED = /* glsl */ `
 uniform sampler2D uLut;
 uniform vec2 uFrameRange;
 uniform vec2 uRange;
@@ -23,9 +23,17 @@ float shareOf(float field) {
 vec3 colorOf(float share) {
   return texture(uLut, vec2(clamp(share, 0.002, 0.998), 0.5)).rgb;
 }
+// Outside of a fixed range: stripes on the screen, seen without telling colors apart.
+vec3 stripedOf(float share, vec2 at) {
+  vec3 base = colorOf(share);
+  float beyond = max(share - 1.0, -share);
+  if (beyond <= 0.01) return base;
+  float stripe = step(0.5, fract((at.x + at.y) / 9.0));
+  return mix(base, vec3(share > 1.0 ? 1.0 : 0.15), 0.45 * stripe);
+}
 `;
 
-const CUT = /* glsl */ `
+export const CUT = /* glsl */ `
 uniform vec4 uPlane;
 uniform float uSection;
 bool cutAway(vec3 at) {
@@ -65,16 +73,7 @@ void main() {
   // Mostly ambient: the map's colors must stay those of the legend, the light tells the shape.
   float light = 0.74 + 0.26 * max(0.0, dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
   vec3 base = uOwn;
-  if (uByField > 0.5) {
-    float share = shareOf(vField);
-    base = colorOf(share);
-    // Outside of a fixed range: stripes on the screen, seen without telling colors apart.
-    float beyond = max(share - 1.0, -share);
-    if (beyond > 0.01) {
-      float stripe = step(0.5, fract((gl_FragCoord.x + gl_FragCoord.y) / 9.0));
-      base = mix(base, vec3(share > 1.0 ? 1.0 : 0.15), 0.45 * stripe);
-    }
-  }
+  if (uByField > 0.5) base = stripedOf(shareOf(vField), gl_FragCoord.xy);
   color = vec4(base * light * (gl_FrontFacing ? 1.0 : 0.82), uAlpha);
 }
 `;

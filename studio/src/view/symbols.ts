@@ -12,6 +12,7 @@ import {
   PointsMaterial,
   Vector3,
 } from "three";
+import { cavityName } from "../controls/cavities";
 import { formatNumber, formatQuantity, unitText } from "../controls/units";
 import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
@@ -30,7 +31,7 @@ export function loadText(load: BodyLoad, stat: StatEvent | null): string {
 }
 
 /** The mean of drawn vertices where they are now, if they are drawn. */
-function middle(
+function meanPlace(
   vertices: readonly number[],
   mesh: BodyMesh | null,
   exaggeration: number,
@@ -40,6 +41,20 @@ function middle(
   const one = new Vector3();
   for (const vertex of vertices) sum.add(mesh.place(vertex, exaggeration, one));
   return sum.divideScalar(vertices.length).toArray();
+}
+
+/**
+ * Where the tip of a load's arrow is: at the place that it pushes on, or so far out of a place that
+ * it pulls on that the whole arrow stands outside of the body, where it is seen.
+ */
+export function arrowTip(
+  at: Vector3,
+  direction: Vector3,
+  middle: Vector3,
+  length: number,
+): Vector3 {
+  const pulls = at.clone().sub(middle).dot(direction) > 0;
+  return pulls ? at.clone().addScaledVector(direction, length) : at;
 }
 
 export class Symbols {
@@ -61,11 +76,15 @@ export class Symbols {
     const size = Math.hypot(
       ...body.bounds[1].map((high, axis) => high - (body.bounds[0][axis] ?? 0)),
     );
+    const [low, high] = body.bounds;
+    const middle = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
     for (const clamp of body.clamps) this.points(clamp.points.flat());
     for (const load of body.loads) {
       const direction = new Vector3(...load.direction);
       if (load.kind !== "pressure" && direction.lengthSq() > 0) {
-        this.arrow(new Vector3(...load.at), direction.normalize(), 0.16 * size);
+        direction.normalize();
+        const tip = arrowTip(new Vector3(...load.at), direction, middle, 0.16 * size);
+        this.arrow(tip, direction, 0.16 * size);
       }
     }
   }
@@ -79,7 +98,6 @@ export class Symbols {
     this.geometries.push(geometry);
   }
 
-  // An arrow whose tip touches the point that the load acts on.
   private arrow(tip: Vector3, direction: Vector3, length: number): void {
     const head = 0.28 * length;
     const shaft = new CylinderGeometry(0.028 * length, 0.028 * length, length - head, 12);
@@ -131,7 +149,7 @@ export class Symbols {
         text: layer.name,
         title: `A layer of ${formatNumber(layer.stiffness, 3)} N/m`,
         color: LAYER_COLOR,
-        at: (out) => fixed(middle(layer.triangles, mesh, exaggeration) ?? layer.center)(out),
+        at: (out) => fixed(meanPlace(layer.triangles, mesh, exaggeration) ?? layer.center)(out),
         onClick: () => showPane("design"),
       });
     }
@@ -148,7 +166,7 @@ export class Symbols {
     }
     for (const probe of body.probes) {
       const place = (out: Vector3) =>
-        fixed(middle(probe.vertices, mesh, exaggeration) ?? probe.center)(out);
+        fixed(meanPlace(probe.vertices, mesh, exaggeration) ?? probe.center)(out);
       labels.push({
         key: `probe-${probe.name}`,
         kind: "probe",
@@ -164,7 +182,7 @@ export class Symbols {
         labels.push({
           key: `cavity-${i}`,
           kind: "cavity",
-          text: `cavity ${i + 1} · ${formatQuantity(cavity.volume, "m^3", 3)}`,
+          text: `${cavityName(cavity, i)} · ${formatQuantity(cavity.volume, "m^3", 3)}`,
           color: CAVITY_COLORS[i % CAVITY_COLORS.length] as string,
           at: fixed(cavity.center),
         });

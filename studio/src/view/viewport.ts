@@ -11,21 +11,26 @@ import {
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
-import type { DocumentEvent } from "../protocol";
+import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView, type View } from "../store/view";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
+import { type ColorRange, colorRange } from "./colorRange";
+import { withoutDust } from "./dust";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
+import type { Rect } from "./labelLayout";
 import { type Label, Labels } from "./labels";
+import { drawnAt, overlapLabels, overlapOf } from "./overlap";
 import { Painter } from "./painter";
 import { listen } from "./pointer";
 import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
 import { SectionHandle } from "./sectionHandle";
 import { SmoothMesh } from "./smooth";
+import { Spot } from "./spot";
 import { Stopwatch } from "./stopwatch";
 import { Symbols } from "./symbols";
 import { Tape } from "./tape";
@@ -53,6 +58,7 @@ export class Viewport {
   readonly rig = new CameraRig();
   readonly grabs = new Grabs();
   readonly tape = new Tape();
+  private readonly spot = new Spot(() => this.request());
   private readonly painter = new Painter();
   private readonly stopwatch: Stopwatch;
   private readonly scene = new Scene();
@@ -60,6 +66,7 @@ export class Viewport {
   private readonly sectionHandle = new SectionHandle(this.section, this.rig);
   private readonly symbols = new Symbols();
   private readonly labels = new Labels();
+  private legend: Rect | null = null;
   private ink = themeColor("--ink");
   private readonly gate = new FrameGate();
   // Disposed of after the next picture, which then uses their shaders again without compiling.
@@ -87,7 +94,9 @@ export class Viewport {
   private latency: number | null = null;
   private lastSeq = 0;
   private extremes: { low: number; high: number } | null = null;
+  private colors: ColorRange | null = null;
   private fitNext = true;
+  private pullsDue = true;
   private documentName = nameOf(useStudio.getState().document);
   private drawnListeners = new Set<() => void>();
 
@@ -110,10 +119,12 @@ export class Viewport {
     useStudio.subscribe((now, before) => {
       if (now.body !== before.body) this.bodyChanged();
       if (now.stat !== before.stat) {
+        this.takePulls(now.stat);
         if (now.stat?.grabs.length === 0 && before.stat?.grabs.length) this.grabs.forgetPinned();
         // While time runs the next frame is on its way and will show what else is new.
         if (now.stat?.state !== "playing" || before.stat?.state !== "playing") this.request();
       }
+      if (now.overlap !== before.overlap) this.request();
       const name = nameOf(now.document);
       if (name !== null && name !== this.documentName) {
         this.documentName = name;
@@ -160,9 +171,12 @@ export class Viewport {
     this.smooth = null;
     this.latest = null;
     this.extremes = null;
+    this.colors = null;
     this.positions = null;
     this.grabs.clear();
+    this.pullsDue = true;
     this.tape.clear();
+    this.spot.clear();
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
     if (this.fitNext) this.rig.fit(box, true);
@@ -179,6 +193,13 @@ export class Viewport {
     this.smooth = new SmoothMesh(smooth, { plane: this.section.plane, section: this.section.on });
     this.scene.add(this.smooth.group);
     this.request();
+  }
+
+  // Springs that pull on a body which comes anew: they were there before it was meshed again.
+  private takePulls(stat: StatEvent | null): void {
+    if (!this.pullsDue || !stat || stat.topology !== this.surface?.topology.id) return;
+    this.pullsDue = false;
+    this.grabs.adopt(stat.grabs);
   }
 
   private drop(mesh: BodyMesh | null): void {
@@ -238,6 +259,23 @@ export class Viewport {
     this.tellView();
   }
 
+  /** Keep words out of the legend for as long as it is there; gives what ends that. */
+  keepClearOf(legend: HTMLElement): () => void {
+    const measure = () => {
+      const { offsetLeft: left, offsetTop: top, offsetWidth, offsetHeight } = legend;
+      this.legend = { left, top, right: left + offsetWidth, bottom: top + offsetHeight };
+      this.request();
+    };
+    const observer = new ResizeObserver(measure);
+    observer.observe(legend);
+    observer.observe(this.element); // it stands at the right end
+    return () => {
+      observer.disconnect();
+      this.legend = null;
+      this.request();
+    };
+  }
+
   private resize(): void {
     const { clientWidth: width, clientHeight: height } = this.element;
     if (width < 2 || height < 2) return;
@@ -294,8 +332,10 @@ export class Viewport {
     // Words must not catch clicks that are meant for the body.
     this.labels.element.classList.toggle("passive", view.tape || this.grabs.holding);
     this.labels.set(labels);
-    this.labels.place(this.rig.camera, this.element.clientWidth, this.element.clientHeight);
-    this.sectionHandle.place(this.element.clientWidth, this.element.clientHeight);
+    const { clientWidth: width, clientHeight: height } = this.element;
+    this.sectionHandle.place(width, height);
+    const pressed = [...this.sectionHandle.grips, ...(this.legend ? [this.legend] : [])];
+    this.labels.place(this.rig.camera, width, height, pressed);
     this.hover(now, view);
     this.tell(now, view);
     for (const listener of this.drawnListeners) listener();
@@ -327,21 +367,33 @@ export class Viewport {
   }
 
   private takeFrame(now: number): boolean {
-    const frame = this.gate.take((number) => currentEngine()?.acknowledge(number));
-    if (!frame) return false;
+    const taken = this.gate.take((number) => currentEngine()?.acknowledge(number));
+    if (!taken) return false;
+    const fields = useStudio.getState().hello?.fields;
+    const frame = withoutDust(taken, fields?.find((one) => one.id === taken.field)?.unit);
     const wanted = useView.getState().appearance === "tets";
     const meshes = wanted ? [this.tets, this.surface] : [this.surface, this.tets];
     const mesh = meshes.find((one) => one?.suits(frame));
     if (!mesh) return false; // a frame of a body that is gone
     mesh.setFrame(frame);
+    // A frame may be sent again, as with the colors of another field: that is no other state.
+    const settled = frame.atRest && !(this.latest?.atRest && this.latest.number === frame.number);
+    if (settled) this.follow(mesh);
     this.latest = frame;
     this.extremes = null;
+    this.colors = null;
     this.times.push(now);
     if (frame.seq > this.lastSeq) {
       this.lastSeq = frame.seq;
       this.latency = sinceSent(frame.seq) ?? this.latency;
     }
     return true;
+  }
+
+  // A body that came to rest outside of the picture is brought into it, unless a hand chose that.
+  private follow(mesh: BodyMesh): void {
+    const box = mesh.box(useView.getState().exaggeration).clone();
+    if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box);
   }
 
   /** The mesh that is drawn: the tetrahedra where they are wanted and at hand. */
@@ -360,7 +412,7 @@ export class Viewport {
       one?.setPixels(this.renderer.domElement.height / 2);
       one?.style(view, colors, one === mesh && !smooth);
     }
-    this.smooth?.style(view, colors, smooth);
+    if (this.surface) this.smooth?.style(view, colors, smooth, this.surface);
     if (smooth && this.surface) this.smooth?.follow(this.surface, view.exaggeration);
     const box = mesh?.box(view.exaggeration) ?? new Box3();
     this.section.update(
@@ -374,25 +426,37 @@ export class Viewport {
 
   private range(view: View): [number, number] {
     if (view.range === "locked") return [view.low, view.high];
-    const frame = this.latest;
-    if (!frame) return [0, 1];
-    if (view.range === "auto") return [frame.min, frame.max];
-    const most = Math.max(Math.abs(frame.min), Math.abs(frame.max));
+    const { low, high } = this.colorRange();
+    if (view.range === "auto") return [low, high];
+    const most = Math.max(Math.abs(low), Math.abs(high));
     return [-most, most];
+  }
+
+  private colorRange(): ColorRange {
+    const frame = this.latest;
+    const mesh = frame && [this.surface, this.tets].find((one) => one?.suits(frame));
+    if (!frame || !mesh) return { low: frame?.min ?? 0, high: frame?.max ?? 1, clipped: [] };
+    this.colors ??= colorRange(frame, mesh.topology);
+    return this.colors;
   }
 
   private words(view: View, mesh: BodyMesh | null): Label[] {
     if (!mesh) return [];
-    const { body, stat } = useStudio.getState();
-    const labels: Label[] = [];
+    const { body, stat, overlap } = useStudio.getState();
+    const labels = overlapLabels(overlapOf(overlap, mesh.topology.id), view.exaggeration, (place) =>
+      this.showOverlap(place),
+    );
     // A shape comes before its words, which speak of vertices that another one may not have.
     if (body?.topology === mesh.topology.id && view.symbols) {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
     }
-    if (view.extremes && mesh.frame && view.coloring === "field")
+    // Where all values are the same there is no least and no greatest.
+    const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
+    if (view.extremes && varies && view.coloring === "field")
       labels.push(...this.extremeWords(mesh, view));
     const places = this.places;
     if (places) labels.push(...this.grabs.update(places));
+    if (places) labels.push(...this.spot.labels(places, view.exaggeration));
     const tape = places ? this.tape.update(places, view.exaggeration) : null;
     if (tape) labels.push(...tape.labels);
     if (tape && tape.length !== useShown.getState().tapeLength) {
@@ -447,6 +511,7 @@ export class Viewport {
       high,
       min: frame?.min ?? 0,
       max: frame?.max ?? 0,
+      clipped: view.range === "locked" ? [] : this.colorRange().clipped,
       barLength,
       barPixels: barLength * pixels,
       diverged: frame?.diverged ?? false,
@@ -538,6 +603,26 @@ export class Viewport {
   fit(): void {
     const mesh = this.shownMesh();
     if (mesh) this.rig.fit(mesh.box(useView.getState().exaggeration).clone());
+    this.request();
+  }
+
+  /** Fly to a point of the unloaded body, where it is now, and mark it with a word. */
+  showPlace(at: readonly [number, number, number], text: string): void {
+    const places = this.places;
+    if (!places) return;
+    const vertex = this.spot.mark(at, text, places);
+    const box = this.shownMesh()?.box(useView.getState().exaggeration);
+    const near = box ? box.getSize(new Vector3()).length() : 0;
+    this.rig.closeTo(places.place(vertex, useView.getState().exaggeration), near);
+    this.request();
+  }
+
+  /** Fly to a place where the body is in itself. */
+  showOverlap(place: OverlapPlace): void {
+    const { exaggeration } = useView.getState();
+    const box = this.shownMesh()?.box(exaggeration);
+    const near = box ? 0.5 * box.getSize(new Vector3()).length() : 0;
+    this.rig.closeTo(drawnAt(place, exaggeration, new Vector3()), near);
     this.request();
   }
 

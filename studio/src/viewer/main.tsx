@@ -4,6 +4,7 @@ import { createRoot } from "react-dom/client";
 import { bytesOf } from "../engine/base64";
 import { WasmEngine } from "../engine/wasm";
 import CoreWorker from "../engine/wasm.worker?worker&inline";
+import { PageFence } from "../shell/Fence";
 import { usePage, watchTheme } from "../store/page";
 import { connect } from "../store/session";
 import { Viewer } from "./Viewer";
@@ -15,4 +16,8 @@ usePage.setState({ mode: "simulate" });
 const root = createRoot(document.getElementById("root") as HTMLElement);
 const packed = document.getElementById("voxsoft-scene")?.textContent?.trim() ?? "";
 if (packed) connect(new WasmEngine(new CoreWorker(), bytesOf(core), bytesOf(packed)));
-root.render(<Viewer empty={!packed} />);
+root.render(
+  <PageFence>
+    <Viewer empty={!packed} />
+  </PageFence>,
+);

@@ -2,7 +2,13 @@ import { describe, expect, it } from "vitest";
 import type { CalibrateDraft } from "../../src/panes/calibrate/draft";
 import { marksOf } from "../../src/panes/calibrate/marksOf";
 import { bestPlane, fitPlane } from "../../src/panes/calibrate/plane";
-import { calibrateSpec, modelOf, obstacle, withUnits } from "../../src/panes/calibrate/setup";
+import {
+  calibrateSpec,
+  helpOfModel,
+  modelOf,
+  obstacle,
+  withUnits,
+} from "../../src/panes/calibrate/setup";
 import { errorsText, generationsText } from "../../src/panes/calibrate/text";
 import type { GenerationEvent, MeasuredEvent } from "../../src/protocol";
 
@@ -59,7 +65,9 @@ describe("a calibration", () => {
   it("says what is missing", () => {
     expect(obstacle({ ...DRAFT, files: [] }, {}, lattice)).toMatch(/Drop a table/);
     expect(obstacle(DRAFT, {}, lattice)).toMatch(/being read/);
-    const bad = [{ severity: "error", where: "column s", what: "needs a unit", hint: "" }] as const;
+    const bad = [
+      { severity: "error", where: "column s", what: "needs a unit", hint: "", at: null },
+    ] as const;
     expect(obstacle(DRAFT, { "beam.csv": read([...bad]) }, lattice)).toMatch(/needs a unit/);
     expect(obstacle(DRAFT, { "beam.csv": read([]) }, lattice)).toBeNull();
     expect(obstacle(DRAFT, { "beam.csv": read([]) }, [])).toMatch(/lattice or a hyperelastic/);
@@ -98,6 +106,26 @@ it("writes a fitted material with the units that a design file needs", () => {
     poisson: 0.499,
     mu: ["24400 Pa", 0],
   });
+});
+
+it("says what a constant of a model is", () => {
+  const lattice = {
+    description: "Springs.\n\nParameters\n----------\nedge\n    How hard it resists stretch.",
+    properties: { edge: { type: "number" } },
+  };
+  const root = {
+    $defs: { Lattice: lattice },
+    properties: {
+      materials: {
+        additionalProperties: {
+          discriminator: { propertyName: "model", mapping: { lattice: "#/$defs/Lattice" } },
+          oneOf: [{ $ref: "#/$defs/Lattice" }],
+        },
+      },
+    },
+  };
+  expect(helpOfModel(root, "lattice")).toEqual({ edge: "How hard it resists stretch." });
+  expect(helpOfModel(root, "unknown")).toEqual({});
 });
 
 it("looks at a shape from where it is widest, at one scale for both axes", () => {

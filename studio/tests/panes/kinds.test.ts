@@ -39,10 +39,10 @@ describe("readWritten", () => {
   });
   it.each([
     ["2*wal", '"wal" is not a parameter'],
-    ["=wall*wall", "the formula gives an area; a length is due"],
+    ["=wall*wall", "the formula gives an area; expected a length"],
     ["wall + 2", "give the number a unit"],
     ["wall/0", "divides by zero"],
-    ["2*5 kPa", "a pressure; a length is due"],
+    ["2*5 kPa", "a pressure; expected a length"],
   ])("says what is wrong with %s", (typed, words) => {
     const read = readWritten(typed, "length", [], PARAMETERS);
     expect("problem" in read && read.problem).toContain(words);

@@ -1,6 +1,12 @@
 import { describe, expect, it } from "vitest";
 import { FORMATS, obstacle, request } from "../../src/panes/export/formats";
-import { comparedRows, percentChange, sideTitle, unitIn } from "../../src/panes/runs/compared";
+import {
+  changeTitle,
+  comparedRows,
+  percentChange,
+  sideTitle,
+  unitIn,
+} from "../../src/panes/runs/compared";
 import { ago, inTrash, matchesSearch } from "../../src/panes/runs/rows";
 import type { RunRow, Side } from "../../src/protocol";
 
@@ -80,6 +86,7 @@ it("calls runs by their names, and designs of studies by their numbers", () => {
   const side = (id: string) => ({ id, name: id }) as Side;
   expect(sideTitle(side("arm"))).toBe("arm");
   expect(sideTitle(side("arm-study/12"))).toBe("Design 12");
+  expect(changeTitle(side("arm"), side("leg"))).toBe("leg minus arm, in % of arm");
 });
 
 it("gives changes in percent of the size of what was before", () => {

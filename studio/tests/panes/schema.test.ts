@@ -1,12 +1,13 @@
 import { describe, expect, it } from "vitest";
 import {
   controlOf,
+  entryLabel,
   helpOfKeys,
   optionFor,
   type Schema,
   schemaAt,
 } from "../../src/panes/design/schema";
-import { changeVariant, freeName, starter } from "../../src/panes/design/starters";
+import { changeVariant, freeName, materialName, starter } from "../../src/panes/design/starters";
 import { length, root, shape } from "./smallSchema";
 
 const part = (key: string): Schema => root.$defs?.Part?.properties?.[key] ?? {};
@@ -46,11 +47,18 @@ it("follows a path through lists, names and kinds", () => {
   expect(schemaAt(root, ["shapes", "body", "radius"], document)).toBeNull();
 });
 
+it("says which shape of a difference is taken from which", () => {
+  expect([0, 1, 2].map((i) => entryLabel("difference", i))).toEqual(["From", "Minus", "Minus"]);
+  expect([0, 1].map((i) => entryLabel("union", i))).toEqual(["1", "2"]);
+});
+
 it("reads the help of each key from the description", () => {
   const help = helpOfKeys(root.$defs?.Box ?? {});
   expect(help.size).toBe("Its edges.");
   expect(help.center).toBe("Where it is.");
   expect(help.Examples).toBeUndefined();
+  const description = "A.\n\nParameters\n----------\nedge\n    Of ``E``, see :meth:`~a.b.young`.";
+  expect(helpOfKeys({ description }).edge).toBe("Of E, see young.");
 });
 
 describe("starters", () => {
@@ -68,6 +76,10 @@ describe("starters", () => {
       size: 1,
       center: [0, 0, 1],
     });
+  });
+  it("name a material after what it is", () => {
+    expect(materialName({ model: "rigid" })).toBe("rigid");
+    expect(materialName({ model: "yeoh", c10: "17 kPa" })).toBe("rubber");
   });
   it("find free names", () => {
     expect(freeName("box", ["ball"])).toBe("box");

@@ -112,6 +112,7 @@ class TestCompare:
         tab.shot("compare")
         assert tab.errors == []
 
+    @pytest.mark.slow
     def test_turning_one_turns_the_other(self, compared_runs, open_tab):
         if not (compared_runs.runs / "twin").exists():
             shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "twin")
@@ -158,6 +159,7 @@ class TestCompare:
         tab.find("largest-short").wait_for()
         assert float(largest_of(tab, "bars")) < float(largest_of(tab, "short"))
 
+    @pytest.mark.slow
     def test_a_run_that_was_deleted_meanwhile_is_said_beside_the_other(
         self, compared_runs, open_tab
     ):
@@ -207,6 +209,7 @@ MEASURED = "s (mm),dz (mm)\n30,-10\n60,-30\n90,-52\n"
 
 
 class TestCalibrate:
+    @pytest.mark.slow
     def test_the_specimen_bends_beside_what_was_measured_while_it_is_fitted(
         self, own_server, open_tab, tmp_path
     ):
@@ -217,7 +220,7 @@ class TestCalibrate:
         file.write_text(MEASURED)
         tab.find("measurement-file").set_input_files(file)
         tab.find("measured").get_by_text("3 stations").wait_for()
-        for name, value in (("Generations", "500"), ("Population", "300")):
+        for name, value in (("Generations", "500"), ("Population", "12")):
             tab.page.get_by_role("textbox", name=name).fill(value)
             tab.page.get_by_role("textbox", name=name).press("Enter")
         tab.page.get_by_role("tab", name="Measured and simulated").click()

@@ -118,6 +118,7 @@ def test_a_hidden_tab_is_sent_no_frames_and_draws_nothing(prepared):
     # What was on its way may still come; then time goes on without a frame.
     began = tab.until(clock)
     tab.until(f"{clock} > {began} + 0.05")
+    tab.until("(now => window.drawn === now || (window.drawn = now, false))(drawCalls)")
     had, drawn = len(frames), tab.page.evaluate("drawCalls")
     tab.until(f"{clock} > {began} + 0.4")
     assert len(frames) == had

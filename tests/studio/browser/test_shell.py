@@ -1,6 +1,10 @@
 """The page around the panes: modes, keys, connection, and what it asks of the network."""
 
+import re
+
 import pytest
+
+from voxsoft.studio.wire import PROTOCOL
 
 
 def test_nothing_leaves_the_machine_and_nothing_goes_wrong(tab, outside):
@@ -44,7 +48,7 @@ def test_keys_typed_into_a_field_start_nothing(tab):
     tab.until("document.querySelector('[aria-label=Spring]').value === '200 N/m'")
     field.fill("3 kPa")
     field.press("Enter")
-    assert "a stiffness is due" in tab.find("pane-run").inner_text()
+    assert "expected a stiffness" in tab.find("pane-run").inner_text()
 
 
 def test_space_plays_after_a_click_and_presses_what_was_reached_by_keyboard(tab):
@@ -122,6 +126,40 @@ def test_the_page_fits_its_window(served, open_tab, size):
     for mode in ("design", "simulate"):
         tab.find(f"mode-{mode}").click()
         tab.find("view-more").wait_for()
+
+
+def test_another_version_of_the_protocol_is_told_and_not_tried_again(served, chromium):
+    context = chromium.new_context()
+    page = context.new_page()
+    opened = []
+
+    def between(socket):
+        opened.append(socket)
+        server = socket.connect_to_server()
+        socket.on_message(
+            lambda said: server.send(said.replace(f'"protocol":{PROTOCOL}', '"protocol":99'))
+        )
+
+    page.route_web_socket(re.compile("/ws$"), between)
+    page.goto(served.address)
+    band = page.get_by_test_id("disconnected")
+    band.get_by_text("speaks version 99").wait_for()
+    assert page.get_by_test_id("link").inner_text() == "refused"
+    assert len(opened) == 1
+    page.unroute_all()
+    band.get_by_role("button", name="Reload the page").click()
+    context.close()
+
+
+def test_a_studio_with_another_token_is_told_from_one_that_is_away(own_server, open_tab):
+    tab = open_tab(own_server.address)
+    own_server.stop()
+    tab.find("disconnected").get_by_text("retrying").wait_for()
+    own_server.token = "another-token-that-this-page-does-not-know"
+    own_server.start()
+    band = tab.find("disconnected")
+    band.get_by_text("opens only by the address").wait_for()
+    assert "Open the address" in band.inner_text()
 
 
 def test_a_server_that_dies_and_comes_back(own_server, open_tab):

@@ -160,12 +160,17 @@ def test_each_way_to_show_the_body_draws_another_picture(tab):
 
 def test_the_smooth_shape_moves_with_the_voxels(tab):
     tab.page.get_by_label("Show as").select_option("smooth")
-    tab.find("legend").wait_for(state="detached")
     still = settled(tab)
     tab.find("play").click()
     tab.until("voxsoft.state === 'at-rest'")
     tab.until("document.querySelector('[data-testid=fps]') === null")
     assert changed(still, settled(tab)) > 1000
+    # It is colored by the field as the voxels are: the map's many colors, and their legend.
+    assert tab.find("legend").is_visible()
+    by_field = settled(tab)
+    tab.page.get_by_label("Color by").select_option("parts")
+    assert changed(by_field, settled(tab)) > 1000
+    tab.page.get_by_label("Color by").select_option("0")
     tab.find("reset").click()
     tab.until("voxsoft.time === 0")
     # A busy machine may stand at a coarse picture for a while.
@@ -226,7 +231,7 @@ def test_a_body_that_diverges_says_so_in_the_picture_and_comes_back(
 ):
     # Silicone ten times softer, under a hundred times its own weight: nothing can carry that.
     soft = '{ model = "neo-hookean", young = "10 kPa", poisson = 0.45, density = "1070 kg/m^3" }'
-    server = serving(tmp_path, coarse.replace('"ecoflex-00-30"', soft))
+    server = serving(tmp_path, coarse.replace('"ecoflex-00-30-lattice"', soft))
     try:
         tab = open_tab(server.address)
         tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
@@ -301,3 +306,45 @@ def test_words_that_make_room_for_others_lead_back_to_their_points(tmp_path, ser
             assert dots.nth(i).get_attribute("title").startswith("station-")
     finally:
         server.stop()
+
+
+def test_an_equilibrium_has_numbers_and_is_kept_as_it_is(tab):
+    lamp = tab.find("live")
+    tab.find("play").click()
+    tab.until("document.querySelector('[data-testid=live]').classList.contains('on')")
+    tab.until("voxsoft.state === 'at-rest'")
+    tab.find("reset").click()
+    load = tab.find("pane-run").get_by_role("textbox", name="gravity", exact=True)
+    load.fill("15 m/s^2")
+    load.press("Enter")
+    tab.find("rest").click()
+    card = tab.find("equilibrium")
+    card.get_by_text("Probe tip").wait_for()
+    assert "Largest strain" in card.inner_text()
+    assert "on" not in lamp.get_attribute("class").split()
+    tab.shot("equilibrium")
+    tab.page.get_by_role("button", name="Keep as a run").click()
+    tab.find("toast").get_by_text("Kept as finger-run").wait_for()
+    tab.find("mode-runs").click()
+    row = tab.find("runs-table").locator("tbody tr").first
+    row.get_by_text("finger-run").wait_for()
+    tab.find("mode-simulate").click()
+    tab.find("reset").click()
+    card.wait_for(state="detached")
+    assert tab.errors == []
+
+
+def test_solving_can_be_canceled(own_server, open_tab):
+    # Small voxels take long enough to be canceled.
+    text = own_server.source.read_text().replace('voxel_size = "5 mm"', 'voxel_size = "1.25 mm"')
+    own_server.stop()
+    own_server.source.write_text(text)
+    own_server.start()
+    tab = open_tab(own_server.address)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("rest").click()
+    tab.find("cancel").click()
+    tab.find("rest").wait_for()
+    assert tab.page.evaluate("voxsoft.state") == "paused"
+    assert "Canceled" in tab.find("sentence").inner_text()
+    assert tab.errors == []

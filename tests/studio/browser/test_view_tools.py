@@ -205,3 +205,76 @@ def test_a_pull_works_in_every_display(tab, display):
     tab.page.mouse.up()
     tab.until("document.querySelector('[data-testid=grab]') === null")
     assert tab.errors == []
+
+
+def test_menus_of_the_view_close_on_escape_and_on_a_press_elsewhere(tab):
+    below = by(tab.middle(), 0, 150)
+    for button, menu in [("view-film", "film-menu"), ("view-more", "view-menu")]:
+        tab.find(button).click()
+        tab.find(menu).wait_for()
+        tab.page.keyboard.press("Escape")
+        tab.find(menu).wait_for(state="detached")
+        tab.find(button).click()
+        tab.find(menu).wait_for()
+        tab.page.mouse.click(*below)
+        tab.find(menu).wait_for(state="detached")
+
+
+def test_messages_cover_nothing_that_can_be_pressed(tab):
+    tab.page.keyboard.press("Control+s")
+    message = tab.find("toast")
+    message.get_by_text("Saved").wait_for()
+    place = boxes(tab, ".toasts")
+    for control in (".transport", ".status-line", ".cube-face", ".view-bar"):
+        assert apart(place, boxes(tab, control)), control
+    stage = boxes(tab, ".view-stage")
+    assert stage[0] <= place[0]
+    assert place[2] <= stage[2]
+    tab.shot("toast")
+
+
+# The finger, twice as long and of the softest silicone: at rest it hangs out of the picture.
+LIMP = [
+    ('value = "40 mm"', 'value = "60 mm"'),
+    ('material = "ecoflex-00-30-lattice"', 'material = "ecoflex-00-20-lattice"'),
+    ('"= length", "10 mm", "10 mm"', '"= length", "10 mm", "5 mm"'),
+]
+
+IN_PICTURE = """(() => {
+  const box = document.querySelector('.viewport canvas').getBoundingClientRect();
+  for (let i = 0, at; voxsoft.vertexPosition(i) && (at = voxsoft.screenOf(i)); i++)
+    if (at[0] < box.left || at[0] > box.right) return false;
+    else if (at[1] < box.top || at[1] > box.bottom) return false;
+  return true;
+})()"""
+
+
+HANGING = """(() => {
+  for (let i = 0, at; (at = voxsoft.vertexPosition(i)); i++) if (at[2] < -0.03) return true;
+  return false;
+})()"""
+
+
+@pytest.mark.parametrize("steered", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_a_body_that_leaves_the_picture_is_followed_unless_a_hand_moved(
+    open_tab, serving, coarse, tmp_path, steered
+):
+    text = coarse
+    for before, after in LIMP:
+        assert before in text
+        text = text.replace(before, after)
+    server = serving(tmp_path, text)
+    try:
+        tab = open_tab(server.address, symbols=False)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        if steered:
+            tab.page.mouse.move(*by(tab.middle(), 0, 150))
+            tab.page.mouse.wheel(0, -100)
+        tab.find("rest").click()
+        tab.until(HANGING)
+        if steered:
+            assert not tab.page.evaluate(IN_PICTURE)
+        else:
+            tab.until(IN_PICTURE)
+    finally:
+        server.stop()

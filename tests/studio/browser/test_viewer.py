@@ -76,6 +76,7 @@ def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, al
     assert tab.errors == []
 
 
+@pytest.mark.slow
 def test_a_page_lives_in_the_cell_of_a_notebook(live_page, alone, tmp_path):
     cell = tmp_path / "cell.html"
     cell.write_text(f"<!doctype html><body>{live_page._repr_html_()}</body>")

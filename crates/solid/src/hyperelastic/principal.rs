@@ -65,29 +65,13 @@ pub fn isochoric(model: &Model, stretches: Vec3) -> Principal {
 /// The energy as a function of the isochoric stretches, as if these were free.
 fn of_isochoric(model: &Model, bar: Vec3) -> Principal {
     match model {
-        Model::NeoHookean { c10 } => of_invariants(bar, [*c10, 0.0], 0.0, c10 * excess(bar)),
+        Model::NeoHookean { .. } | Model::Yeoh { .. } | Model::Gent { .. } => {
+            let jet = of_excess(model, excess(bar)).unwrap_or_default();
+            of_invariants(bar, [jet[1], 0.0], jet[2], jet[0])
+        }
         Model::MooneyRivlin { c10, c01 } => {
             let value = c10 * excess(bar) + c01 * (second_invariant(bar) - 3.0);
             of_invariants(bar, [*c10, *c01], 0.0, value)
-        }
-        Model::Yeoh { c } => {
-            let e = excess(bar);
-            let value = e * (c[0] + e * (c[1] + e * c[2]));
-            let slope = c[0] + e * (2.0 * c[1] + 3.0 * c[2] * e);
-            let curvature = 2.0 * c[1] + 6.0 * c[2] * e;
-            of_invariants(bar, [slope, 0.0], curvature, value)
-        }
-        Model::Gent { shear, limit } => {
-            let e = excess(bar);
-            let at = e.min(Model::GENT_REACH * limit);
-            let left = 1.0 - at / limit;
-            let jet = [
-                -shear * limit / 2.0 * left.ln(),
-                shear / (2.0 * left),
-                shear / (2.0 * limit * left * left),
-            ];
-            let [value, slope, curvature] = continued(jet, e - at);
-            of_invariants(bar, [slope, 0.0], curvature, value)
         }
         Model::Ogden { terms } => {
             let mut sum = Principal::default();
@@ -108,6 +92,30 @@ fn of_isochoric(model: &Model, bar: Vec3) -> Principal {
             sum
         }
     }
+}
+
+/// The energy of a model that depends on `Ī₁ − 3` alone, with its derivatives; `None` for other models.
+#[inline(always)]
+pub fn of_excess(model: &Model, e: f64) -> Option<Jet> {
+    Some(match model {
+        Model::NeoHookean { c10 } => [c10 * e, *c10, 0.0],
+        Model::Yeoh { c } => [
+            e * (c[0] + e * (c[1] + e * c[2])),
+            c[0] + e * (2.0 * c[1] + 3.0 * c[2] * e),
+            2.0 * c[1] + 6.0 * c[2] * e,
+        ],
+        Model::Gent { shear, limit } => {
+            let at = e.min(Model::GENT_REACH * limit);
+            let left = 1.0 - at / limit;
+            let jet = [
+                -shear * limit / 2.0 * left.ln(),
+                shear / (2.0 * left),
+                shear / (2.0 * limit * left * left),
+            ];
+            continued(jet, e - at)
+        }
+        Model::MooneyRivlin { .. } | Model::Ogden { .. } => return None,
+    })
 }
 
 fn excess(bar: Vec3) -> f64 {

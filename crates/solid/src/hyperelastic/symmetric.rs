@@ -50,8 +50,8 @@ const EQUAL_STRETCHES: f64 = 1e-5;
 
 /// The isochoric response at a stretch `s`.
 pub fn isochoric(model: &Model, s: &Sym) -> Response {
-    if let Model::NeoHookean { c10 } = model {
-        return neo_hookean(*c10, s);
+    if let Some(response) = of_first_invariant(model, s, true) {
+        return response;
     }
     let (stretches, vectors) = symmetric_eigen(&to_matrix(s));
     of_principal(&principal::isochoric(model, stretches), stretches, &vectors)
@@ -59,11 +59,8 @@ pub fn isochoric(model: &Model, s: &Sym) -> Response {
 
 /// Only value and stress of [`isochoric`].
 pub fn isochoric_stress(model: &Model, s: &Sym) -> (f64, Sym) {
-    if let Model::NeoHookean { c10 } = model {
-        let (a, volume, cofactor) = invariants(s);
-        let (g, dg, _) = shrink_squared(volume);
-        let stress = std::array::from_fn(|i| c10 * (2.0 * g * s[i] + a * dg * cofactor[i]));
-        return (c10 * (a * g - 3.0), stress);
+    if let Some(response) = of_first_invariant(model, s, false) {
+        return (response.value, response.stress);
     }
     let (stretches, vectors) = symmetric_eigen(&to_matrix(s));
     let principal = principal::isochoric(model, stretches);
@@ -87,25 +84,32 @@ fn shrink_squared(volume: f64) -> (f64, f64, f64) {
     (g * g, 2.0 * g * dg, 2.0 * (dg * dg + g * ddg))
 }
 
-/// `C₁₀ (g² S:S − 3)`, without eigenvalues: the most used model is also the quickest.
-fn neo_hookean(c10: f64, s: &Sym) -> Response {
+/// A model that depends on `Ī₁ = g² S:S` alone, without eigenvalues: the most used ones are also the quickest.
+/// The tangent only where `second` asks; `None` for other models.
+#[inline(always)]
+fn of_first_invariant(model: &Model, s: &Sym, second: bool) -> Option<Response> {
     let (a, volume, cofactor) = invariants(s);
     let (g, dg, ddg) = shrink_squared(volume);
+    let [value, slope, curvature] = principal::of_excess(model, a * g - 3.0)?;
+    let change: Sym = std::array::from_fn(|i| 2.0 * g * s[i] + a * dg * cofactor[i]);
     let mut response = Response {
-        value: c10 * (a * g - 3.0),
+        value,
+        stress: change.map(|e| slope * e),
         ..Response::default()
     };
-    for i in 0..6 {
-        response.stress[i] = c10 * (2.0 * g * s[i] + a * dg * cofactor[i]);
-        for j in 0..6 {
-            response.tangent[i][j] = c10
-                * (2.0 * dg * (s[i] * cofactor[j] + cofactor[i] * s[j])
-                    + a * ddg * cofactor[i] * cofactor[j]);
+    if second {
+        for i in 0..6 {
+            for j in 0..6 {
+                response.tangent[i][j] = slope
+                    * (2.0 * dg * (s[i] * cofactor[j] + cofactor[i] * s[j])
+                        + a * ddg * cofactor[i] * cofactor[j])
+                    + curvature * change[i] * change[j];
+            }
+            response.tangent[i][i] += slope * 2.0 * g;
         }
-        response.tangent[i][i] += 2.0 * c10 * g;
+        add_second_determinant(&mut response.tangent, s, slope * a * dg);
     }
-    add_second_determinant(&mut response.tangent, s, c10 * a * dg);
-    response
+    Some(response)
 }
 
 /// `det S` with its gradient, and its Hessian where `second` asks.

@@ -5,40 +5,9 @@
 //! a body at rest stays there, because the pull and the elastic forces enter the same prediction. An
 //! infinite stiffness puts the vertex on the anchor.
 
+use voxsoft_solid::Grab;
 use voxsoft_solid::strips::Columns;
-use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
-
-/// A spring between a vertex and a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Grab {
-    /// The vertex.
-    pub vertex: u32,
-    /// Stiffness in N/m.
-    pub stiffness: f64,
-    /// The point that is pulled towards, in m.
-    pub target: Vec3,
-    /// Where the spring is held now, in m: on its way to the target.
-    pub anchor: Vec3,
-}
-
-impl Grab {
-    /// The force in N on the vertex at `position`.
-    pub fn force(&self, position: Vec3) -> Vec3 {
-        scale(self.stiffness, sub(self.anchor, position))
-    }
-
-    /// Moves the anchor towards the target, no farther than `travel` (m): a target that jumps must not
-    /// turn voxels inside out within one substep.
-    pub(super) fn follow(&mut self, travel: f64) {
-        let way = sub(self.target, self.anchor);
-        let distance = norm(way);
-        if distance <= travel {
-            self.anchor = self.target;
-        } else {
-            axpy(&mut self.anchor, travel / distance, way);
-        }
-    }
-}
+use voxsoft_solid::vector::{Vec3, add, axpy, scale};
 
 /// Adds the forces (N) of all grabs.
 pub(super) fn add_pulls(grabs: &[Grab], positions: &[Vec3], forces: &mut [Vec3]) {

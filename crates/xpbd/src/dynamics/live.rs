@@ -1,12 +1,14 @@
 //! A run that goes on between calls, while someone changes its loads and pulls at it.
 
-use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{History, Problem, ProblemError, State, elastic};
-
-use super::{Arrays, Dynamics, Grab, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
-use crate::outcome::{
-    BLOW_UP_EXCESS, Breakdown, MAX_BACK_OFFS, farthest, find_breakdown, travel_limit,
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::hands::{Hands, loads_end, shortest_edge, still_state};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{
+    Ask, Grab, LiveStatus, Look, Method, Problem, ProblemError, State, Stepper, elastic,
 };
+
+use super::{Arrays, Dynamics, Subject, Window, arrays_of, at_rest, strips_of, substeps_of};
+use crate::outcome::{BLOW_UP_EXCESS, MAX_BACK_OFFS};
 
 /// Substeps between two looks for rest and breakdown.
 const LOOK: u32 = 64;
@@ -19,41 +21,6 @@ const ANCHOR_TRAVEL: f64 = 0.05;
 /// that rattles looks the same, and more would make a slow run for nothing.
 const MAX_STUCK: u32 = 3;
 
-/// Whether a [`Live`] run goes on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LiveStatus {
-    /// The body moves.
-    Moving,
-    /// Nothing moves until something is changed: further substeps cost nothing.
-    AtRest,
-    /// The step was backed off as far as allowed and the body still flew apart. The state is the last good
-    /// one and stays until something is changed.
-    Diverged,
-}
-
-/// What a look at a [`Live`] run shows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Look {
-    /// Whether it goes on.
-    pub status: LiveStatus,
-    /// The time of the run in s.
-    pub time: f64,
-    /// The length of a substep in s.
-    pub substep: f64,
-    /// Substeps taken since the start, repeated ones counted.
-    pub substeps: u64,
-    /// How often the substep was halved.
-    pub back_offs: u32,
-    /// The residual force without units, grabs counted as loads.
-    pub residual: f64,
-    /// The elastic energy in J.
-    pub elastic: f64,
-    /// The kinetic energy in J.
-    pub kinetic: f64,
-    /// Where and when it broke down, for [`LiveStatus::Diverged`].
-    pub breakdown: Option<Breakdown>,
-}
-
 /// A problem in motion.
 ///
 /// The same substeps as [`super::simulate`], and the same rest; `end_time`, `max_time` and
@@ -62,8 +29,8 @@ pub struct Look {
 /// # Example
 ///
 /// ```
-/// use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Problem};
-/// use voxsoft_xpbd::{Dynamics, Live, LiveStatus};
+/// use voxsoft_solid::{Body, Clamp, LatticeMaterial, LiveStatus, Load, Mesh, Problem, Stepper};
+/// use voxsoft_xpbd::{Dynamics, Live};
 ///
 /// let mesh = Mesh {
 ///     vertices: vec![[0.0; 3], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.01]],
@@ -85,11 +52,8 @@ pub struct Look {
 pub struct Live {
     problem: Problem,
     settings: Dynamics,
-    /// The histories of the loads before anyone changed them.
-    histories: Vec<History>,
+    hands: Hands,
     arrays: Box<dyn Arrays + Send>,
-    /// By the caller's numbers.
-    grabs: Vec<(u32, Grab)>,
     /// The state at the last look, which was sound.
     state: State,
     first_substep: f64,
@@ -119,9 +83,8 @@ impl Live {
         let state = State::at_rest(problem.body());
         arrays.load(&state);
         Self {
-            histories: problem.loads().iter().map(|l| l.history.clone()).collect(),
+            hands: Hands::new(&problem),
             arrays,
-            grabs: Vec::new(),
             state,
             first_substep: substep,
             substep,
@@ -139,60 +102,8 @@ impl Live {
         }
     }
 
-    /// The problem, with the loads as they are now.
-    pub fn problem(&self) -> &Problem {
-        &self.problem
-    }
-
-    /// The state at the end of the last advance.
-    pub fn state(&self) -> &State {
-        &self.state
-    }
-
-    /// The length of a substep in s.
-    pub fn substep(&self) -> f64 {
-        self.substep
-    }
-
-    /// Takes as many substeps, fewer if it comes to rest or diverges.
-    pub fn advance(&mut self, substeps: u32) -> Look {
-        self.advance_while(substeps, &mut || true)
-    }
-
-    /// As [`Live::advance`], as long as `go_on` says so after each substep.
-    pub fn advance_while(&mut self, substeps: u32, go_on: &mut dyn FnMut() -> bool) -> Look {
-        let mut left = substeps;
-        let mut more = true;
-        while more && left > 0 && self.status == LiveStatus::Moving {
-            let mut taken = 0;
-            while more && taken < left.min(LOOK) {
-                self.take_substep();
-                taken += 1;
-                more = go_on();
-            }
-            left -= taken;
-            self.look();
-        }
-        let elastic = elastic::energy(self.problem.body(), &self.state.positions);
-        Look {
-            status: self.status,
-            time: self.state.time,
-            substep: self.substep,
-            substeps: self.substeps,
-            back_offs: self.back_offs,
-            residual: self.residual,
-            elastic,
-            kinetic: self.state.kinetic_energy(self.problem.body().masses()),
-            breakdown: self.breakdown,
-        }
-    }
-
     fn take_substep(&mut self) {
-        let mut pulls = Vec::with_capacity(self.grabs.len());
-        for (_, grab) in &mut self.grabs {
-            grab.follow(ANCHOR_TRAVEL * self.shortest_edge);
-            pulls.push(*grab);
-        }
+        let pulls = self.hands.follow(ANCHOR_TRAVEL * self.shortest_edge);
         let subject = Subject {
             problem: &self.problem,
             settings: &self.settings,
@@ -206,22 +117,23 @@ impl Live {
     fn look(&mut self) {
         let mut now = self.state.clone();
         self.arrays.store(&mut now);
-        let pulls: Vec<Grab> = self.grabs.iter().map(|(_, grab)| *grab).collect();
+        let pulls: Vec<Grab> = self.hands.grabs().iter().map(|(_, grab)| *grab).collect();
         let subject = Subject {
             problem: &self.problem,
             settings: &self.settings,
             grabs: &pulls,
         };
         let balance = self.arrays.balance(subject, &now);
-        let broken = find_breakdown(&self.problem, &now.positions, self.travel_limit, now.time);
+        let broken = Breakdown::find(&self.problem, &now.positions, self.travel_limit, now.time);
         let excess = balance.excess();
         if broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS {
             self.arrays.load(&self.state);
             if self.back_offs < MAX_BACK_OFFS {
                 self.halve();
             } else {
-                let place =
-                    broken.unwrap_or_else(|| farthest(&self.problem, &now.positions, now.time));
+                let place = broken.unwrap_or_else(|| {
+                    Breakdown::farthest(&self.problem, &now.positions, now.time)
+                });
                 self.status = LiveStatus::Diverged;
                 self.breakdown = Some(place);
             }
@@ -230,8 +142,7 @@ impl Live {
         self.residual = balance.relative_residual();
         self.state = now;
         let tolerance = self.settings.tolerance;
-        let settled = pulls.iter().all(|grab| grab.anchor == grab.target)
-            && self.state.time >= self.loads_end();
+        let settled = self.hands.arrived() && self.state.time >= loads_end(&self.problem);
         if settled && at_rest(&self.problem, &self.state, self.residual, tolerance) {
             self.status = LiveStatus::AtRest;
         } else if settled
@@ -255,14 +166,6 @@ impl Live {
         self.window = Window::default();
     }
 
-    /// When loads and motions stop to vary.
-    fn loads_end(&self) -> f64 {
-        let loads = self.problem.loads().iter().map(|load| &load.history);
-        let clamps = self.problem.clamps().iter();
-        let motions = clamps.filter_map(|clamp| Some(&clamp.motion.as_ref()?.history));
-        loads.chain(motions).map(History::end).fold(0.0, f64::max)
-    }
-
     /// Something was changed: the body may move again, after a breakdown with the first substep.
     fn wake(&mut self) {
         if self.status == LiveStatus::Diverged {
@@ -274,115 +177,6 @@ impl Live {
         self.window = Window::default();
     }
 
-    /// Makes a load `factor` times its final value, at once and for good; `None` gives it its own history
-    /// back.
-    pub fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
-        let count = self.histories.len();
-        let what = "load";
-        let index = load;
-        let own = self.histories.get(load);
-        let own = own.ok_or(ProblemError::Index { what, index, count })?;
-        let history = match factor {
-            Some(factor) => History::new(vec![0.0], vec![factor * own.at(f64::INFINITY)])?,
-            None => own.clone(),
-        };
-        self.problem.set_history(load, history)?;
-        self.arrays.renew_loads(&self.problem);
-        self.wake();
-        Ok(())
-    }
-
-    /// Pulls a vertex towards a point (m) by a spring of the given stiffness (N/m), any above zero. A grab
-    /// of the same number takes a new target and a new stiffness, or a new vertex.
-    pub fn grab(
-        &mut self,
-        number: u32,
-        vertex: u32,
-        target: Vec3,
-        stiffness: f64,
-    ) -> Result<(), ProblemError> {
-        let count = self.state.positions.len();
-        let index = vertex as usize;
-        if index >= count {
-            let what = "vertex of a grab";
-            return Err(ProblemError::Index { what, index, count });
-        }
-        if !target.iter().all(|x| x.is_finite()) {
-            let what = "the target of a grab";
-            return Err(ProblemError::NotFinite { what });
-        }
-        if !(stiffness > 0.0 && stiffness.is_finite()) {
-            let (what, value) = ("stiffness of a grab", stiffness);
-            return Err(ProblemError::NotPositive { what, value });
-        }
-        let new = Grab {
-            vertex,
-            stiffness,
-            target,
-            anchor: self.state.positions[index],
-        };
-        match self.grabs.iter_mut().find(|(other, _)| *other == number) {
-            Some((_, old)) if old.vertex == vertex => {
-                old.stiffness = stiffness;
-                old.target = target;
-            }
-            Some((_, old)) => *old = new,
-            None => self.grabs.push((number, new)),
-        }
-        self.wake();
-        Ok(())
-    }
-
-    /// Lets go; whether there was such a grab.
-    pub fn release(&mut self, number: u32) -> bool {
-        let before = self.grabs.len();
-        self.grabs.retain(|(other, _)| *other != number);
-        let released = self.grabs.len() < before;
-        if released {
-            self.wake();
-        }
-        released
-    }
-
-    /// All grabs with their numbers.
-    pub fn grabs(&self) -> &[(u32, Grab)] {
-        &self.grabs
-    }
-
-    /// Back to the rest pose at time zero with the first substep. Grabs are let go; loads stay as they
-    /// were set.
-    pub fn reset(&mut self) {
-        self.grabs.clear();
-        self.substep = self.first_substep;
-        (self.substeps, self.back_offs, self.stuck) = (0, 0, 0);
-        self.start_from(State::at_rest(self.problem.body()));
-    }
-
-    /// Goes on from other positions (m), without velocity, at `time` (s). Grabs are let go.
-    pub fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
-        let expected = self.state.positions.len();
-        let got = positions.len();
-        if got != expected {
-            let what = "positions";
-            return Err(ProblemError::Length {
-                what,
-                got,
-                expected,
-            });
-        }
-        if !time.is_finite() || positions.iter().flatten().any(|x| !x.is_finite()) {
-            let what = "positions or time";
-            return Err(ProblemError::NotFinite { what });
-        }
-        self.grabs.clear();
-        self.start_from(State {
-            velocities: vec![[0.0; 3]; got],
-            positions,
-            time,
-        });
-        Ok(())
-    }
-
     fn start_from(&mut self, state: State) {
         self.arrays.load(&state);
         self.state = state;
@@ -391,17 +185,97 @@ impl Live {
     }
 }
 
-fn shortest_edge(problem: &Problem) -> f64 {
-    let rest = problem.body().rest();
-    let edges = problem.body().edges().iter();
-    let lengths = edges.map(|edge| edge.length);
-    let sides = problem.body().bricks().iter().map(|brick| brick.side);
-    let tets = problem.body().membranes().iter().flat_map(|membrane| {
-        let [a, b, c] = membrane.vertices().map(|v| rest[v as usize]);
-        [norm(sub(a, b)), norm(sub(b, c)), norm(sub(c, a))]
-    });
-    lengths
-        .chain(sides)
-        .chain(tets)
-        .fold(f64::INFINITY, f64::min)
+impl Stepper for Live {
+    fn method(&self) -> Method {
+        Method::Explicit
+    }
+
+    fn problem(&self) -> &Problem {
+        &self.problem
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn step(&self) -> f64 {
+        self.substep
+    }
+
+    /// Stability decides the substep.
+    fn prefer_step(&mut self, _: f64) {}
+
+    fn advance_while(&mut self, steps: u32, go_on: &mut dyn FnMut(Ask) -> bool) -> Look {
+        let mut left = steps;
+        let mut more = true;
+        while more && left > 0 && self.status == LiveStatus::Moving {
+            let mut taken = 0;
+            while more && taken < left.min(LOOK) {
+                self.take_substep();
+                taken += 1;
+                more = go_on(Ask::After);
+            }
+            left -= taken;
+            self.look();
+        }
+        let elastic = elastic::energy(self.problem.body(), &self.state.positions);
+        Look {
+            status: self.status,
+            time: self.state.time,
+            substep: self.substep,
+            substeps: self.substeps,
+            back_offs: self.back_offs,
+            residual: self.residual,
+            elastic,
+            kinetic: self.state.kinetic_energy(self.problem.body().masses()),
+            breakdown: self.breakdown,
+        }
+    }
+
+    fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError> {
+        self.hands.set_load(&mut self.problem, load, factor)?;
+        self.arrays.renew_loads(&self.problem);
+        self.wake();
+        Ok(())
+    }
+
+    fn grab(
+        &mut self,
+        number: u32,
+        vertex: u32,
+        target: Vec3,
+        stiffness: f64,
+    ) -> Result<(), ProblemError> {
+        let positions = &self.state.positions;
+        self.hands
+            .grab(positions, number, vertex, target, stiffness)?;
+        self.wake();
+        Ok(())
+    }
+
+    fn release(&mut self, number: u32) -> bool {
+        let released = self.hands.release(number);
+        if released {
+            self.wake();
+        }
+        released
+    }
+
+    fn grabs(&self) -> &[(u32, Grab)] {
+        self.hands.grabs()
+    }
+
+    fn reset(&mut self) {
+        self.hands.release_all();
+        self.substep = self.first_substep;
+        (self.substeps, self.back_offs, self.stuck) = (0, 0, 0);
+        self.start_from(State::at_rest(self.problem.body()));
+    }
+
+    fn seek(&mut self, positions: Vec<Vec3>, time: f64) -> Result<(), ProblemError> {
+        let state = still_state(&self.problem, positions, time)?;
+        self.hands.release_all();
+        self.start_from(state);
+        Ok(())
+    }
 }

@@ -9,27 +9,14 @@ mod sheets;
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
-use voxsoft_solid::{Problem, State};
+use voxsoft_solid::{Damping, Grab, Problem, State};
 
-use crate::outcome::{
-    Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status, farthest, find_breakdown,
-    travel_limit,
-};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
-pub use grab::Grab;
-pub use live::{Live, LiveStatus, Look};
-
-/// How motion is damped.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Damping {
-    /// Velocities decay with this rate in 1/s.
-    Rate(f64),
-    /// Critical for the slowest motion seen, estimated as the run goes: comes to rest soonest, says
-    /// nothing about the real motion.
-    Critical,
-}
+pub use live::Live;
 
 /// Settings of [`simulate`].
 #[derive(Debug, Clone, PartialEq)]
@@ -174,7 +161,7 @@ fn run(
         arrays.store(&mut state);
         let now = arrays.balance(subject, &state);
         let residual = now.relative_residual();
-        let broken = find_breakdown(problem, &state.positions, limit, state.time);
+        let broken = Breakdown::find(problem, &state.positions, limit, state.time);
         let excess = now.excess();
         let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up
@@ -194,7 +181,8 @@ fn run(
             }
             window = Window::default();
         } else if blown_up {
-            let place = broken.unwrap_or_else(|| farthest(problem, &state.positions, state.time));
+            let place = broken
+                .unwrap_or_else(|| Breakdown::farthest(problem, &state.positions, state.time));
             state.clone_from(&checkpoint);
             break (Status::Diverged, residual, Some(place));
         } else {

@@ -6,13 +6,11 @@ mod on_vertices;
 use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
 use voxsoft_solid::{Problem, State, elastic};
 
-use crate::outcome::{
-    Answer, BLOW_UP_EXCESS, Breakdown, MAX_BACK_OFFS, Observer, Progress, Status, farthest,
-    find_breakdown, travel_limit,
-};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 /// Settings of [`relax`].
@@ -141,12 +139,13 @@ fn run(
             arrays.store(&mut state);
             let look = arrays.balance(&state);
             let broken: Option<Breakdown> =
-                find_breakdown(problem, &state.positions, limit, taken as f64);
+                Breakdown::find(problem, &state.positions, limit, taken as f64);
             let residual = look.relative_residual();
             let excess = look.excess();
             if broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS {
-                let broken =
-                    broken.unwrap_or_else(|| farthest(problem, &state.positions, taken as f64));
+                let broken = broken.unwrap_or_else(|| {
+                    Breakdown::farthest(problem, &state.positions, taken as f64)
+                });
                 // A body that grows past all bounds while forces stay moderate is not an unstable
                 // step: the material cannot carry the load.
                 let runaway = excess < BLOW_UP_EXCESS;

@@ -1,7 +1,7 @@
 """Design families: ready designs with parameters, to start from.
 
 Each is a commented TOML file beside this module, so that a family is also the text that
-``voxsoft new`` writes.
+``voxsoft new`` writes. All are of silicone rubber, and fine enough to be solved without a warning.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ from voxsoft.records import closest
 #: Names of the families.
 FAMILIES: Final = ("beam", "cylinder", "finger", "pneunet", "sphere")
 
+#: The bodies of the paper, as its spring lattice on voxels of 5 mm: no templates, but a reference.
+PAPER: Final = ("paper-beam", "paper-cylinder")
+
 
 def family_text(name: str) -> str:
     """Return a family as the text of a design file, with comments.
@@ -24,7 +27,7 @@ def family_text(name: str) -> str:
     Parameters
     ----------
     name
-        One of :data:`FAMILIES`.
+        One of :data:`FAMILIES` or :data:`PAPER`.
 
     Raises
     ------
@@ -36,7 +39,7 @@ def family_text(name: str) -> str:
     >>> print(family_text("beam")[:49])
     # A cantilever beam under its own weight: the spe
     """
-    if name not in FAMILIES:
+    if name not in FAMILIES + PAPER:
         raise DesignError("family", f'there is no family "{name}"', closest(name, FAMILIES))
     file = resources.files("voxsoft.design.families").joinpath(f"{name}.toml")
     return file.read_text(encoding="utf-8")
@@ -82,16 +85,16 @@ def beam(**parameters: float | str) -> Design:
 
 
 def cylinder(**parameters: float | str) -> Design:
-    """Return the paper's cylindrical actuator: a closed chamber under 4 kPa on a plate.
+    """Return a cylindrical actuator: a closed chamber under 6 kPa on a plate.
 
     Parameters
     ----------
     **parameters
-        ``radius`` (default 25 mm), ``height`` (35 mm), ``wall`` (5 mm), ``cap`` (5 mm).
+        ``radius`` (default 30 mm), ``height`` (50 mm), ``wall`` (10 mm), ``cap`` (10 mm).
 
     Examples
     --------
-    >>> cylinder(radius="10 mm", wall="10 mm").empty_shapes
+    >>> cylinder(radius="20 mm", wall="20 mm").empty_shapes
     ('cavity',)
     """
     return family("cylinder", **parameters)
@@ -136,8 +139,8 @@ def finger(**parameters: float | str) -> Design:
     Parameters
     ----------
     **parameters
-        ``length`` (default 80 mm), ``width`` (24 mm), ``skin`` (2 mm), ``period`` (16 mm),
-        ``thickness`` (3 mm).
+        ``length`` (default 80 mm), ``width`` (28 mm), ``skin`` (4 mm), ``period`` (40 mm),
+        ``thickness`` (5 mm).
 
     Examples
     --------
@@ -145,3 +148,35 @@ def finger(**parameters: float | str) -> Design:
     0.02
     """
     return family("finger", **parameters)
+
+
+def paper_beam(**parameters: float | str) -> Design:
+    """Return the paper's cantilever, of its lattice: what the paper's calibration fits.
+
+    Parameters
+    ----------
+    **parameters
+        As of :func:`beam`.
+
+    Examples
+    --------
+    >>> paper_beam().material_of(paper_beam().parts[0]).model
+    'lattice'
+    """
+    return family("paper-beam", **parameters)
+
+
+def paper_cylinder(**parameters: float | str) -> Design:
+    """Return the paper's cylindrical actuator, of its lattice: its study varies it 105 times.
+
+    Parameters
+    ----------
+    **parameters
+        ``radius`` (default 25 mm), ``height`` (35 mm), ``wall`` (5 mm), ``cap`` (5 mm).
+
+    Examples
+    --------
+    >>> paper_cylinder(radius="10 mm", wall="10 mm").empty_shapes
+    ('cavity',)
+    """
+    return family("paper-cylinder", **parameters)

@@ -72,7 +72,7 @@ class Curve:
     ------
     MeasurementError
         Fewer than five points, numbers that are not finite, lengths that differ, a strain that
-        falls (a cycle), or an unknown mode.
+        falls (a cycle), a stress whose sign is turned, or an unknown mode.
 
     Examples
     --------
@@ -104,7 +104,7 @@ class Curve:
             )
         if len(strain) < _FEWEST:
             raise MeasurementError(
-                self.name, f"has {len(strain)} points; at least {_FEWEST} are due"
+                self.name, f"has {len(strain)} points; expected at least {_FEWEST}"
             )
         if not (np.isfinite(strain).all() and np.isfinite(stress).all()):
             raise MeasurementError(self.name, "holds numbers that are not finite")
@@ -123,6 +123,27 @@ class Curve:
                 "the strain falls: a cycle",
                 "keep the loading branch of one cycle, the first or one after conditioning",
             )
+        self._check_sign()
+
+    def _check_sign(self) -> None:
+        """Refuse a stress that falls as a whole: no rubber does, wherever its zero lies."""
+        size = float(np.abs(self.stress).max()) or 1.0
+        slope = float((self.strain - self.strain.mean()) @ (self.stress / size))
+        if slope >= 0.0:
+            return
+        low, high = float(self.strain.min()), float(self.strain.max())
+        if high < -low:
+            what = f"stress is positive while strain falls to {low:.3g}"
+        elif self.stress.mean() < 0.0:
+            what = f"stress is negative while strain grows to {high:.3g}"
+        else:
+            what = f"stress falls while strain grows to {high:.3g}"
+        raise MeasurementError(
+            self.name,
+            what,
+            "tension is positive in both, compression negative: turn the sign of one, and look "
+            "whether columns are swapped",
+        )
 
     @property
     def stretch(self) -> Floats:
@@ -194,7 +215,7 @@ class Curve:
             raise MeasurementError(
                 self.name,
                 f"has {np.count_nonzero(kept)} points up to a strain of {max_strain:g}; "
-                f"at least {_FEWEST} are due",
+                f"expected at least {_FEWEST}",
                 "allow a larger strain",
             )
         return replace(self, strain=self.strain[kept], stress=self.stress[kept])

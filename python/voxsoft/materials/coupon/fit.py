@@ -18,6 +18,7 @@ from voxsoft.materials.hyperelastic import NEARLY_INCOMPRESSIBLE, Floats, Hypere
 from voxsoft.materials.lattice import SILICONE_DENSITY
 from voxsoft.materials.stability import stable_range, stable_ranges
 from voxsoft.records import closest
+from voxsoft.units import si_value
 
 Flags = NDArray[np.bool_]
 
@@ -35,7 +36,7 @@ def fit_coupons(
     toe: ToeCorrection = "strain",
     max_strain: float = DEFAULT_MAX_STRAIN,
     poisson: float = NEARLY_INCOMPRESSIBLE,
-    density: float = SILICONE_DENSITY,
+    density: float | str = SILICONE_DENSITY,
     models: Collection[str] | None = None,
 ) -> CouponFit:
     """Fit every hyperelastic model to the curves of one material.
@@ -84,6 +85,7 @@ def fit_coupons(
     >>> fit.recommended.stable_in_fit, round(fit.recommended.young.value / 1e3) in range(57, 63)
     (True, True)
     """
+    density = si_value(density, "density", "density", positive=True)
     if not curves:
         raise MeasurementError("curves", "none came", "give at least one stress-strain curve")
     if toe not in TOE_CORRECTIONS:

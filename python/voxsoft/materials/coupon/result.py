@@ -14,6 +14,7 @@ from voxsoft.materials.coupon.curve import Curve, Toe, ToeCorrection
 from voxsoft.materials.coupon.observation import ObservedModulus
 from voxsoft.materials.hyperelastic import Hyperelastic
 from voxsoft.materials.stability import StableRange
+from voxsoft.materials.tested import StretchRange
 from voxsoft.records import closest
 from voxsoft.units import format_quantity
 
@@ -197,15 +198,23 @@ class CouponFit:
             One of the models; default: the recommended one.
         title, source
             See :class:`~voxsoft.materials.Card`; the source has a default that names the curves.
+
+        Raises
+        ------
+        MaterialError
+            The model is unstable within the strains that were tested: no simulation could use it
+            there. Its fit is still among :attr:`models`.
         """
         fit = self.of(model)
+        if not fit.stable_in_fit:
+            raise self._unstable(fit)
         breaks = [c.elongation_at_break for c in self.measured if c.elongation_at_break]
         modes = ", ".join(dict.fromkeys(curve.mode for curve in self.curves))
         names = ", ".join(curve.name for curve in self.curves)
         return Card(
             name=name,
             title=title,
-            material=fit.material,
+            material=fit.material.model_copy(update={"tested_stretch": self._tested()}),
             source=source or f"Fitted to {modes} curves: {names}.",
             caution=". ".join(
                 [
@@ -244,9 +253,26 @@ class CouponFit:
             "warnings": self.recommended.warnings + self.warnings,
         }
 
+    def _unstable(self, fit: ModelFit) -> MaterialError:
+        sound = [other.name for other in self.models if other.stable_in_fit]
+        return MaterialError(
+            fit.name,
+            f"is unstable between the strains {self._span(0):.3g} and {self._span(1):.3g} that "
+            f"were tested: {'; '.join(each.sentence for each in fit.stability if each.sentence)}",
+            f"take one that is stable there: {', '.join(sound)}"
+            if sound
+            else "look at the curves: no model is stable there; --max-strain leaves their ends out",
+        )
+
     def _span(self, end: int) -> float:
         choose = (min, max)[end]
         return float(choose(choose(curve.strain) for curve in self.curves))
+
+    def _tested(self) -> StretchRange:
+        """How far the specimens went in the parts of the curves that were fitted."""
+        low, high = self._span(0), self._span(1)
+        pressed = round(1.0 + low, 4) if low < -_LARGE_TOE else None
+        return StretchRange(largest=max(round(1.0 + high, 4), 1.0), smallest=pressed)
 
     def _notes(self, fit: ModelFit) -> dict[str, Any]:
         notes: dict[str, Any] = {

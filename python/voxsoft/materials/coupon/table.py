@@ -14,7 +14,7 @@ from voxsoft.errors import MeasurementError, UnitError
 from voxsoft.materials.coupon.curve import Curve
 from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
-from voxsoft.units import format_quantity, parse
+from voxsoft.units import format_quantity, parse, to_si
 
 _NAMES: Final = {
     "strain": ("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
@@ -52,8 +52,8 @@ def read_curve(
     *,
     name: str = "curve",
     mode: Mode = "uniaxial",
-    area: float | None = None,
-    length: float | None = None,
+    area: float | str | None = None,
+    length: float | str | None = None,
 ) -> Curve:
     r"""Read a stress-strain curve from a table with one header line.
 
@@ -69,9 +69,9 @@ def read_curve(
     mode
         The test: ``"uniaxial"``, ``"equibiaxial"`` or ``"planar"``.
     area
-        Original cross section in m², for a column of forces.
+        Original cross section in m² or with its unit, for a column of forces.
     length
-        Original gauge length in m, for a column of displacements.
+        Original gauge length in m or with its unit, for a column of displacements.
 
     Returns
     -------
@@ -83,7 +83,7 @@ def read_curve(
     ------
     MeasurementError
         No such columns (those that came are listed), a unit of the wrong kind, text where a number
-        is due, too few points, a cycle.
+        belongs, too few points, a cycle.
 
     Examples
     --------
@@ -95,6 +95,8 @@ def read_curve(
     ...
     voxsoft.errors.MeasurementError: curve: no column of strain and no column of stress among ...
     """
+    length = None if length is None else to_si(length, "length", "length")
+    area = None if area is None else to_si(area, "area", "area")
     separator, rows = _rows(text, name)
     start, across, along = _header(rows, name)
     columns = [across, along]
@@ -150,7 +152,7 @@ def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Co
     came = ", ".join(f'"{head}"' for head in heads[:12]) + (", ..." if len(heads) > 12 else "")
     hint = f"name them {_ALLOWED}"
     if any(_split(head)[0] in _TRUE for head in heads):
-        hint = "engineering quantities are due: stress = true stress/stretch, strain = stretch - 1"
+        hint = "expected engineering quantities: stress = true stress/stretch, strain = stretch - 1"
     raise MeasurementError(name, f"{' and '.join(missing)} among {came}", hint)
 
 

@@ -1,21 +1,10 @@
 import { Empty, Section } from "../../controls/Choice";
+import { cavityName } from "../../controls/cavities";
+import { formatKind } from "../../controls/kinds";
 import { formatQuantity, formatSpan } from "../../controls/units";
-import type { Finding } from "../../protocol";
 import { useStudio } from "../../store/studio";
+import { Findings } from "./Findings";
 import "./body.css";
-
-const SIGNS = { error: "✕", warning: "!", note: "i" } as const;
-
-/** Findings that say the same at several places, once each with their number. */
-function grouped(findings: readonly Finding[]): [Finding, number][] {
-  const groups = new Map<string, [Finding, number]>();
-  for (const finding of findings) {
-    const known = groups.get(finding.what);
-    if (known) known[1] += 1;
-    else groups.set(finding.what, [finding, 1]);
-  }
-  return [...groups.values()];
-}
 
 /** What the mesh came to: counts, mass, cavities, and what the check found. */
 export default function BodyPane() {
@@ -34,7 +23,7 @@ export default function BodyPane() {
     ["Voxels", body.voxels.toLocaleString("en")],
     ["Vertices", body.vertices.toLocaleString("en")],
     ["Tetrahedra", body.tets.toLocaleString("en")],
-    ["Mass", formatQuantity(body.mass, "kg")],
+    ["Mass", formatKind(body.mass, "mass")],
     ["Volume", formatQuantity(body.volume, "m^3")],
     ["Meshed in", formatSpan(body.seconds)],
   ];
@@ -67,7 +56,7 @@ export default function BodyPane() {
           <div key={cavity.center.join()} className="facts-row">
             <span>
               <i className={`swatch cavity-${index % 6}`} />
-              Cavity {index + 1}
+              {cavityName(cavity, index)}
             </span>
             <span>{formatQuantity(cavity.volume, "m^3")}</span>
           </div>
@@ -81,16 +70,7 @@ export default function BodyPane() {
       </Section>
       {body.findings.length > 0 && (
         <Section title="Check">
-          {grouped(body.findings).map(([finding, count]) => (
-            <p key={finding.where + finding.what} className={`finding ${finding.severity}`}>
-              <b>{SIGNS[finding.severity]}</b>
-              <span>
-                {finding.what}
-                {count > 1 && <b> × {count}</b>}
-                {finding.hint && <span className="muted"> {finding.hint}</span>}
-              </span>
-            </p>
-          ))}
+          <Findings findings={body.findings} />
         </Section>
       )}
     </div>

@@ -15,7 +15,7 @@ import { JobChooser, useNewJob } from "../study/StudyPane";
 import { useCalibration } from "./current";
 import { askAgain, type Bound, useCalibrateDraft } from "./draft";
 import { Result } from "./Result";
-import { boundsOf, calibrateSpec, modelOf, obstacle } from "./setup";
+import { boundsOf, calibrateSpec, helpOfModel, modelOf, obstacle } from "./setup";
 import { Tables } from "./Tables";
 import "../design/design.css";
 import "../study/study.css";
@@ -30,7 +30,9 @@ export default function CalibratePane() {
   const current = useCalibration();
   const expect = useNewJob("calibrate");
 
-  useEffect(() => onReady(askAgain), []);
+  useEffect(() => {
+    return onReady(askAgain);
+  }, []);
 
   if (!hello || !document || !form) {
     return (
@@ -47,6 +49,7 @@ export default function CalibratePane() {
   }
   const material = modelOf(form.source, hello.materials);
   const constants = hello.fit_ranges[material?.model ?? ""] ?? [];
+  const help = helpOfModel(form.root, material?.model ?? "");
   const probes = Object.keys((form.source.probes as object | undefined) ?? {}).length;
   const trouble = !document.valid
     ? "Mend the errors of the design first."
@@ -89,7 +92,7 @@ export default function CalibratePane() {
       <Tables />
       <Section title="Fit">
         {constants.map((constant) => (
-          <Fit key={constant.name} constant={constant} />
+          <Fit key={constant.name} constant={constant} help={help[constant.name] ?? ""} />
         ))}
         <Toggle
           label="free the scale of the shape"
@@ -155,7 +158,7 @@ export default function CalibratePane() {
   );
 }
 
-function Fit(props: { constant: FitRange }) {
+function Fit(props: { constant: FitRange; help: string }) {
   const { name, kind } = props.constant;
   const draft = useCalibrateDraft();
   const bound: Bound = draft.bounds[name] ?? { on: true, low: null, high: null };
@@ -165,6 +168,7 @@ function Fit(props: { constant: FitRange }) {
       kind={kind}
       unit={writtenUnit(kind) || "1"}
       on={bound.on}
+      title={props.help}
       note={bound.on ? "" : "as the design has it"}
       {...boundsOf(draft, props.constant)}
       onChange={(change) =>

@@ -8,6 +8,7 @@ import { toast, useStudio } from "../../store/studio";
 import { edit } from "../design/edits";
 import type { Schema } from "../design/schema";
 import { withUnits } from "./setup";
+import { showFit } from "./tell";
 
 /** What came out: the constants, whether the data fix them, and what can be done with them. */
 export function Result(props: { result: CalibratedEvent; root: Schema }) {
@@ -48,6 +49,9 @@ export function Result(props: { result: CalibratedEvent; root: Schema }) {
         }}
       />
       <div className="row result-buttons">
+        <Button testId="fit-show" onClick={showFit}>
+          Show the fit
+        </Button>
         <Button testId="card-save" onClick={() => send({ t: "card_save", job: result.job, name })}>
           Save the card
         </Button>

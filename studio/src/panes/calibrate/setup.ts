@@ -1,7 +1,7 @@
 // From what was chosen in the pane to the calibration that is asked of VoxSoft.
 import { siUnit } from "../../controls/kinds";
 import type { CalibrateSpec, FitRange, MaterialCard, MeasuredEvent } from "../../protocol";
-import { controlOf, resolve, type Schema } from "../design/schema";
+import { controlOf, helpOfKeys, resolve, type Schema } from "../design/schema";
 import type { CalibrateDraft } from "./draft";
 
 /** The model of the material that the first part is made of. */
@@ -82,6 +82,13 @@ export function calibrateSpec(
     ...(changed ? { bounds } : {}),
     ...(draft.name.trim() ? { name: draft.name.trim() } : {}),
   };
+}
+
+/** What a design says of each constant of a model, for tips. */
+export function helpOfModel(root: Schema, model: string): Readonly<Record<string, string>> {
+  const map = resolve(root, root.properties?.materials ?? {}).additionalProperties;
+  const control = typeof map === "object" ? controlOf(root, map) : null;
+  return control?.is === "variant" ? helpOfKeys(control.variants[model] ?? {}) : {};
 }
 
 /** A material in SI numbers, as a design file writes it: each number with its unit. */

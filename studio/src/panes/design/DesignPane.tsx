@@ -11,6 +11,7 @@ import { Parameters } from "./Parameters";
 import { SchemaField, TableFields } from "./SchemaField";
 import { Shapes } from "./Shapes";
 import { helpOfKeys } from "./schema";
+import { materialName } from "./starters";
 import { NO_DIAGNOSTICS, useFormOfDocument } from "./useForm";
 import "./design.css";
 
@@ -38,7 +39,7 @@ export default function DesignPane() {
             section="materials"
             title="Materials"
             what="a material"
-            first="rubber"
+            first={materialName}
             empty="None of its own: parts name cards such as ecoflex-00-30."
           />
           <EntryList
@@ -67,6 +68,13 @@ export default function DesignPane() {
             empty="None yet. Add pressure, gravity, a force or a traction."
           />
           <Floor form={form} />
+          <EntryMap
+            section="chambers"
+            title="Chambers"
+            what="a chamber"
+            first="chamber"
+            empty="None has a name. A chamber is named by a place in it; loads and metrics then call it by that name."
+          />
           <EntryMap
             section="probes"
             title="Probes"

@@ -198,7 +198,8 @@ export function EntryMap(props: {
   title: string;
   what: string;
   empty: string;
-  first: string;
+  /** What the first one is called, where it is new; it may depend on what is added. */
+  first: string | ((value: Table) => string);
   children?: (name: string, value: Table) => ReactNode;
 }) {
   const { root, source, diagnostics } = useForm();
@@ -213,7 +214,11 @@ export function EntryMap(props: {
         <Adder
           what={props.what}
           schema={map}
-          onAdd={(value) => edit([section, freeName(props.first, Object.keys(values))], value)}
+          onAdd={(value) => {
+            const wish =
+              typeof props.first === "string" ? props.first : props.first(value as Table);
+            edit([section, freeName(wish, Object.keys(values))], value);
+          }}
         />
       }
     >

@@ -4,6 +4,7 @@ import { readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
+import { CavityField } from "./CavityField";
 import { EntryMap, type Table } from "./Entries";
 import { edit } from "./edits";
 import { useForm } from "./form";
@@ -24,7 +25,7 @@ export function MetricFields(props: {
   onKey(key: string, value: unknown): void;
 }) {
   const metrics = useStudio((state) => state.hello?.metrics);
-  const { source } = useForm();
+  const { source, amounts } = useForm();
   const probes = Object.keys((source.probes as object | undefined) ?? {});
   const metric = metrics?.find((one) => one.name === props.metric);
   const probe = String(props.value.probe ?? "");
@@ -59,14 +60,21 @@ export function MetricFields(props: {
         />
       )}
       {metric?.needs_cavity && (
-        <TextField
+        <CavityField
           label="Cavity"
-          title="0 is the largest."
-          value={String(props.value.cavity ?? 0)}
+          value={props.value.cavity}
+          onChange={(next) => props.onKey("cavity", next)}
+        />
+      )}
+      {metric?.takes_percentile && (
+        <TextField
+          label="Percentile"
+          title="What so many percent of the volume stay below, such as 99; empty for the largest value of all."
+          value={String(props.value.percentile ?? "")}
           onCommit={(text) => {
-            const read = readWritten(text, "number");
+            const read = readPercentile(text, amounts);
             if ("problem" in read) return read.problem;
-            props.onKey("cavity", read.value);
+            props.onKey("percentile", read.value);
             return null;
           }}
         />
@@ -75,19 +83,33 @@ export function MetricFields(props: {
   );
 }
 
+/** A percentile as a user types it, or its formula; null for none, which is the largest value. */
+export function readPercentile(
+  text: string,
+  amounts: Parameters<typeof readWritten>[3] = {},
+): { readonly value: unknown } | { readonly problem: string } {
+  const typed = text.trim().replace(/\s*%$/, "");
+  if (typed === "") return { value: null };
+  const read = readWritten(typed, "number", [], amounts);
+  if ("problem" in read || typeof read.value !== "number") return read;
+  const possible = read.value > 0 && read.value <= 100;
+  return possible ? read : { problem: "expected a number above 0, at most 100" };
+}
+
 function withCurrent(options: { value: string; label: string }[], current: string) {
   return options.some((one) => one.value === current)
     ? options
     : [{ value: current, label: current || "choose…" }, ...options];
 }
 
-/** What a goal needs when its metric changes: a probe where there must be one, and no more. */
+/** What a goal needs when its metric changes: a probe where there must be one, and no keys that the
+ * metric would refuse. */
 export function fittingKeys(
   metric: Metric | undefined,
   value: Table,
   probes: readonly string[],
 ): Record<string, unknown> {
-  const { probe: _p, axis: _a, cavity: _c, ...kept } = value;
+  const { probe: _p, axis: _a, cavity: _c, percentile, ...kept } = value;
   if (metric?.needs_probe) {
     return {
       ...kept,
@@ -95,7 +117,8 @@ export function fittingKeys(
       ...(value.axis ? { axis: value.axis } : {}),
     };
   }
-  return metric?.needs_cavity ? { ...kept, cavity: value.cavity ?? 0 } : kept;
+  if (metric?.needs_cavity && value.cavity !== undefined) return { ...kept, cavity: value.cavity };
+  return metric?.takes_percentile && percentile !== undefined ? { ...kept, percentile } : kept;
 }
 
 export function Goals() {

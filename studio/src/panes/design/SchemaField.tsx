@@ -4,12 +4,14 @@ import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
+import { CavityField } from "./CavityField";
 import { edit, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
 import {
   type Control,
   controlOf,
+  entryLabel,
   helpOfKeys,
   inside,
   labelOf,
@@ -26,6 +28,8 @@ export interface SchemaFieldProps {
   value: unknown;
   label: string;
   help?: string | undefined;
+  /** The kind of the table that the place is in. */
+  within?: string | undefined;
   /** Offered as a button; missing where the place must be there. */
   onRemove?: (() => void) | undefined;
 }
@@ -72,6 +76,18 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
               onChange={(next) => edit(path, next)}
             />
           </div>
+        </Removable>
+      );
+    case "cavity":
+      return (
+        <Removable onRemove={props.onRemove} label={label}>
+          <CavityField
+            label={label}
+            value={value ?? schema.default}
+            help={props.help}
+            onChange={(next) => edit(path, next)}
+          />
+          {problem && <span className="field-note">{problem}</span>}
         </Removable>
       );
     case "tuple":
@@ -300,7 +316,7 @@ function ListField(props: SchemaFieldProps & { item: Schema }) {
             path={[...props.path, i]}
             schema={props.item}
             value={value}
-            label={String(i + 1)}
+            label={entryLabel(props.within, i)}
             onRemove={
               values.length > 1 ? () => set(values.filter((_, other) => other !== i)) : undefined
             }
@@ -348,9 +364,11 @@ export function TableFields(props: {
   >;
   let schema = resolve(root, props.schema);
   let tagField: ReactNode = null;
+  let kind: string | undefined;
   if (control.is === "variant") {
     const { tag, variants } = control;
     const chosen = String(table[tag] ?? "");
+    kind = chosen;
     schema = variants[chosen] ?? {};
     tagField = (
       <Select
@@ -387,6 +405,7 @@ export function TableFields(props: {
           value={table[key]}
           label={labelOf(key)}
           help={help[key]}
+          within={kind}
           onRemove={required.has(key) ? undefined : () => edit([...props.path, key], null)}
         />
       ))}

@@ -32,7 +32,7 @@ export function Shapes() {
       {shapeTree(shapes).map((node) =>
         node.again ? (
           <p
-            key={`${node.name} again at ${node.depth}`}
+            key={`${node.name} in ${node.within}`}
             className="muted entry-again"
             style={{ marginLeft: node.depth * 14 }}
           >

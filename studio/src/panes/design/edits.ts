@@ -1,5 +1,6 @@
 // Changes of the document, from the form and from other panes; all end in the one text.
 import type { Diagnostic, OpenCommand } from "../../protocol";
+import { openDocument } from "../../shell/actions";
 import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { flushText } from "../../store/typing";
@@ -24,7 +25,7 @@ export function replaceText(text: string): void {
 
 /** Open another document; undo brings the one before back, so nothing is asked. */
 export function openHere(what: OpenCommand["what"], name: string): void {
-  send({ t: "open", what, name });
+  openDocument({ t: "open", what, name });
 }
 
 interface Sliding {

@@ -1,6 +1,13 @@
 // Give a named thing of a design another name, everywhere the text speaks of it.
 
-export type Named = "parameters" | "shapes" | "materials" | "probes" | "objectives" | "constraints";
+export type Named =
+  | "parameters"
+  | "shapes"
+  | "materials"
+  | "chambers"
+  | "probes"
+  | "objectives"
+  | "constraints";
 
 export const NAME = /^[A-Za-z_][\w-]*$/;
 
@@ -59,6 +66,7 @@ const SPEAKS: Readonly<Record<Named, RegExp | null>> = {
   parameters: /./,
   shapes: /\b(?:of|shape|by|base|inner|outer)\s*=/,
   materials: /\bmaterial\s*=/,
+  chambers: /\bcavity\s*=/,
   probes: /\bprobe\s*=/,
   objectives: null,
   constraints: null,

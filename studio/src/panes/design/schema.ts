@@ -22,6 +22,7 @@ export interface Schema {
     readonly mapping: Readonly<Record<string, string>>;
   };
   readonly "x-kind"?: string;
+  readonly "x-names"?: string;
 }
 
 /** A control of the form. */
@@ -29,6 +30,7 @@ export type Control =
   | { readonly is: "quantity"; readonly kind: string; readonly words: readonly string[] }
   | { readonly is: "choice"; readonly values: readonly string[] }
   | { readonly is: "switch" }
+  | { readonly is: "cavity" }
   | { readonly is: "text" }
   | { readonly is: "tuple"; readonly items: readonly Schema[] }
   | { readonly is: "list"; readonly item: Schema }
@@ -72,6 +74,9 @@ export function controlOf(root: Schema, given: Schema): Control {
   const schema = resolve(root, given);
   if (schema["x-kind"] !== undefined) {
     return { is: "quantity", kind: schema["x-kind"], words: [] };
+  }
+  if ([schema, ...(schema.anyOf ?? [])].some((one) => one["x-names"] === "chambers")) {
+    return { is: "cavity" };
   }
   if (schema.enum) return { is: "choice", values: schema.enum };
   if (schema.const !== undefined) return { is: "choice", values: [schema.const] };
@@ -168,22 +173,31 @@ export function helpOfKeys(schema: Schema): Readonly<Record<string, string>> {
   for (const [key, inner] of Object.entries(schema.properties ?? {})) {
     if (inner.description && !("$ref" in inner)) found[key] ??= inner.description;
   }
-  for (const key of Object.keys(found)) found[key] = (found[key] ?? "").replaceAll("``", "");
+  for (const key of Object.keys(found)) found[key] = plain(found[key] ?? "");
   HELP.set(schema, found);
   return found;
 }
 
 /** The first paragraph of a description, for tips. */
 export function summary(schema: Schema): string {
-  return (
-    (schema.description ?? "").split("\n\n")[0]?.replaceAll("\n", " ").replaceAll("``", "") ?? ""
-  );
+  return plain((schema.description ?? "").split("\n\n")[0]?.replaceAll("\n", " ") ?? "");
+}
+
+/** A description without the marks of its source: of ":meth:`~a.b.young`" a reader needs "young". */
+function plain(text: string): string {
+  return text.replace(/:\w+:`~?(?:[\w.]+\.)?(\w+)`/g, "$1").replaceAll("``", "");
 }
 
 /** A key as a label: "top_radius" becomes "Top radius". */
 export function labelOf(key: string): string {
   const words = key.replaceAll(/[_-]/g, " ");
   return words.length <= 1 ? words : words[0]?.toUpperCase() + words.slice(1);
+}
+
+/** What an entry of a list in a table of some kind is called: its number, or what it does there. */
+export function entryLabel(kind: string | undefined, index: number): string {
+  if (kind === "difference") return index === 0 ? "From" : "Minus";
+  return String(index + 1);
 }
 
 /** The schema of the place that a path of a document leads to, or null where it leads nowhere. */

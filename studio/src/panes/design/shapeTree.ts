@@ -4,6 +4,8 @@
 export interface ShapeNode {
   readonly name: string;
   readonly depth: number;
+  /** What it stands below: the names and places on the way to it, no two of which are the same. */
+  readonly within: string;
   /** It stands with its fields at another place of the tree. */
   readonly again: boolean;
 }
@@ -30,14 +32,17 @@ export function shapeTree(shapes: Readonly<Record<string, unknown>>): ShapeNode[
   const used = new Set([...uses.values()].flat());
   const found: ShapeNode[] = [];
   const seen = new Set<string>();
-  const visit = (name: string, depth: number): void => {
+  const visit = (name: string, depth: number, within: string): void => {
     const again = seen.has(name);
     seen.add(name);
-    found.push({ name, depth, again });
-    if (!again) for (const inner of uses.get(name) ?? []) visit(inner, depth + 1);
+    found.push({ name, depth, within, again });
+    if (again) return;
+    for (const [i, inner] of (uses.get(name) ?? []).entries()) {
+      visit(inner, depth + 1, `${within}/${name} ${i}`);
+    }
   };
-  for (const name of Object.keys(shapes)) if (!used.has(name)) visit(name, 0);
+  for (const name of Object.keys(shapes)) if (!used.has(name)) visit(name, 0, "");
   // What is left refers to itself in a circle, which the diagnostics tell.
-  for (const name of Object.keys(shapes)) if (!seen.has(name)) visit(name, 0);
+  for (const name of Object.keys(shapes)) if (!seen.has(name)) visit(name, 0, "");
   return found;
 }

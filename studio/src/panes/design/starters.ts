@@ -42,6 +42,8 @@ export function starter(root: Schema, given: Schema, names: Names): unknown {
       return typeof usual === "string" ? usual : control.values[0];
     case "switch":
       return usual !== true;
+    case "cavity":
+      return "all";
     case "text":
       return typeof usual === "string" ? usual : "";
     case "tuple":
@@ -97,6 +99,11 @@ export function changeVariant(
     ([key]) => key !== tag && variant.properties?.[key] !== undefined,
   );
   return { ...fresh, ...Object.fromEntries(kept) };
+}
+
+/** What a new material is called: by what it is, as all models but the rigid one are of rubber. */
+export function materialName(material: Readonly<Record<string, unknown>>): string {
+  return material.model === "rigid" ? "rigid" : "rubber";
 }
 
 /** A name that is still free: "part", "part-2", ... */

@@ -61,7 +61,7 @@ export const FORMATS: readonly Format[] = [
   },
   {
     id: "html",
-    title: "Page that is alive",
+    title: "Live page",
     ending: ".html",
     purpose: "For people without VoxSoft: one file to turn, pull and inflate in any browser.",
   },

@@ -7,7 +7,9 @@ import "./log.css";
 export default function LogPane() {
   const log = useStudio((state) => state.log);
   const end = useRef<HTMLDivElement>(null);
-  useEffect(() => end.current?.scrollIntoView({ block: "nearest" }), [log]);
+  useEffect(() => {
+    end.current?.scrollIntoView({ block: "nearest" });
+  }, [log]);
   if (log.length === 0) {
     return (
       <Empty title="Nothing to report">

@@ -5,7 +5,13 @@ import type { Side } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { openHere } from "../design/edits";
 import { ComparedBodies } from "./ComparedBodies";
-import { type ComparedRow, comparedRows, otherDifferences, sideTitle } from "./compared";
+import {
+  type ComparedRow,
+  changeTitle,
+  comparedRows,
+  otherDifferences,
+  sideTitle,
+} from "./compared";
 import "../study/study.css";
 import "./runs.css";
 
@@ -52,7 +58,9 @@ export default function ComparePane() {
             <td />
             <Head side={a} />
             <Head side={b} />
-            <td />
+            <th scope="col" className="muted">
+              {changeTitle(a, b)}
+            </th>
           </tr>
         </thead>
         <Rows title="Parameters" rows={parameters} />

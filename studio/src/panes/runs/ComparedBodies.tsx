@@ -27,8 +27,8 @@ export function ComparedBodies(props: { compared: ComparedEvent }) {
   // A body at rest has no speed; other fields need a problem that can be set up.
   const fields = known.filter((one) => one.name !== "speed" && told(one.id));
   const about = fields.find((one) => one.id === field) ?? fields[0];
-  const frames = [first, second].flatMap((one) => one.still?.frames.get(about?.id ?? 0) ?? []);
-  const range = commonRange(frames);
+  const stills = [first, second].flatMap((one) => one.still ?? []);
+  const range = commonRange(stills, about?.id ?? 0);
   const largest = (state: StillState) => state.still?.frames.get(about?.id ?? 0)?.max ?? null;
   const waiting = (side: Side) =>
     rows?.find((row) => row.id === side.id)?.kind === "run" ? "Reading…" : "Solving…";
@@ -69,7 +69,7 @@ export function ComparedBodies(props: { compared: ComparedEvent }) {
         <Button kind="quiet" onClick={fit}>
           Fit
         </Button>
-        {about && range && <ColorBar field={about} low={range[0]} high={range[1]} />}
+        {about && range && <ColorBar field={about} {...range} />}
       </div>
       <div className="compare-stage">
         <StillView

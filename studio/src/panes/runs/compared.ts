@@ -60,6 +60,11 @@ export function sideTitle(side: Side): string {
   return slash < 0 ? side.name : `Design ${side.id.slice(slash + 1)}`;
 }
 
+/** What the changes of a table are changes of. */
+export function changeTitle(a: Side, b: Side): string {
+  return `${sideTitle(b)} minus ${sideTitle(a)}, in % of ${sideTitle(a)}`;
+}
+
 function changeOf(a: unknown, b: unknown, kind: string): string {
   if (typeof a !== "number" || typeof b !== "number" || a === b) return "";
   const sign = b > a ? "+" : "";

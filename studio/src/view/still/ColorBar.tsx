@@ -2,9 +2,16 @@ import { factorOf, formatNumber, shownUnit, unitText } from "../../controls/unit
 import type { Field } from "../../protocol";
 import { useView } from "../../store/view";
 import { gradient } from "../colormaps";
+import { CLIP } from "../colorRange";
 
 /** The colors that several bodies share, with the values at both ends. */
-export function ColorBar(props: { field: Field; low: number; high: number; named?: boolean }) {
+export function ColorBar(props: {
+  field: Field;
+  low: number;
+  high: number;
+  clipped?: boolean;
+  named?: boolean;
+}) {
   const { field, low, high } = props;
   const { colormap, bands } = useView();
   const unit = shownUnit(field.unit);
@@ -15,6 +22,7 @@ export function ColorBar(props: { field: Field; low: number; high: number; named
       {formatNumber(low / factor, 3)}
       <i style={{ background: gradient(colormap, bands).replace("to top", "to right") }} />
       {formatNumber(high / factor, 3)} {unitText(unit)}
+      {props.clipped && <span className="muted"> clipped at {100 * CLIP} %</span>}
     </span>
   );
 }

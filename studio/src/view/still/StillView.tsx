@@ -46,7 +46,9 @@ export function StillView(props: StillViewProps) {
       stage.current = null;
     };
   }, [onReady]);
-  useEffect(() => stage.current?.forget(), [names]);
+  useEffect(() => {
+    stage.current?.forget();
+  }, [names]);
   useEffect(() => {
     const bodies = cells.map((cell) => cell.state.still);
     const plain: StillScene["view"] = {

@@ -1,5 +1,6 @@
 // Bodies at rest beside the one of the view: of runs, of designs of studies, of calibrations.
 import { decodeAll, type Frame, type Topology } from "../../engine/frames";
+import { colorRange } from "../colorRange";
 
 export interface Still {
   readonly topology: Topology;
@@ -38,11 +39,19 @@ function sentenceOf({ where, what, hint }: Refusal): string {
   return hint ? `${cause}. Try: ${hint}.` : `${cause}.`;
 }
 
-/** The range of colors that several frames share; null where there is none yet. */
-export function commonRange(frames: readonly Frame[]): readonly [number, number] | null {
-  if (frames.length === 0) return null;
-  return [
-    Math.min(...frames.map((frame) => frame.min)),
-    Math.max(...frames.map((frame) => frame.max)),
-  ];
+/** The range of colors that several bodies share for a field; null where none is told. */
+export function commonRange(
+  stills: readonly Still[],
+  field: number,
+): { low: number; high: number; clipped: boolean } | null {
+  const ranges = stills.flatMap(({ topology, frames }) => {
+    const frame = frames.get(field);
+    return frame ? [colorRange(frame, topology)] : [];
+  });
+  if (ranges.length === 0) return null;
+  return {
+    low: Math.min(...ranges.map((one) => one.low)),
+    high: Math.max(...ranges.map((one) => one.high)),
+    clipped: ranges.some((one) => one.clipped.length > 0),
+  };
 }

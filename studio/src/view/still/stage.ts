@@ -243,8 +243,8 @@ export class StillStage {
   }
 
   private style(scene: StillScene): void {
-    const frames = this.shown.flatMap((one) => one?.still.frames.get(scene.field) ?? []);
-    const [low, high] = commonRange(frames) ?? [0, 1];
+    const stills = this.shown.flatMap((one) => one?.still ?? []);
+    const { low, high } = commonRange(stills, scene.field) ?? { low: 0, high: 1 };
     const colors = { parts: PARTS, ink: themeColor("--ink") };
     for (const [i, one] of this.shown.entries()) {
       if (!one) continue;

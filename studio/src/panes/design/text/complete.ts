@@ -56,6 +56,7 @@ export function valueOffers(
   if (place.quoted && place.word.trimStart().startsWith("=")) {
     return words(namesIn(whole, "parameters"));
   }
+  if (key === "cavity") return words(["all", ...namesIn(whole, "chambers")]);
   if (key === "probe") return words(namesIn(whole, "probes"));
   if (key === "maximize" || key === "minimize" || key === "metric") {
     return hello.metrics.map(({ name, kind }) => ({ label: name, detail: kind }));

@@ -1,0 +1,354 @@
+//! From triangles that cross to the places where a body overlaps itself, and how deep.
+use std::collections::{BTreeMap, VecDeque};
+
+use crate::crossings::Crossings;
+use crate::groups::Groups;
+use crate::incidence::Incidence;
+use crate::material::Material;
+use crate::predicates::{Point, is_positive, side};
+use crate::triangles::reaches;
+use crate::vectors::{axpy, cross, distance, dot, sub};
+use crate::{Body, Covered, Region};
+
+/// Depths below this part of the edge that they are measured on are rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Finds the regions, the deepest first, and all vertices that other material covers.
+pub(crate) fn regions(
+    body: &Body<'_>,
+    all: &[[i32; 3]],
+    crossings: &Crossings,
+) -> (Vec<Region>, Vec<Covered>) {
+    let mut search = Search {
+        body,
+        all,
+        material: Material::new(body.positions, body.tets),
+        around: Incidence::new(body.positions.len(), body.triangles),
+        groups: Groups::new(body.positions.len(), body.tets),
+        deepest: BTreeMap::new(),
+    };
+    for &[i, j] in &crossings.pairs {
+        let (of_i, of_j) = (search.component(i), search.component(j));
+        search.groups.join((i, of_j), (j, of_i));
+    }
+    let vertices = search.flood(crossings);
+    search.measure_vertices(&vertices);
+    search.measure_edges(&crossings.pairs);
+    let found = search.regions(crossings, &vertices);
+    let place: BTreeMap<usize, u32> = found.iter().map(|&(group, _)| group).zip(0..).collect();
+    let covered = vertices.iter().map(|each| Covered {
+        vertex: each.vertex,
+        tet: each.tets[0] as i32,
+        region: place[&search.group_of(each)],
+    });
+    let covered = covered.collect();
+    let regions = found.into_iter().map(|(_, region)| region).collect();
+    (regions, covered)
+}
+
+/// A vertex in foreign material: that of a component, and the tetrahedra there that hold it.
+struct Vertex {
+    vertex: i32,
+    component: u32,
+    tets: Vec<u32>,
+}
+
+/// A point of the surface in foreign material.
+#[derive(Clone, Copy)]
+struct Sample {
+    depth: f64,
+    /// The ends of the edge that it is on, and how far along.
+    ends: [i32; 2],
+    along: f64,
+    /// The tetrahedron that holds it.
+    within: u32,
+}
+
+/// An edge that passes through triangles of a component: one of its own triangles, and how far along it does.
+type Pierced = BTreeMap<([i32; 2], u32), (u32, Vec<f64>)>;
+
+struct Search<'a> {
+    body: &'a Body<'a>,
+    all: &'a [[i32; 3]],
+    material: Material<'a>,
+    /// The triangles at each vertex.
+    around: Incidence,
+    groups: Groups,
+    /// The deepest sample of each group.
+    deepest: BTreeMap<usize, Sample>,
+}
+
+impl Search<'_> {
+    fn component(&self, triangle: u32) -> u32 {
+        self.groups.component(self.all[triangle as usize][0])
+    }
+
+    /// Finds the covered vertices from the triangles that cross inwards, in the order of finding; triangles at a
+    /// covered vertex are of one group.
+    fn flood(&mut self, crossings: &Crossings) -> Vec<Vertex> {
+        let mut seen = vec![false; self.body.positions.len()];
+        let mut open: VecDeque<i32> = VecDeque::new();
+        let mut reach = |triangle: u32, open: &mut VecDeque<i32>| {
+            for vertex in self.all[triangle as usize] {
+                if !std::mem::replace(&mut seen[vertex as usize], true) {
+                    open.push_back(vertex);
+                }
+            }
+        };
+        let crossing = crossings.pairs.as_flattened().iter();
+        for &triangle in crossing.chain(&crossings.swallowed) {
+            reach(triangle, &mut open);
+        }
+        let mut found = Vec::new();
+        while let Some(vertex) = open.pop_front() {
+            let point = self.body.positions[vertex as usize];
+            let mut holding: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+            for tet in self.material.covering(point, &[vertex]) {
+                let component = self.groups.component(self.body.tets[tet as usize][0]);
+                holding.entry(component).or_default().push(tet);
+            }
+            let triangles = self.around.of(vertex);
+            for (component, tets) in holding {
+                for &triangle in triangles {
+                    let pair = ((triangles[0], component), (triangle, component));
+                    self.groups.join(pair.0, pair.1);
+                    reach(triangle, &mut open);
+                }
+                found.push(Vertex {
+                    vertex,
+                    component,
+                    tets,
+                });
+            }
+        }
+        found
+    }
+
+    fn group_of(&mut self, covered: &Vertex) -> usize {
+        let triangle = self.around.of(covered.vertex)[0];
+        self.groups.of(triangle, covered.component)
+    }
+
+    /// Measures covered vertices, those that were found last first: they lie deepest, and spare the others, because
+    /// from a vertex to the next the depth grows by no more than their distance.
+    fn measure_vertices(&mut self, vertices: &[Vertex]) {
+        let points = self.body.positions;
+        let mut limit: BTreeMap<(i32, u32), f64> = BTreeMap::new();
+        for each in vertices.iter().rev() {
+            let (vertex, component) = (each.vertex, each.component);
+            let point = points[vertex as usize];
+            let group = self.group_of(each);
+            let triangles = self.around.of(vertex).iter();
+            let bound = triangles
+                .flat_map(|&t| self.body.triangles[t as usize])
+                .filter_map(|n| {
+                    let depth = limit.get(&(n, component))?;
+                    Some(depth + distance(points[n as usize], point))
+                })
+                .fold(f64::INFINITY, f64::min);
+            if bound <= self.deepest_of(group) {
+                limit.insert((vertex, component), bound);
+                continue;
+            }
+            let (depth, within) = self.depth(point, &each.tets);
+            limit.insert((vertex, component), depth);
+            let sample = Sample {
+                depth,
+                ends: [vertex; 2],
+                along: 0.0,
+                within,
+            };
+            self.keep(group, sample);
+        }
+    }
+
+    /// Measures the middle of every stretch between places where an edge passes through a triangle.
+    fn measure_edges(&mut self, pairs: &[[u32; 2]]) {
+        let points = self.body.positions;
+        for ((ends, component), (triangle, mut cuts)) in self.pierced(pairs) {
+            cuts.extend([0.0, 1.0]);
+            cuts.sort_unstable_by(f64::total_cmp);
+            let [p, q] = ends.map(|end| points[end as usize]);
+            let least = ROUNDING * distance(p, q);
+            let group = self.groups.of(triangle, component);
+            for stretch in cuts.windows(2) {
+                let along = 0.5 * (stretch[0] + stretch[1]);
+                let middle = between(p, q, along);
+                // One end at least is on the other surface.
+                let bound = (stretch[1] - along) * distance(p, q);
+                if bound <= self.deepest_of(group).max(least) {
+                    continue;
+                }
+                let mut tets = self.material.covering(middle, &ends);
+                tets.retain(|&tet| {
+                    self.groups.component(self.body.tets[tet as usize][0]) == component
+                });
+                let (depth, within) = self.depth(middle, &tets);
+                if depth > least {
+                    let sample = Sample {
+                        depth,
+                        ends,
+                        along,
+                        within,
+                    };
+                    self.keep(group, sample);
+                }
+            }
+        }
+    }
+
+    fn pierced(&self, pairs: &[[u32; 2]]) -> Pierced {
+        let mut edges = Pierced::new();
+        for &[i, j] in pairs {
+            for (own, other) in [(i, j), (j, i)] {
+                let component = self.component(other);
+                for (ends, along) in self.cuts(own, other) {
+                    let entry = edges.entry((ends, component));
+                    entry.or_insert((own, Vec::new())).1.push(along);
+                }
+            }
+        }
+        edges
+    }
+
+    /// How deep a group is as far as is known; less than nothing where nothing is.
+    fn deepest_of(&self, group: usize) -> f64 {
+        self.deepest.get(&group).map_or(-1.0, |best| best.depth)
+    }
+
+    /// The edges of one triangle that pass through another, and how far along.
+    fn cuts(&self, own: u32, other: u32) -> impl Iterator<Item = ([i32; 2], f64)> {
+        let points = self.body.positions;
+        let [u, v, w] = self.all[own as usize];
+        let plane = self.all[other as usize].map(|c| points[c as usize]);
+        [[u, v], [v, w], [w, u]]
+            .into_iter()
+            .filter_map(move |edge| {
+                let ends = [edge[0].min(edge[1]), edge[0].max(edge[1])];
+                let line = ends.map(|end| points[end as usize]);
+                let [a, b, c] = plane;
+                let [from, to] = line.map(|p| side(a, b, c, p));
+                (from * to < 0.0 && reaches(line, plane)).then(|| (ends, from / (from - to)))
+            })
+    }
+
+    fn depth(&mut self, point: Point, tets: &[u32]) -> (f64, u32) {
+        let mut deepest = (0.0, tets.first().copied().unwrap_or(0));
+        for &tet in tets {
+            let depth = self.material.depth(point, tet);
+            if depth > deepest.0 {
+                deepest = (depth, tet);
+            }
+        }
+        deepest
+    }
+
+    fn keep(&mut self, group: usize, sample: Sample) {
+        let best = self.deepest.entry(group).or_insert(sample);
+        if sample.depth > best.depth {
+            *best = sample;
+        }
+    }
+
+    /// The regions, the deepest first, each with its group.
+    fn regions(&mut self, crossings: &Crossings, vertices: &[Vertex]) -> Vec<(usize, Region)> {
+        let mut first: BTreeMap<usize, [u32; 2]> = BTreeMap::new();
+        for &[i, j] in &crossings.pairs {
+            let group = self.groups.of(i, self.component(j));
+            first.entry(group).or_insert([i, j]);
+        }
+        // Where no surface is crossed: a piece wholly within another, and what that piece crosses besides.
+        for each in vertices {
+            let triangle = self.around.of(each.vertex)[0];
+            first.entry(self.group_of(each)).or_insert([triangle; 2]);
+        }
+        let sheets = self.sheet_depths(&crossings.pairs);
+        let mut found: Vec<(usize, Region)> = first
+            .into_iter()
+            .map(|(group, pair)| match self.deepest.get(&group) {
+                Some(sample) if sample.depth > 0.0 => (group, self.at_sample(*sample)),
+                _ => (
+                    group,
+                    self.at_pair(pair, sheets.get(&group).copied().unwrap_or(0.0)),
+                ),
+            })
+            .collect();
+        // A stable sort: of equal depths the one with the first triangle comes first.
+        found.sort_by(|(_, a), (_, b)| b.depth.total_cmp(&a.depth));
+        found
+    }
+
+    /// How far edges reach beyond the planes of sheets, at least, by region: a sheet has no inside to be deep in.
+    fn sheet_depths(&mut self, pairs: &[[u32; 2]]) -> BTreeMap<usize, f64> {
+        let mut depths: BTreeMap<usize, f64> = BTreeMap::new();
+        for &[i, j] in pairs {
+            if (j as usize) < self.body.triangles.len() {
+                continue;
+            }
+            let group = self.groups.of(i, self.component(j));
+            let [a, b, c] = self.all[j as usize].map(|v| self.body.positions[v as usize]);
+            let normal = cross(sub(b, a), sub(c, a));
+            let length = dot(normal, normal).sqrt();
+            for (ends, _) in self.cuts(i, j) {
+                let height = |end: i32| {
+                    let to = sub(self.body.positions[end as usize], a);
+                    (dot(normal, to) / length).abs()
+                };
+                let beyond = height(ends[0]).min(height(ends[1]));
+                let depth = depths.entry(group).or_default();
+                *depth = depth.max(beyond);
+            }
+        }
+        depths
+    }
+
+    fn at_sample(&self, sample: Sample) -> Region {
+        let [p, q] = sample.ends;
+        let place =
+            |points: &[Point]| between(points[p as usize], points[q as usize], sample.along);
+        let now = place(self.body.positions);
+        let weights = self.material.weights(sample.within, now);
+        let mut other = [0.0; 3];
+        for (weight, &vertex) in weights.iter().zip(&self.body.tets[sample.within as usize]) {
+            axpy(&mut other, *weight, self.body.rest[vertex as usize]);
+        }
+        let at_ends = self.material.stars.of(p).iter();
+        let own = at_ends
+            .copied()
+            .find(|&tet| self.body.tets[tet as usize].contains(&q));
+        Region {
+            depth: sample.depth,
+            now,
+            rest: [place(self.body.rest), other],
+            tets: [own.map_or(-1, |tet| tet as i32), sample.within as i32],
+            inverted: false,
+        }
+    }
+
+    /// Where nothing is deep: at the middles of two triangles that cross.
+    fn at_pair(&self, pair: [u32; 2], depth: f64) -> Region {
+        let center = |points: &[Point], triangle: u32| {
+            let mut center = [0.0; 3];
+            for vertex in self.all[triangle as usize] {
+                axpy(&mut center, 1.0 / 3.0, points[vertex as usize]);
+            }
+            center
+        };
+        let tets = pair.map(|t| self.material.behind(self.all[t as usize]));
+        let at_corners = pair.iter().flat_map(|&t| self.all[t as usize]);
+        let inverted = at_corners
+            .flat_map(|v| self.material.stars.of(v))
+            .any(|&tet| !is_positive(self.material.corners(tet)));
+        Region {
+            depth,
+            now: center(self.body.positions, pair[0]),
+            rest: pair.map(|t| center(self.body.rest, t)),
+            tets: tets.map(|tet| tet.map_or(-1, |tet| tet as i32)),
+            inverted: inverted && depth == 0.0,
+        }
+    }
+}
+
+fn between(p: Point, q: Point, along: f64) -> Point {
+    std::array::from_fn(|i| p[i] + along * (q[i] - p[i]))
+}

@@ -1,0 +1,65 @@
+//! Where a body overlaps itself.
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use voxsoft_contact::{Body, Covered, Region, penetration as find};
+
+use crate::gate;
+
+/// Depth, point now, both points of the unloaded body, both tets, whether inverted: of each region.
+type PyRegion = (f64, [f64; 3], [[f64; 3]; 2], [i32; 2], bool);
+
+/// Pairs of triangles, regions, and of covered vertices each with the tet that it is in and its region.
+type PyPenetration<'py> = (
+    Bound<'py, PyArray2<u32>>,
+    Vec<PyRegion>,
+    Bound<'py, PyArray2<i32>>,
+);
+
+#[pyfunction]
+pub fn penetration<'py>(
+    py: Python<'py>,
+    rest: PyReadonlyArray2<'py, f64>,
+    positions: PyReadonlyArray2<'py, f64>,
+    tets: PyReadonlyArray2<'py, i32>,
+    triangles: PyReadonlyArray2<'py, i32>,
+    sheets: PyReadonlyArray2<'py, i32>,
+) -> PyResult<PyPenetration<'py>> {
+    let body = Body {
+        rest: rows(&rest)?,
+        positions: rows(&positions)?,
+        tets: rows(&tets)?,
+        triangles: rows(&triangles)?,
+        sheets: rows(&sheets)?,
+    };
+    let found = gate::run(py, |_| find(&body))?;
+    let rows = |c: &Covered| [c.vertex, c.tet, c.region as i32];
+    let covered: Vec<[i32; 3]> = found.covered.iter().map(rows).collect();
+    let count = covered.len();
+    let plain = |r: &Region| (r.depth, r.now, r.rest, r.tets, r.inverted);
+    let pairs = found.pairs.len();
+    Ok((
+        found
+            .pairs
+            .into_flattened()
+            .into_pyarray(py)
+            .reshape([pairs, 2])?,
+        found.regions.iter().map(plain).collect(),
+        covered
+            .into_flattened()
+            .into_pyarray(py)
+            .reshape([count, 3])?,
+    ))
+}
+
+/// The rows of a matrix where they are.
+fn rows<'a, const N: usize, T: numpy::Element>(
+    array: &'a PyReadonlyArray2<'_, T>,
+) -> PyResult<&'a [[T; N]]> {
+    let wrong = || PyValueError::new_err(format!("expected rows of {N}, one after the other"));
+    if array.shape()[1] != N {
+        return Err(wrong());
+    }
+    let flat = array.as_slice().map_err(|_| wrong())?;
+    Ok(flat.as_chunks().0)
+}

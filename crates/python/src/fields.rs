@@ -1,0 +1,142 @@
+//! `_core.Fields`: stress and strain of a problem's body at any positions.
+use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use voxsoft_solid::fields::{Field, Fields, Measure};
+use voxsoft_solid::{Body, State};
+
+use crate::gate;
+use crate::simulate::{PyProblem, from_rows};
+
+/// The elements of a problem's body: voxels, or tetrahedra where it is not made of voxels.
+#[pyclass(frozen, name = "Fields", module = "voxsoft._core")]
+pub struct PyFields {
+    problem: Py<PyProblem>,
+    fields: Fields,
+    blocks: Vec<u32>,
+}
+
+/// The components of a symmetric matrix in the order of ParaView: xx, yy, zz, xy, yz, xz.
+const COMPONENTS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]];
+
+fn components(measure: &Measure) -> [f64; 6] {
+    COMPONENTS.map(|[i, j]| measure.stress[i][j])
+}
+
+#[pymethods]
+impl PyFields {
+    #[new]
+    fn new(py: Python<'_>, problem: Py<PyProblem>) -> PyResult<Self> {
+        let (mesh, body) = (&problem.get().mesh, problem.get().problem.body());
+        let (fields, blocks) = gate::run(py, |_| {
+            let fields = Fields::of_all(body);
+            let blocks = fields.blocks(body, mesh);
+            (fields, blocks)
+        })?;
+        Ok(Self {
+            fields,
+            blocks,
+            problem,
+        })
+    }
+
+    /// The block of the mesh that each element is.
+    #[getter]
+    fn blocks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_slice(py, &self.blocks)
+    }
+
+    /// Rest volume of the material of each element in m³.
+    #[getter]
+    fn volumes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.fields.volumes())
+    }
+
+    /// Stress and strain of each element, in the order of `blocks`.
+    fn measure<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let positions = self.positions(&positions)?;
+        let body = self.body();
+        let measures = gate::run(py, |_| self.fields.measure(body, &positions))?;
+        let column = |value: fn(&Measure) -> f64| -> Bound<'py, PyArray1<f64>> {
+            PyArray1::from_vec(py, measures.iter().map(value).collect())
+        };
+        let stretches: Vec<[f64; 3]> = measures.iter().map(|m| m.stretches).collect();
+        let stress: Vec<[f64; 6]> = measures.iter().map(components).collect();
+        let found = PyDict::new(py);
+        found.set_item("stress", from_rows(py, &stress))?;
+        found.set_item("von_mises", column(|m| m.von_mises))?;
+        found.set_item("stretches", from_rows(py, &stretches))?;
+        found.set_item("energy_density", column(|m| m.energy_density))?;
+        found.set_item("volume_ratio", column(|m| m.volume_ratio))?;
+        Ok(found)
+    }
+
+    /// The same averaged on the vertices, as the studio colors by them.
+    fn at_vertices<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let body = self.body();
+        let mut state = State::at_rest(body);
+        state.positions = self.positions(&positions)?;
+        let (stress, scalars) = gate::run(py, |_| {
+            let measures = self.fields.measure(body, &state.positions);
+            let smooth = |k: usize| {
+                let values: Vec<f64> = measures.iter().map(|m| components(m)[k]).collect();
+                self.fields.smooth(&values)
+            };
+            let columns: [Vec<f64>; 6] = std::array::from_fn(smooth);
+            let stress: Vec<[f64; 6]> = (0..state.positions.len())
+                .map(|vertex| std::array::from_fn(|k| columns[k][vertex]))
+                .collect();
+            let scalars = [Field::VonMises, Field::Stretch, Field::EnergyDensity]
+                .map(|field| self.fields.evaluate(body, &state, field));
+            (stress, scalars)
+        })?;
+        let found = PyDict::new(py);
+        found.set_item("stress", from_rows(py, &stress))?;
+        for (name, values) in ["von_mises", "max_stretch", "energy_density"]
+            .into_iter()
+            .zip(scalars)
+        {
+            found.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+        Ok(found)
+    }
+
+    /// The derivative of the largest principal stretch of an element by the positions of all vertices, in 1/m.
+    fn stretch_slope<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+        element: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = self.positions(&positions)?;
+        let count = self.blocks.len();
+        if element >= count {
+            let message = format!("element {element} is past the last of {count}");
+            return Err(PyIndexError::new_err(message));
+        }
+        let body = self.body();
+        Ok(from_rows(
+            py,
+            &self.fields.stretch_slope(body, &positions, element),
+        ))
+    }
+}
+
+impl PyFields {
+    fn body(&self) -> &Body {
+        self.problem.get().problem.body()
+    }
+
+    fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<[f64; 3]>> {
+        self.problem.get().positions(array)
+    }
+}

@@ -1,0 +1,72 @@
+//! The floor, and what else holds single vertices: clamps and hands.
+
+use voxsoft_solid::Grab;
+use voxsoft_solid::vector::Vec3;
+
+use super::Implicit;
+use super::objective::Value;
+
+/// The stiffness of the floor under a vertex that rests on it, over the inertia of the vertex.
+const FLOOR_STIFFNESS: f64 = 1e8;
+
+impl Implicit {
+    /// Puts what clamps and floor hold where it belongs.
+    pub(super) fn place(&self, time: f64, positions: &mut [Vec3]) {
+        self.problem.place_clamps(time, 1.0, positions);
+        let Some(floor) = self.problem.floor() else {
+            return;
+        };
+        for (vertex, x) in positions.iter_mut().enumerate() {
+            if !self.problem.held()[vertex][2] && (self.carried[vertex] || x[2] < floor.z) {
+                x[2] = floor.z;
+            }
+        }
+    }
+
+    /// The springs on free coordinates.
+    pub(super) fn springs(&self, inertia: f64, grabs: &[Grab]) -> Vec<f64> {
+        let Some(lagged) = &self.lagged else {
+            return Vec::new();
+        };
+        let mut springs = vec![0.0; lagged.size()];
+        for grab in grabs {
+            for axis in 0..3 {
+                if let Some(row) = lagged.row_of(grab.vertex as usize, axis) {
+                    springs[row] += grab.stiffness;
+                }
+            }
+        }
+        let masses = self.problem.body().masses();
+        for (vertex, _) in self.carried.iter().enumerate().filter(|(_, c)| **c) {
+            if let Some(row) = lagged.row_of(vertex, 2) {
+                springs[row] += FLOOR_STIFFNESS * inertia * masses[vertex];
+            }
+        }
+        springs
+    }
+
+    /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.
+    pub(super) fn touch_floor(&mut self, positions: &mut [Vec3], value: &Value) -> bool {
+        let Some(floor) = self.problem.floor() else {
+            return false;
+        };
+        let slack = 1e-9 * self.problem.body().size();
+        let mut changed = false;
+        for (vertex, x) in positions.iter_mut().enumerate() {
+            if self.problem.held()[vertex][2] {
+                continue;
+            }
+            let keep = if self.carried[vertex] {
+                value.net[vertex][2] <= 0.0
+            } else {
+                x[2] < floor.z - slack
+            };
+            if keep {
+                x[2] = floor.z;
+            }
+            changed |= keep != self.carried[vertex];
+            self.carried[vertex] = keep;
+        }
+        changed
+    }
+}

@@ -1,0 +1,186 @@
+//! Quasi-Newton steps down the potential of a time step.
+
+use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
+use voxsoft_solid::matrix::determinant;
+use voxsoft_solid::vector::{Vec3, add, norm, scale};
+use voxsoft_solid::{Ask, Problem};
+
+use super::lagged::Lagged;
+use super::objective::{Objective, Value};
+use super::quasi_newton::{Memory, product};
+
+/// Armijo's condition: the part of the predicted gain that a move must bring.
+const SUFFICIENT: f64 = 1e-4;
+/// The largest stretch of a voxel after a move, unless it is stretched farther already: no elastomer follows.
+const LARGEST_STRETCH: f64 = 20.0;
+/// How far one move may turn or strain a voxel: what turns by `θ` in a straight line swells by `θ²`.
+const LARGEST_CHANGE: f64 = 0.15;
+/// How often a move may be halved.
+const HALVINGS: u32 = 8;
+/// Potentials are sums of many terms and known to about this part of their size, and of the energy of a strain of one:
+/// small strains are found as differences.
+const ROUNDING: f64 = 1e-12;
+const ROUNDING_OF_STRAIN: f64 = 4e-15;
+/// The least volume ratio of a voxel after a move, unless it is pressed flatter already.
+const LEAST_VOLUME: f64 = 0.05;
+
+/// How a search for the minimum ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// The last move was as small as asked.
+    Found,
+    /// As many moves as allowed.
+    Slow,
+    /// No move along the direction helps.
+    Stuck,
+    /// The caller asked to stop.
+    Cancelled,
+}
+
+/// A search for the minimum.
+pub(super) struct Search<'a> {
+    pub objective: Objective<'a>,
+    pub lagged: &'a mut Lagged,
+    pub memory: &'a mut Memory,
+    /// Coordinates that do not move besides the clamped ones: vertices on the floor.
+    pub carried: &'a [bool],
+    /// A move (m) after which the search ends.
+    pub tolerance: f64,
+}
+
+impl Search<'_> {
+    /// Goes down from `positions`, at most as many moves; `value` is that at `positions`, before and after.
+    pub fn run(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        value: &mut Value,
+        most: u32,
+        go_on: &mut dyn FnMut(Ask) -> bool,
+    ) -> (End, u32) {
+        let problem = self.objective.problem;
+        let mut trial = Vec::with_capacity(positions.len());
+        let mut next = Value::default();
+        let mut force = self.free_force(value);
+        let mut extremes = Extremes::of(problem, positions);
+        for taken in 0..most {
+            if !go_on(Ask::Within) {
+                return (End::Cancelled, taken);
+            }
+            self.lagged.turn(problem.body(), positions, self.carried);
+            let lagged = &*self.lagged;
+            let direction = self
+                .memory
+                .direction(force.clone(), |side| lagged.apply(side));
+            let gain = product(&direction, &force);
+            if !(gain > 0.0) {
+                // A force of zero, or rounding.
+                let end = if gain == 0.0 { End::Found } else { End::Stuck };
+                return (end, taken);
+            }
+            let moves = lagged.spread(&direction);
+            let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+            let mut part = (LARGEST_CHANGE / largest_change(problem, &moves)).min(1.0);
+            let mut halvings = 0;
+            loop {
+                trial.clear();
+                let pairs = positions.iter().zip(&moves);
+                trial.extend(pairs.map(|(x, m)| add(*x, scale(part, *m))));
+                let new = Extremes::of(problem, &trial);
+                if new.are_sound_after(extremes) {
+                    self.objective.evaluate(&trial, &mut next);
+                    let rounding = self.rounding(value, &next);
+                    if self.is_stable(&next)
+                        && next.potential <= value.potential - SUFFICIENT * part * gain + rounding
+                    {
+                        extremes = new;
+                        break;
+                    }
+                }
+                halvings += 1;
+                if halvings > HALVINGS {
+                    let nothing = gain <= self.rounding(value, value);
+                    return (if nothing { End::Found } else { End::Stuck }, taken);
+                }
+                part /= 2.0;
+            }
+            std::mem::swap(positions, &mut trial);
+            std::mem::swap(value, &mut next);
+            let after = self.free_force(value);
+            let change = force.iter().zip(&after).map(|(a, b)| a - b).collect();
+            let step = direction.iter().map(|d| part * d).collect();
+            self.memory.note(step, change);
+            force = after;
+            if part * largest <= self.tolerance {
+                return (End::Found, taken + 1);
+            }
+        }
+        (End::Slow, most)
+    }
+
+    /// What potentials are known to, in J.
+    fn rounding(&self, a: &Value, b: &Value) -> f64 {
+        let unit = self.objective.problem.body().unit_strain_energy();
+        ROUNDING * a.size.max(b.size) + ROUNDING_OF_STRAIN * unit
+    }
+
+    /// Whether the material still resists: constants that were fitted to some range may promise energy beyond it.
+    fn is_stable(&self, value: &Value) -> bool {
+        let unit = self.objective.problem.body().unit_strain_energy();
+        value.energy >= -NEGLIGIBLE_STRAIN.powi(2) * unit
+    }
+
+    /// Minus the gradient on free coordinates.
+    fn free_force(&self, value: &Value) -> Vec<f64> {
+        let mut force = self.lagged.gather(&value.net);
+        for (vertex, _) in self.carried.iter().enumerate().filter(|(_, c)| **c) {
+            if let Some(row) = self.lagged.row_of(vertex, 2) {
+                force[row] = 0.0;
+            }
+        }
+        force
+    }
+}
+
+/// The largest norm of the change of a voxel's deformation gradient: how far it is turned or strained.
+fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
+    let size = |brick: &voxsoft_solid::Brick| {
+        let change = brick.deformation(moves);
+        change
+            .as_flattened()
+            .iter()
+            .map(|x| x * x)
+            .sum::<f64>()
+            .sqrt()
+    };
+    let bricks = problem.body().bricks().iter();
+    bricks.map(size).fold(0.0, f64::max)
+}
+
+/// The least ratio of volumes and the largest stretch among voxels.
+#[derive(Clone, Copy)]
+struct Extremes {
+    volume: f64,
+    stretch: f64,
+}
+
+impl Extremes {
+    fn of(problem: &Problem, positions: &[Vec3]) -> Self {
+        let start = Self {
+            volume: f64::INFINITY,
+            stretch: 0.0,
+        };
+        problem.body().bricks().iter().fold(start, |so_far, brick| {
+            let deformation = brick.deformation(positions);
+            let squares = deformation.as_flattened().iter().map(|x| x * x);
+            Self {
+                volume: so_far.volume.min(determinant(&deformation)),
+                stretch: so_far.stretch.max(squares.sum::<f64>().sqrt()),
+            }
+        })
+    }
+
+    fn are_sound_after(self, before: Self) -> bool {
+        self.volume > LEAST_VOLUME.min(before.volume)
+            && self.stretch < LARGEST_STRETCH.max(before.stretch)
+    }
+}

@@ -1,0 +1,455 @@
+//! Motion by implicit steps: rubber that moves while someone pulls at it.
+//!
+//! A step of a frame's length is the minimum of a potential, because the second-order backward difference formula
+//! ([`scheme`]) makes the equation of motion at its end
+//!
+//! ```text
+//! M (a + c v) = f(x)   ⇔   x = argmin  κ/2 |x − y|²_M + E(x) − W(x),   κ = σ (σ + c),   y = x̂ + v̂/(σ + c),
+//! ```
+//!
+//! with the rate of damping `c`. A line search on the potential makes sudden loads and strong pulls harmless, and a
+//! rest has `a = v = 0`, so that it is the equilibrium whatever the step. The minimum is sought by quasi-Newton
+//! steps ([`minimize`]) with a factor of the tangent that serves many steps ([`lagged`]); it is made anew where the
+//! moves that an old one costs would have paid for it.
+
+mod floor;
+mod guess;
+mod lagged;
+mod minimize;
+mod objective;
+mod pressures;
+mod quasi_newton;
+mod rest;
+mod scheme;
+mod stepper;
+mod turns;
+mod viscosity;
+
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::hands::{Hands, shortest_edge};
+use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
+use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
+
+use self::lagged::Lagged;
+use self::minimize::{End, Search};
+use self::objective::{Goal, Objective, Value};
+use self::pressures::Pressures;
+use self::quasi_newton::Memory;
+use self::scheme::Start;
+use self::stepper::STEPS;
+use self::viscosity::Viscosity;
+use crate::settings::LinearSolver;
+use crate::system::{FactorError, Means};
+
+/// Moves of one search; another follows with a fresh tangent.
+const MOST_MOVES: u32 = 8;
+/// Searches of one step, after which it counts as failed.
+const MOST_SEARCHES: u32 = 30;
+/// The last move of a search, as a part of how far the step goes, of how far forces drive it from where the body
+/// would be without them, and of the shortest edge.
+const MOVE_OF_STEP: f64 = 1e-2;
+const MOVE_OF_FORCES: f64 = 3e-2;
+const MOVE_OF_EDGE: f64 = 1e-9;
+/// By how much the inertia of a factor may be off.
+const INERTIA_RANGE: f64 = 1.5;
+/// How fast an anchor goes, in shortest edges per second: a hand crosses a body in a tenth of a second.
+const ANCHOR_SPEED: f64 = 240.0;
+/// How often a step is halved before a run counts as diverged.
+const MAX_BACK_OFFS: u32 = 10;
+/// Good steps after which a halved one is doubled again.
+const PATIENCE: u32 = 3;
+/// Rounds of a step in which vertices may touch the floor or leave it.
+const FLOOR_ROUNDS: u32 = 3;
+
+/// How an [`Implicit`] run steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ImplicitSettings {
+    /// The length of a step in s.
+    pub step: f64,
+    /// Damping of all motion.
+    pub damping: Damping,
+    /// Retardation time in s of Kelvin–Voigt damping: the deviatoric stress of a hyperelastic voxel answers to
+    /// `s + τ ds/dt`.
+    pub retardation: f64,
+    /// Rest is where the relative residual force is below this, and the kinetic energy below this part of the
+    /// elastic energy.
+    pub tolerance: f64,
+}
+
+impl Default for ImplicitSettings {
+    fn default() -> Self {
+        Self {
+            step: 1.0 / 60.0,
+            damping: Damping::Critical,
+            retardation: 0.0,
+            tolerance: 1e-4,
+        }
+    }
+}
+
+/// A problem in motion by implicit steps.
+///
+/// # Example
+///
+/// ```
+/// use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, LiveStatus, Load, Mesh, Problem, Stepper};
+/// use voxsoft_statics::{Implicit, ImplicitSettings};
+/// use voxsoft_voxel::{Grid, tet_mesh};
+///
+/// let mut grid = Grid::empty([4, 1, 1], [0.0; 3], 0.01, u64::MAX)?;
+/// grid.fill_box([0.0; 3], [0.04, 0.01, 0.01], 1);
+/// let tets = tet_mesh(&grid, u64::MAX)?;
+/// let mesh = Mesh {
+///     tet_part: vec![0; tets.tets.len()],
+///     tet_block: (0..tets.tets.len() as u32).map(|t| t / 5).collect(),
+///     tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+///     vertices: tets.vertices,
+///     ..Mesh::default()
+/// };
+/// let rubber = HyperelasticMaterial::neo_hookean(60e3, 0.49, 1070.0)?;
+/// let body = Body::new(&mesh, &[rubber])?;
+/// let wall = (0..mesh.vertices.len() as u32).filter(|&v| mesh.vertices[v as usize][0] < 1e-9);
+/// let loads = vec![Load::gravity([0.0, 0.0, -9.81])];
+/// let problem = Problem::new(body, vec![Clamp::fixed(wall.collect())], loads, None)?;
+/// let mut run = Implicit::new(problem, ImplicitSettings::default());
+/// while run.advance(10).status == LiveStatus::Moving {}
+/// assert!(run.state().time < 1.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Implicit {
+    problem: Problem,
+    settings: ImplicitSettings,
+    hands: Hands,
+    /// Made at the first step; an error is told by it.
+    lagged: Option<Lagged>,
+    memory: Memory,
+    pressures: Pressures,
+    viscosity: Option<Viscosity>,
+    state: State,
+    /// The state one step ago, from which the next one learns.
+    before: Option<State>,
+    /// Potential, energy and forces at the state.
+    value: Value,
+    /// Vertices that the floor carries.
+    carried: Vec<bool>,
+    damping_rate: f64,
+    step: f64,
+    steps: u64,
+    back_offs: u32,
+    /// Good steps since the last halving.
+    good: u32,
+    /// Moves that the present factor has cost beyond those of a fresh one.
+    excess: f64,
+    residual: f64,
+    status: LiveStatus,
+    breakdown: Option<Breakdown>,
+    travel_limit: f64,
+    shortest_edge: f64,
+}
+
+/// Why a step was not taken.
+enum Failure {
+    /// No minimum was found.
+    Lost,
+    /// The caller asked to stop.
+    Cancelled,
+}
+
+impl From<FactorError> for Failure {
+    fn from(_: FactorError) -> Self {
+        Self::Lost
+    }
+}
+
+impl Implicit {
+    /// Starts at the rest pose.
+    pub fn new(problem: Problem, settings: ImplicitSettings) -> Self {
+        let state = State::at_rest(problem.body());
+        Self {
+            hands: Hands::new(&problem),
+            lagged: None,
+            memory: Memory::default(),
+            pressures: Pressures::new(problem.body()),
+            viscosity: Viscosity::new(problem.body(), settings.retardation),
+            before: None,
+            value: Value::default(),
+            carried: vec![false; state.positions.len()],
+            damping_rate: initial_rate(settings.damping),
+            step: settings.step.clamp(STEPS[0], STEPS[1]),
+            steps: 0,
+            back_offs: 0,
+            good: 0,
+            excess: 0.0,
+            residual: f64::INFINITY,
+            status: LiveStatus::Moving,
+            breakdown: None,
+            travel_limit: travel_limit(&problem),
+            shortest_edge: shortest_edge(&problem),
+            state,
+            problem,
+            settings,
+        }
+    }
+
+    /// Takes one step, in halves of halves where a whole one fails.
+    fn take_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
+        loop {
+            self.steps += 1;
+            match self.try_step(go_on) {
+                Ok(()) => {
+                    self.good += 1;
+                    if self.good >= PATIENCE && self.step < self.settings.step {
+                        self.step = (2.0 * self.step).min(self.settings.step);
+                        self.good = 0;
+                    }
+                    return Ok(());
+                }
+                Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                Err(Failure::Lost) => {
+                    self.back_offs += 1;
+                    self.good = 0;
+                    self.step /= 2.0;
+                    self.before = None;
+                    if self.step < least {
+                        return Err(Failure::Lost);
+                    }
+                }
+            }
+        }
+    }
+
+    fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let step = self.step;
+        let start = Start::new(&self.state, self.before.as_ref(), step);
+        let braked = start.rate + self.damping_rate;
+        let inertia = start.rate * braked;
+        let free: Vec<Vec3> = start
+            .positions
+            .iter()
+            .zip(&start.velocities)
+            .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / braked))
+            .collect();
+        let time = self.state.time + step;
+        let anchors = self.hands.clone();
+        let grabs = self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        let dead = (!self.problem.is_conservative()).then(|| {
+            let mut forces = vec![[0.0; 3]; free.len()];
+            self.problem
+                .add_loads(&self.state.positions, time, &mut forces);
+            forces
+        });
+        let mut within = self.pressures.start(self.problem.body());
+        if let Some(viscosity) = &mut self.viscosity {
+            let from = &self.state.positions;
+            viscosity.start(self.problem.body(), from, step, &mut within);
+        }
+        let goal = Goal {
+            time,
+            inertia,
+            free: &free,
+            grabs: &grabs,
+            dead: dead.as_deref(),
+            within: &within,
+        };
+        let found = self.minimize(goal, go_on);
+        let (mut positions, value) = match found {
+            Ok(found) => found,
+            Err(failure) => {
+                self.hands = anchors;
+                return Err(failure);
+            }
+        };
+        self.keep_momentum(inertia, &mut positions, &value);
+        let velocities = positions.iter().zip(&start.positions);
+        let velocities = velocities.map(|(x, from)| scale(start.rate, sub(*x, *from)));
+        let next = State {
+            velocities: velocities.collect(),
+            positions,
+            time,
+        };
+        if let Some(place) =
+            Breakdown::find(&self.problem, &next.positions, self.travel_limit, time)
+        {
+            self.hands = anchors;
+            self.breakdown = Some(place);
+            return Err(Failure::Lost);
+        }
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.end(self.problem.body(), &next.positions, step);
+        }
+        self.pressures.take(&value.pressures);
+        if self.settings.damping == Damping::Critical {
+            self.damping_rate = 2.0 * self.frequency(&next, &value);
+        }
+        self.before = Some(std::mem::replace(&mut self.state, next));
+        self.value = value;
+        Ok(())
+    }
+
+    /// The minimum of a step's potential.
+    fn minimize(
+        &mut self,
+        goal: Goal<'_>,
+        go_on: &mut dyn FnMut(Ask) -> bool,
+    ) -> Result<(Vec<Vec3>, Value), Failure> {
+        let Goal { time, inertia, .. } = goal;
+        if self.lagged.is_none() {
+            let means = Means {
+                solver: LinearSolver::Direct,
+                memory: u64::MAX,
+            };
+            self.lagged = Some(Lagged::new(&self.problem, means)?);
+        }
+        let mut value = Value::default();
+        let mut positions = self.predicted(time);
+        let objective = Objective {
+            problem: &self.problem,
+            goal,
+        };
+        objective.evaluate(&positions, &mut value);
+        if self.is_violent() {
+            // The motion may not go on as it did: a load has jumped, or something is met.
+            let stayed = self.stayed(time);
+            let mut other = Value::default();
+            objective.evaluate(&stayed, &mut other);
+            if !(value.potential <= other.potential) {
+                (positions, value) = (stayed, other);
+            }
+        }
+        let mut rounds = 0;
+        let mut searches = 0;
+        let mut fresh = false;
+        loop {
+            let springs = self.springs(inertia, goal.grabs);
+            let lagged = self.lagged.as_mut().expect("made above");
+            if !lagged.is_assembled() {
+                lagged.assemble(&self.problem, &positions, time, goal.within);
+                fresh = true;
+            }
+            if !lagged.serves(inertia, INERTIA_RANGE) || !lagged.patch(&springs) {
+                if !go_on(Ask::Within) {
+                    return Err(Failure::Cancelled);
+                }
+                if !lagged.factorize(inertia, &springs)? {
+                    // Compressed, or swollen on the way: without what stress adds it is positive definite.
+                    lagged.assemble_stressless(&self.problem, &positions, goal.within);
+                    lagged.factorize_lifted(inertia, &springs)?;
+                }
+                self.memory.clear();
+            }
+            if !value.potential.is_finite() {
+                return Err(Failure::Lost);
+            }
+            let tolerance = (MOVE_OF_STEP * farthest(&positions, &self.state.positions))
+                .min(MOVE_OF_FORCES * farthest(&positions, goal.free))
+                .max(MOVE_OF_EDGE * self.shortest_edge);
+            let mut search = Search {
+                objective: Objective {
+                    problem: &self.problem,
+                    goal,
+                },
+                lagged,
+                memory: &mut self.memory,
+                carried: &self.carried,
+                tolerance,
+            };
+            let (end, moves) = search.run(&mut positions, &mut value, MOST_MOVES, go_on);
+            if !fresh {
+                self.excess += f64::from(moves.saturating_sub(2));
+            }
+            match end {
+                End::Cancelled => return Err(Failure::Cancelled),
+                End::Found => {
+                    rounds += 1;
+                    let changed = self.touch_floor(&mut positions, &value);
+                    if !changed || rounds > FLOOR_ROUNDS {
+                        break;
+                    }
+                    let problem = &self.problem;
+                    Objective { problem, goal }.evaluate(&positions, &mut value);
+                    continue;
+                }
+                End::Slow | End::Stuck => {}
+            }
+            searches += 1;
+            if searches > MOST_SEARCHES || (fresh && end == End::Stuck) {
+                return Err(Failure::Lost);
+            }
+            if let Some(lagged) = &mut self.lagged {
+                lagged.assemble_stressless(&self.problem, &positions, goal.within);
+            }
+            self.excess = 0.0;
+            fresh = true;
+        }
+        if self.excess > self.lagged.as_ref().map_or(0.0, Lagged::factor_cost) {
+            // For the next step.
+            self.renew(&positions, goal);
+        }
+        Ok((positions, value))
+    }
+
+    fn renew(&mut self, positions: &[Vec3], goal: Goal<'_>) {
+        if let Some(lagged) = &mut self.lagged {
+            lagged.assemble(&self.problem, positions, goal.time, goal.within);
+        }
+        self.excess = 0.0;
+    }
+
+    /// Moves a body that nothing holds as a whole, until all forces on it account for its momentum: the search ends
+    /// before they do to the last digit.
+    fn keep_momentum(&self, inertia: f64, positions: &mut [Vec3], value: &Value) {
+        let held = self.problem.held().as_flattened().contains(&true);
+        if held || self.carried.contains(&true) || !self.hands.grabs().is_empty() {
+            return;
+        }
+        let left = value.net.iter().fold([0.0; 3], |sum, f| add(sum, *f));
+        let part = 1.0 / (inertia * self.problem.body().total_mass());
+        for x in positions {
+            axpy(x, part, left);
+        }
+    }
+
+    /// Something was changed: the body may move again.
+    fn wake(&mut self) {
+        if self.status == LiveStatus::Diverged {
+            self.step = self.settings.step;
+            self.back_offs = 0;
+        }
+        self.status = LiveStatus::Moving;
+        self.breakdown = None;
+    }
+
+    fn start_from(&mut self, state: State) {
+        self.pressures = Pressures::at(self.problem.body(), &state.positions);
+        self.state = state;
+        self.before = None;
+        self.value = Value::default();
+        self.carried.fill(false);
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.restart();
+        }
+        self.damping_rate = initial_rate(self.settings.damping);
+        self.residual = f64::INFINITY;
+        self.memory.clear();
+        // The tangent is that of the state from which the next step starts, whatever came before.
+        if let Some(lagged) = &mut self.lagged {
+            lagged.forget();
+        }
+        self.excess = 0.0;
+        self.wake();
+    }
+}
+
+/// The largest distance between two places of a vertex.
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
+}
+
+fn initial_rate(damping: Damping) -> f64 {
+    match damping {
+        Damping::Rate(rate) => rate,
+        Damping::Critical => 0.0,
+    }
+}

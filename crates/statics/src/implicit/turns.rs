@@ -1,0 +1,106 @@
+//! How far the voxels around every vertex have turned since the tangent was taken.
+//!
+//! The tangent of a body that has turned by `R` is `R K Rᵀ`. Where parts turn by different angles, each vertex with
+//! the mean of its voxels, that is off by what one voxel turns against the next, not by how far the body has gone:
+//! so a factor lasts while a finger curls up.
+
+use voxsoft_solid::Body;
+use voxsoft_solid::matrix::{IDENTITY, Mat3, apply, apply_transposed, multiply, polar, transpose};
+use voxsoft_solid::vector::{Vec3, add, axpy, cross, dot, norm, scale, sub};
+
+/// The turns of all vertices.
+pub(super) struct Turns {
+    /// The rotation of each voxel when the tangent was taken.
+    before: Vec<Mat3>,
+    /// The turn of each vertex since.
+    now: Vec<Mat3>,
+    /// Vertices that do not turn, because some of their axes are held.
+    fixed: Vec<bool>,
+}
+
+impl Turns {
+    /// `held` axes stay as they are.
+    pub fn new(body: &Body, held: &[[bool; 3]]) -> Self {
+        Self {
+            before: vec![IDENTITY; body.voxels().len()],
+            now: vec![IDENTITY; held.len()],
+            fixed: held.iter().map(|axes| axes.contains(&true)).collect(),
+        }
+    }
+
+    /// Counts from `positions` on.
+    pub fn start(&mut self, body: &Body, positions: &[Vec3]) {
+        for (before, voxel) in self.before.iter_mut().zip(body.voxels()) {
+            *before = rotation(voxel, positions);
+        }
+        self.now.fill(IDENTITY);
+    }
+
+    /// Takes the turns up to `positions`; vertices on the floor do not turn.
+    pub fn take(&mut self, body: &Body, positions: &[Vec3], carried: &[bool]) {
+        self.now.fill([[0.0; 3]; 3]);
+        for (before, voxel) in self.before.iter().zip(body.voxels()) {
+            let turn = multiply(&rotation(voxel, positions), &transpose(before));
+            for &vertex in voxel {
+                for (sum, row) in self.now[vertex as usize].iter_mut().zip(turn) {
+                    *sum = add(*sum, row);
+                }
+            }
+        }
+        let fixed = self.fixed.iter().zip(carried);
+        for (turn, (fixed, carried)) in self.now.iter_mut().zip(fixed) {
+            *turn = if *fixed || *carried {
+                IDENTITY
+            } else {
+                orthonormal(turn)
+            };
+        }
+    }
+
+    /// `R` times vectors on vertices.
+    pub fn forth(&self, vectors: &mut [Vec3]) {
+        for (vector, turn) in vectors.iter_mut().zip(&self.now) {
+            *vector = apply(turn, *vector);
+        }
+    }
+
+    /// `Rᵀ` times vectors on vertices.
+    pub fn back(&self, vectors: &mut [Vec3]) {
+        for (vector, turn) in vectors.iter_mut().zip(&self.now) {
+            *vector = apply_transposed(turn, *vector);
+        }
+    }
+}
+
+/// The rotation of a voxel: that of its mean deformation gradient.
+fn rotation(voxel: &[u32; 8], positions: &[Vec3]) -> Mat3 {
+    let mut columns = [[0.0; 3]; 3];
+    for (corner, &vertex) in voxel.iter().enumerate() {
+        for (axis, column) in columns.iter_mut().enumerate() {
+            let far = corner >> (2 - axis) & 1 == 1;
+            axpy(
+                column,
+                if far { 1.0 } else { -1.0 },
+                positions[vertex as usize],
+            );
+        }
+    }
+    polar(&transpose(&columns)).0
+}
+
+/// A rotation near a sum of rotations; none at all where they cancel out.
+fn orthonormal(sum: &Mat3) -> Mat3 {
+    let [x, y, _] = transpose(sum);
+    let first = norm(x);
+    if !(first > 0.0) {
+        return IDENTITY;
+    }
+    let x = scale(1.0 / first, x);
+    let y = sub(y, scale(dot(x, y), x));
+    let second = norm(y);
+    if !(second > 1e-3 * first) {
+        return IDENTITY;
+    }
+    let y = scale(1.0 / second, y);
+    transpose(&[x, y, cross(x, y)])
+}

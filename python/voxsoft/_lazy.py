@@ -1,0 +1,47 @@
+"""Names of a package that are loaded when first used, so that importing it stays light."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+
+def lazy_names(
+    package: str, homes: Mapping[str, str]
+) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Make the ``__getattr__`` and ``__dir__`` of a package.
+
+    Parameters
+    ----------
+    package
+        Its name.
+    homes
+        The module that holds each public name.
+
+    Examples
+    --------
+    >>> get, names = lazy_names("voxsoft", {"Voxels": "voxsoft.voxels"})
+    >>> get("Voxels").__name__
+    'Voxels'
+    >>> get("Voxel")
+    Traceback (most recent call last):
+    ...
+    AttributeError: module 'voxsoft' has no attribute 'Voxel'
+    """
+
+    def get(name: str) -> Any:  # noqa: ANN401 - any public object
+        module = sys.modules[package]
+        if name not in homes:
+            # With name and obj, Python itself looks for the closest name in __dir__.
+            what = f"module '{package}' has no attribute '{name}'"
+            raise AttributeError(what, name=name, obj=module)
+        value = getattr(import_module(homes[name]), name)
+        setattr(module, name, value)
+        return value
+
+    def names() -> list[str]:
+        return sorted({*homes, *(n for n in vars(sys.modules[package]) if n.startswith("__"))})
+
+    return get, names

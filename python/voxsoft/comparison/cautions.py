@@ -1,0 +1,97 @@
+"""Where an estimate of the discretization error is known to say too little."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design, Pressure
+from voxsoft.design.chamber import chosen_cavities, name_of_cavity
+from voxsoft.design.cut_cells import built_parts
+from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.places import voxel_size
+
+#: A face of a voxel that turns away from the surface it stands for by more than this is a step of
+#: a stair: those of a sphere turn by up to 55 degrees, those of a box by none.
+_STEP: Final = np.radians(15.0)
+#: A wall is a stair where steps are more than this part of its area. Of a sphere or a round tube
+#: they are 0.6 to 0.8 of it; rounded edges of a box are less.
+_MOSTLY: Final = 0.3
+
+Floats = NDArray[np.float64]
+
+
+def cautions_of(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
+    """Warn of chambers under pressure whose walls are stairs.
+
+    Pressure pushes the inner corners of a stair out, and does so on finer voxels as well: of a
+    thick sphere that grows by a tenth, two sizes of voxels told 0.9 % where the error was 4.5 %.
+
+    Parameters
+    ----------
+    design, mesh
+        What is compared, and its mesh.
+    """
+    pressed: set[int] = set()
+    for number, load in enumerate(design.loads):
+        if isinstance(load, Pressure):
+            pressed.update(chosen_cavities(load.cavity, mesh, f"loads[{number}].cavity"))
+    for index in sorted(pressed):
+        cavity = mesh.cavities[index]
+        share, place = steps_of_wall(design, mesh, cavity)
+        if share > _MOSTLY:
+            yield Diagnostic(
+                "warning",
+                name_of_cavity(mesh, index),
+                f"is under pressure, and {share:.0%} of its wall is a stair of voxels: estimates "
+                "of the discretization error may be low by up to five times",
+                "compare several voxel sizes, and take the spread between them for the error",
+                place,
+            )
+
+
+def steps_of_wall(
+    design: Design, mesh: Mesh, cavity: MeshCavity
+) -> tuple[float, tuple[float, float, float]]:
+    """Return the part of a chamber's wall that turns away from the surface it stands for.
+
+    Parameters
+    ----------
+    design, mesh, cavity
+        The body, and one of the mesh's cavities.
+
+    Returns
+    -------
+    share, place
+        Between 0 and 1, by area; and the center of the step that turns most, m.
+    """
+    corners = mesh.vertices[cavity.triangles]
+    a, b, c = corners.transpose(1, 0, 2)
+    areas = np.cross(b - a, c - a)
+    sizes = np.linalg.norm(areas, axis=1)
+    centers = corners.mean(axis=1)
+    slopes = _slopes(design, centers, voxel_size(mesh))
+    lengths = np.linalg.norm(slopes, axis=1)
+    known = (lengths > 0.0) & np.isfinite(lengths)
+    cosines = np.ones(len(sizes))
+    along = np.einsum("ij,ij->i", areas, slopes)
+    cosines[known] = along[known] / (sizes * lengths)[known]
+    steps = cosines < np.cos(_STEP)
+    worst = centers[int(cosines.argmin())]
+    share = float(sizes[steps].sum() / sizes.sum())
+    return share, (float(worst[0]), float(worst[1]), float(worst[2]))
+
+
+def _slopes(design: Design, points: Floats, size: float) -> Floats:
+    """Gradient of the level of the union of all parts, which is negative inside, (n, 3)."""
+    step = 0.05 * size
+    shifts = step * np.concatenate([np.eye(3), -np.eye(3)])
+    around = (points[:, None] + shifts).reshape(-1, 3)
+    levels = np.min([shape.evaluate(around) for shape in built_parts(design)], axis=0)
+    levels = levels.reshape(-1, 6)
+    slopes: Floats = levels[:, :3] - levels[:, 3:]
+    return slopes

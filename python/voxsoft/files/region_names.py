@@ -1,0 +1,85 @@
+"""Names of regions for formats that know letters, digits, ``_`` and ``-`` only.
+
+A region may be called anything, ``"tip left"`` or ``"höhe"``; Abaqus and Gmsh get a label for it,
+and a line of comment in the file says which name it stands for, so that reading gives it back.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping
+from typing import Final
+
+_LONGEST: Final = 60  # Abaqus takes 80
+#: Labels of the sets that the writers make themselves, whatever their case.
+_RESERVED: Final = re.compile(r"(?:part|cavity)-\d+(?:-s\d)?|all-(?:nodes|elements)", re.IGNORECASE)
+_COMMENT: Final = re.compile(r'REGION ([A-Za-z][\w-]*) = (".*")', re.ASCII)
+
+
+def labels_of(names: Iterable[str]) -> dict[str, str]:
+    """Give each name a label of its own; a name that can be one is its own label.
+
+    Labels differ also where case does not count.
+
+    Examples
+    --------
+    >>> labels_of(["probe_tip", "probe_tip left", "probe_tip.left", "höhe", "名前"])
+    {'probe_tip': 'probe_tip', 'probe_tip left': 'probe_tip_left', 'probe_tip.left': \
+'probe_tip_left-2', 'höhe': 'hohe', '名前': 'region'}
+    """
+    every = list(names)
+    taken = {name.lower() for name in every if _label(name) == name}
+    labels = {}
+    for name in every:
+        label = _label(name)
+        if label != name:
+            label = _free(label, taken)
+            taken.add(label.lower())
+        labels[name] = label
+    return labels
+
+
+def _label(name: str) -> str:
+    """The label that a name would have if it were alone."""
+    if re.fullmatch(r"[A-Za-z][\w-]{0,63}", name, re.ASCII) and not _RESERVED.fullmatch(name):
+        return name
+    letters = unicodedata.normalize("NFKD", name)
+    base = "".join(letter for letter in letters if not unicodedata.combining(letter))
+    label = re.sub(r"[^A-Za-z0-9_-]+", "_", base)[:_LONGEST].strip("_")
+    is_free = label[:1].isalpha() and not _RESERVED.fullmatch(label)
+    return label if is_free else f"region_{label}".rstrip("_")
+
+
+def _free(label: str, taken: set[str]) -> str:
+    number, found = 2, label
+    while found.lower() in taken:
+        found = f"{label}-{number}"
+        number += 1
+    return found
+
+
+def comments_of(labels: Mapping[str, str]) -> list[str]:
+    r"""Lines that tell what labels stand for, in ASCII; none for names that are their own.
+
+    Examples
+    --------
+    >>> comments_of({"tip": "tip", "höhe": "hohe"})
+    ['REGION hohe = "h\\u00f6he"']
+    """
+    return [
+        f"REGION {label} = {json.dumps(name)}" for name, label in labels.items() if name != label
+    ]
+
+
+def names_in(lines: Iterable[str]) -> dict[str, str]:
+    """Read such lines back: names by label.
+
+    Examples
+    --------
+    >>> names_in(comments_of({"höhe": "hohe"}))
+    {'hohe': 'höhe'}
+    """
+    found = (_COMMENT.search(line) for line in lines)
+    return {match[1]: str(json.loads(match[2])) for match in found if match}

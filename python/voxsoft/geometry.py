@@ -1,0 +1,100 @@
+"""Numbers from positions of vertices: how far, how much turned, how large, how stretched.
+
+Plain functions of arrays; :mod:`voxsoft.metrics` says which of them a design may ask for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def mean_displacement(
+    rest: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    vertices: NDArray[np.uint32],
+    weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Weighted mean displacement of some vertices.
+
+    Parameters
+    ----------
+    rest, positions
+        Vertices at rest and now, (n, 3), m.
+    vertices, weights
+        Indices (k,) and weights (k,) that sum to 1.
+
+    Returns
+    -------
+    ndarray of shape (3,)
+        In m.
+
+    Examples
+    --------
+    >>> rest = np.zeros((2, 3))
+    >>> mean_displacement(rest, rest + [0, 0, 1], np.array([0, 1]), np.array([0.5, 0.5]))
+    array([0., 0., 1.])
+    """
+    moved: NDArray[np.float64] = weights @ (positions[vertices] - rest[vertices])
+    return moved
+
+
+def mean_rotation(
+    rest: NDArray[np.float64], positions: NDArray[np.float64], vertices: NDArray[np.uint32]
+) -> float:
+    """Angle in rad by which some vertices have turned as a whole.
+
+    The best rotation in the sense of least squares (Kabsch 1976, doi 10.1107/S0567739476001873);
+    for a tip section of a bending actuator this is its bending angle.
+
+    Parameters
+    ----------
+    rest, positions
+        Vertices at rest and now, (n, 3), m.
+    vertices
+        At least three vertices that are not on one line.
+
+    Returns
+    -------
+    float
+        Between 0 and π; NaN where the vertices do not define a rotation.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> turned = square @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    >>> angle = mean_rotation(square, turned, np.arange(4, dtype=np.uint32))
+    >>> round(float(np.degrees(angle)), 6)
+    90.0
+    """
+    before = rest[vertices] - rest[vertices].mean(axis=0)
+    after = positions[vertices] - positions[vertices].mean(axis=0)
+    left, values, right = np.linalg.svd(before.T @ after)
+    if values[1] <= 1e-12 * values[0] or len(vertices) < 3:
+        return float("nan")
+    handed = np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
+    cosine = (np.trace(left @ handed @ right) - 1.0) / 2.0
+    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+
+
+def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]) -> float:
+    """Volume in m³ of a cavity whose triangles point out of the solid, into the cavity.
+
+    Parameters
+    ----------
+    triangles
+        A closed surface, (t, 3).
+    positions
+        Vertices now, (n, 3), m.
+
+    Examples
+    --------
+    >>> corners = np.eye(4, 3, k=-1)  # the origin and the three unit vectors
+    >>> inward = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], dtype=np.int32)
+    >>> round(enclosed_volume(inward, corners), 6)
+    0.166667
+    """
+    corners = positions.T.take(triangles.T, axis=1)  # three axes, three corners, t
+    (ax, bx, cx), (ay, by, cy), (az, bz, cz) = corners
+    six_volumes = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    return -float(six_volumes.sum()) / 6.0

@@ -1,0 +1,138 @@
+"""What a metric is, and what it may look at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final, Literal, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Constraint, Design, Objective
+from voxsoft.errors import Problem
+from voxsoft.fields import Fields
+from voxsoft.mesh import Mesh
+
+Floats = NDArray[np.float64]
+#: What asks for a metric, with its place and its direction.
+Target = Objective | Constraint
+#: Keys of a target that say where, along what or of which voxels a metric is measured.
+Option = Literal["probe", "axis", "cavity", "percentile"]
+
+#: What a metric lacks that does not take a key.
+_LACKS: Final[Mapping[Option, str]] = {
+    "probe": "is not measured at a probe",
+    "axis": "has no direction",
+    "cavity": "is not measured in a cavity",
+    "percentile": "is not one number for each voxel",
+}
+
+
+@dataclass(frozen=True)
+class Place:
+    """Vertices with weights that sum to one: what a probe averages over."""
+
+    vertices: NDArray[np.uint32]
+    weights: Floats
+
+
+class Depth(Protocol):
+    """How deep a body is in itself or in its floor."""
+
+    @property
+    def depth(self) -> float:
+        """In m; 0 where nothing overlaps."""
+
+
+class State(Protocol):
+    """What the value of a metric may look at: a body where it is now.
+
+    A :class:`~voxsoft.simulation.Result` is one.
+    """
+
+    @property
+    def design(self) -> Design:
+        """What was simulated."""
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh, unloaded."""
+
+    @property
+    def places(self) -> Mapping[str, Place]:
+        """What each probe averages over."""
+
+    @property
+    def positions(self) -> Floats:
+        """Vertices now, (n, 3), m."""
+
+    @property
+    def mass(self) -> float:
+        """In kg."""
+
+    @property
+    def elastic_energy(self) -> float:
+        """In J."""
+
+    @property
+    def fields(self) -> Fields:
+        """Stress and strain."""
+
+    @property
+    def reaction(self) -> tuple[float, float, float]:
+        """What all supports carry, (3,), N."""
+
+    @property
+    def penetration(self) -> Depth:
+        """Where the body is in itself or in its floor."""
+
+
+class SlopeState(State, Protocol):
+    """What the slope of a metric may look at besides."""
+
+    @property
+    def elastic_forces(self) -> Floats:
+        """Forces of the material on its vertices, (n, 3), N."""
+
+    def pushed_triangles(self) -> Iterable[tuple[NDArray[np.int32], float]]:
+        """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A number that a design may ask for.
+
+    Attributes
+    ----------
+    name, kind
+        How a design calls it, and the kind of quantity it is, a key of
+        :data:`voxsoft.units.KINDS`.
+    value
+        The number in SI units, from a state and the target that asks for it.
+    slope
+        Its derivative by the positions of all vertices, (n, 3); None where it has none. Where a
+        metric has a kink this is one of its slopes.
+    needs, takes
+        Keys of the target without which it has no place, and those that it can do without. Others
+        are refused.
+
+    Examples
+    --------
+    >>> from voxsoft.metrics import METRICS
+    >>> METRICS["displacement"].kind, sorted(METRICS["displacement"].takes)
+    ('length', ['axis'])
+    """
+
+    name: str
+    kind: str
+    value: Callable[[State, Target], float]
+    slope: Callable[[SlopeState, Target], Floats] | None
+    needs: frozenset[Option] = frozenset()
+    takes: frozenset[Option] = frozenset()
+
+    def refusals(self, target: Target) -> Iterator[Problem]:
+        """Find the keys of a target that this metric would not use."""
+        for option, lack in _LACKS.items():
+            if getattr(target, option) is not None and option not in self.needs | self.takes:
+                yield Problem(option, f"{self.name} {lack}", f"leave {option} out")

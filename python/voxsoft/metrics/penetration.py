@@ -1,0 +1,15 @@
+"""How deep a body is in itself."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from voxsoft.metrics.metric import Metric, State, Target
+
+
+def _value(state: State, _: Target) -> float:
+    return state.penetration.depth
+
+
+# Without a slope: at the first touch it has a kink, and before it there is nothing to follow.
+PENETRATION: Final = Metric("penetration", "length", _value, None)

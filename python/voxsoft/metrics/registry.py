@@ -1,0 +1,67 @@
+"""All metrics by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Final
+
+from voxsoft.errors import DesignError
+from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
+from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
+from voxsoft.metrics.metric import Metric
+from voxsoft.metrics.penetration import PENETRATION
+from voxsoft.metrics.reaction import REACTION
+from voxsoft.metrics.rotation import ROTATION
+from voxsoft.metrics.stress import MAX_STRESS
+from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
+from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
+from voxsoft.records import closest
+
+#: Every metric by the name that objectives and constraints call it.
+METRICS: Final[Mapping[str, Metric]] = MappingProxyType(
+    {
+        metric.name: metric
+        for metric in (
+            DISPLACEMENT,
+            ROTATION,
+            MASS,
+            VOLUME,
+            CAVITY_VOLUME,
+            CAVITY_VOLUME_CHANGE,
+            ELASTIC_ENERGY,
+            REACTION,
+            MAX_DISPLACEMENT,
+            MAX_STRETCH,
+            MAX_STRESS,
+            MIN_VOLUME_RATIO,
+            PENETRATION,
+        )
+    }
+)
+
+
+def metric_named(name: str) -> Metric:
+    """Return a metric.
+
+    Parameters
+    ----------
+    name
+        A key of :data:`METRICS`.
+
+    Raises
+    ------
+    DesignError
+        There is none of this name.
+
+    Examples
+    --------
+    >>> metric_named("max_strech")
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: metric: "max_strech" is not a metric. Try: did you mean \
+"max_stretch"?
+    """
+    if name not in METRICS:
+        raise DesignError("metric", f'"{name}" is not a metric', closest(name, METRICS))
+    return METRICS[name]

@@ -1,0 +1,16 @@
+"""How much a body is stressed."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from voxsoft.metrics.metric import Metric, State, Target
+
+
+def _stress(state: State, target: Target) -> float:
+    return state.fields.percentile("von_mises", target.percentile or 100.0)
+
+
+MAX_STRESS: Final = Metric(
+    "max_stress", "pressure", _stress, slope=None, takes=frozenset({"percentile"})
+)

@@ -1,0 +1,210 @@
+"""What one run is likely to take, before it is made.
+
+The time of an iteration is known well, how many there are is not: it depends on how far the body
+moves. So the answer is a range. All constants were measured on one core of a 2.4 GHz server with
+the examples and with beams, blocks, plates, tubes and balls of 80 to 6,000 voxels, of lattice and
+of rubber; `tests/unit/test_cost.py` holds the iterations against runs.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design, Force, Gravity, Pressure, Traction
+from voxsoft.materials import Hyperelastic, Material, Rigid
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.ways import DYNAMICS, STATICS, Way, way_of
+
+#: Seconds of one constraint and step of relaxation or dynamics of a lattice, and of one
+#: tetrahedron of rubber.
+_LATTICE_STEP: Final = 1.2e-8
+_RUBBER_STEP: Final = 8e-7
+#: Seconds of one Newton iteration of a body of rubber are this times a power of its vertices; a
+#: lattice takes a fifth.
+_ITERATION: Final = 1.4e-5
+_GROWTH: Final = 1.2
+_OF_A_LATTICE: Final = 0.2
+#: Iterations of a load that hardly moves the body, those that large motions add, and those of one
+#: step of a path.
+_FEWEST: Final = 4.0
+_MORE: Final = 60.0
+_OF_A_STEP: Final = 6.0
+#: Steps of an arc that is not longer than it must be.
+_STEPS_OF_AN_ARC: Final = 8
+#: Substeps in the time that a wave of compression takes through a voxel.
+_SUBSTEPS: Final = 2.5
+#: Runs take from a third of what is expected to three times that.
+_SPREAD: Final = 3.0
+#: Measures of motion beyond which a path may have limits and folds, where steps are cut.
+_FAR: Final = 0.3
+
+
+class Cost(NamedTuple):
+    """Seconds that one run is likely to take.
+
+    Attributes
+    ----------
+    seconds
+        What is expected.
+    low, high
+        The range; `high` is None where the way of the loads is not known beforehand: the run takes
+        at least `low`.
+
+    Examples
+    --------
+    >>> Cost(2.0, 0.7, 6.0).sentence
+    'about 2 s (0.7 to 6 s)'
+    >>> Cost(2.0, 0.7, None).sentence
+    'at least 0.7 s, rather 2 s: how far the loads move the body decides'
+    """
+
+    seconds: float
+    low: float
+    high: float | None
+
+    def times(self, factor: float) -> Cost:
+        """Return the same in units of a factor."""
+        high = None if self.high is None else factor * self.high
+        return Cost(factor * self.seconds, factor * self.low, high)
+
+    @property
+    def sentence(self) -> str:
+        """The range in words."""
+        if self.high is None:
+            return (
+                f"at least {self.low:.2g} s, rather {self.seconds:.2g} s: how far the loads move "
+                "the body decides"
+            )
+        return f"about {self.seconds:.2g} s ({self.low:.2g} to {self.high:.2g} s)"
+
+
+def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost:
+    """Predict the time of one run as the design's solver asks for it.
+
+    Parameters
+    ----------
+    design
+        Its solver decides the way, its loads how far the body moves.
+    mesh
+        Its mesh, of the design's own voxels.
+    wall
+        Thickness of the thinnest wall in m, if it has one.
+    mass
+        Of the body, in kg.
+    """
+    solver, way = design.solver, way_of(design, design.solver)
+    materials = [design.material_of(part) for part in design.parts]
+    soft = [each for each in materials if not isinstance(each, Rigid)] or materials
+    rubber = any(isinstance(each, Hyperelastic) for each in materials) or bool(design.layers)
+    cells, size = solver.refine**3, design.voxel_size / solver.refine
+    iteration = _ITERATION * (cells * len(mesh.vertices)) ** _GROWTH
+    iteration *= 1.0 if rubber else _OF_A_LATTICE
+    iterations = newton_iterations(design, mesh, wall, mass)
+    if way in STATICS:
+        return iterations.times(iteration)
+    constraints = cells * (len(mesh.edges) + len(mesh.tets))
+    step = _RUBBER_STEP * cells * len(mesh.tets) if rubber else _LATTICE_STEP * constraints
+    sizes = np.sort(np.ptp(mesh.vertices, axis=0))
+    speed = max(_speed(each, size) for each in soft)
+    slow = min(np.sqrt(_young(each, size) / each.density) for each in soft)
+    if way in DYNAMICS:
+        # A body that is damped well is at rest after about one swing of its lowest mode.
+        swing = float(sizes[-1] ** 2 / (0.16 * sizes[0] * slow))
+        seconds = step * (solver.end_time or swing) / _substep(design, size, speed)
+        return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if solver.end_time else None)
+    seconds = step * _steps_to_rest(sizes / size, speed / slow)
+    if way is Way.QUICKEST:
+        seconds = min(seconds, iteration * iterations.seconds)
+    return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD)
+
+
+def _young(material: Material, size: float) -> float:
+    return float(material.young(size))
+
+
+def _speed(material: Material, size: float) -> float:
+    """Speed of compression waves in m/s, which decides the substep."""
+    young = _young(material, size)
+    poisson = material.poisson if isinstance(material, Hyperelastic) else 0.25
+    stiffness = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
+    return float(np.sqrt(stiffness / material.density))
+
+
+def _substep(design: Design, size: float, speed: float) -> float:
+    solver = design.solver
+    if solver.substeps is not None:
+        return (solver.time_step or 0.01) / solver.substeps
+    return size / (_SUBSTEPS * speed)
+
+
+def _steps_to_rest(voxels: NDArray[np.float64], stiffer: float) -> float:
+    """Steps of relaxation: proportional to the highest over the lowest frequency.
+
+    A slender body of length ``L`` and thickness ``t`` in voxels bends with a frequency of order
+    ``t/L²`` of that of a voxel; 10 was measured on the paper's beam (L = 18, t = 2). What hardly
+    changes its volume is `stiffer` in compression than in bending.
+    """
+    thickness, length = max(float(voxels[0]), 1.0), float(voxels[-1])
+    return max(200.0, 10.0 * length**2 / thickness) * max(1.0, stiffer)
+
+
+def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost:
+    """Predict the iterations of statics: those expected, and their range.
+
+    Parameters
+    ----------
+    design, mesh, wall, mass
+        As for :func:`cost_of`.
+    """
+    way, steps = way_of(design, design.solver), design.solver.steps or 20
+    motion = _motion(design, mesh, wall, mass)
+    expected = _FEWEST + _MORE * motion / (1.0 + motion)
+    if way is Way.VOLUME or way is Way.ARC_LENGTH:
+        expected = _OF_A_STEP * (steps if way is Way.VOLUME else min(steps, _STEPS_OF_AN_ARC))
+    elif motion <= _FAR:
+        return Cost(expected, expected / _SPREAD, expected * _SPREAD)
+    return Cost(expected, min(expected / _SPREAD, _FEWEST / 2.0), None)
+
+
+def _motion(design: Design, mesh: Mesh, wall: float | None, mass: float) -> float:
+    """How far the body moves, without units: the angle by which it bends, or its strain.
+
+    Dead loads pull along the longest edge of the body's box and bend it across that, as a
+    cantilever; pressure bends the walls of its chambers, and the body by their strain times its
+    slenderness.
+    """
+    soft = [each for each in map(design.material_of, design.parts) if not isinstance(each, Rigid)]
+    young = min((_young(each, design.voxel_size) for each in soft), default=np.inf)
+    sizes = np.ptp(mesh.vertices, axis=0)
+    thick, wide, long = np.sort(sizes)
+    force, strain = np.zeros(3), 0.0
+    for load in design.loads:
+        final = abs(load.history.factor[-1]) if load.history else 1.0
+        if isinstance(load, Gravity):
+            down = np.asarray(load.direction)
+            force += final * load.value * mass * np.abs(down) / np.linalg.norm(down)
+        elif isinstance(load, Force):
+            force += final * np.abs(load.value)
+        elif isinstance(load, Traction):
+            force += final * np.linalg.norm(load.value) * thick * wide
+        elif isinstance(load, Pressure):
+            inside = max((_width(mesh, c.triangles) for c in mesh.cavities), default=thick)
+            slender = 0.5 * inside / (wall or 0.5 * inside)
+            strain += final * abs(load.value) / young * slender * max(slender, 1.0)
+    axial = force[int(np.argmax(sizes))]
+    across = float(np.linalg.norm(force) ** 2 - axial**2) ** 0.5
+    moved = across * long**2 / (6.0 * young * wide * thick**3 / 12.0)
+    moved += axial / (young * wide * thick) + strain * long / thick
+    for clamp in design.clamps:
+        if clamp.motion is not None:
+            moved += np.linalg.norm(clamp.motion.displacement) / long
+            moved += abs(clamp.motion.rotation.angle) if clamp.motion.rotation else 0.0
+    return float(moved)
+
+
+def _width(mesh: Mesh, triangles: NDArray[np.int32]) -> float:
+    """The smallest extent of a cavity in m."""
+    return float(np.ptp(mesh.vertices[np.unique(triangles)], axis=0).min())

@@ -1,0 +1,47 @@
+"""From a design and positions to its stress and strain."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import Design
+from voxsoft.fields import Fields
+from voxsoft.materials import Rigid
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.setup import core_problem
+
+
+def fields_of(
+    design: Design,
+    mesh: Mesh,
+    positions: NDArray[np.float64],
+    problem: _core.Problem | None = None,
+) -> Fields:
+    """Measure stress and strain of a design's body at some positions.
+
+    Parameters
+    ----------
+    design, mesh
+        The body.
+    positions
+        Its vertices in m, (n, 3).
+    problem
+        Its problem, where there is one already.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> beam = families.beam()
+    >>> mesh = vs.mesh_of(beam)
+    >>> bool(np.allclose(fields_of(beam, mesh, 1.1 * mesh.vertices).max_stretch, 1.1))
+    True
+    """
+    if problem is None:
+        materials = core_materials(design, solid_materials(design))
+        problem = core_problem(mesh, materials, _core.ProblemParts())
+    rigid = [isinstance(design.material_of(part), Rigid) for part in design.parts]
+    return Fields.of(_core.Fields(problem), mesh, positions, rigid)

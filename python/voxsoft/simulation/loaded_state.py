@@ -1,0 +1,99 @@
+"""A setup at any positions under its final loads: what derivatives of metrics look at."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design, Traction
+from voxsoft.fields import Fields
+from voxsoft.mesh import Mesh
+from voxsoft.metrics import Place
+from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.overlaps import penetration_of
+from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.setup import Setup
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class LoadedState:
+    """A :class:`~voxsoft.metrics.SlopeState`.
+
+    Attributes
+    ----------
+    setup
+        The design made ready.
+    positions
+        Its vertices, (n, 3), m. The reaction supposes that they are in equilibrium.
+    """
+
+    setup: Setup
+    positions: Floats
+
+    @property
+    def design(self) -> Design:
+        """What is loaded."""
+        return self.setup.design
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh, unloaded."""
+        return self.setup.mesh
+
+    @property
+    def places(self) -> Mapping[str, Place]:
+        """What each probe averages over."""
+        return self.setup.places
+
+    @property
+    def mass(self) -> float:
+        """In kg."""
+        return self.setup.problem.mass
+
+    @cached_property
+    def _elastic(self) -> tuple[float, Floats]:
+        return self.setup.problem.elastic(self.positions)
+
+    @property
+    def elastic_energy(self) -> float:
+        """In J."""
+        return self._elastic[0]
+
+    @property
+    def elastic_forces(self) -> Floats:
+        """Forces of the material on its vertices, (n, 3), N."""
+        return self._elastic[1]
+
+    @cached_property
+    def fields(self) -> Fields:
+        """Stress and strain."""
+        return fields_of(self.design, self.mesh, self.positions, self.setup.problem)
+
+    @cached_property
+    def net_forces(self) -> Floats:
+        """Elastic and external force on every vertex, (n, 3), N."""
+        return self.setup.problem.net_forces(self.positions)
+
+    @property
+    def reaction(self) -> tuple[float, float, float]:
+        """What all supports carry, N: in equilibrium minus the sum of all loads."""
+        x, y, z = -self.net_forces.sum(axis=0)
+        return float(x), float(y), float(z)
+
+    @property
+    def penetration(self) -> Penetration:
+        """Where the body is in itself or in its floor."""
+        return penetration_of(self.design, self.mesh, self.positions)
+
+    def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
+        """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
+        for index, load in enumerate(self.design.loads):
+            if isinstance(load, Traction) and isinstance(load.value, float):
+                pressure = load.value * (load.history.factor[-1] if load.history else 1.0)
+                yield self.setup.loaded_triangles(load, f"loads[{index}]"), pressure

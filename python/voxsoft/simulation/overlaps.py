@@ -1,0 +1,185 @@
+"""Overlaps of a designed body: its layers and cut voxels minded, and what is said of them."""
+
+from __future__ import annotations
+
+import hashlib
+import weakref
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design
+from voxsoft.design.cut_cells import built_parts
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.diagnostic import Diagnostic, near
+from voxsoft.simulation.layers import all_layer_triangles
+from voxsoft.simulation.penetration import (
+    FILM,
+    FLOOR,
+    Overlap,
+    Penetration,
+    find_penetration,
+    point,
+)
+from voxsoft.simulation.places import voxel_size
+
+Floats = NDArray[np.float64]
+
+#: Depths below this part of a voxel are not told: solvers leave positions at rest open by about as
+#: much (a residual of 1e-6 of the load moves a body by 1e-6 of its displacement, which is of the
+#: size of a voxel or more), and what merely touches is then in each other by it.
+TOLD: Final = 1e-6
+
+
+def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration:
+    """Find where the body of a design overlaps itself, its films or its floor.
+
+    As :func:`find_penetration`. Where voxels are cut, the surface that counts is that of the
+    shapes, carried along by the voxels. Positions that are not finite overlap nothing: the status
+    of a result tells of them.
+
+    Parameters
+    ----------
+    design, mesh
+        The body.
+    positions
+        Its vertices in m, (n, 3).
+    """
+    if not np.isfinite(positions).all():
+        return Penetration()
+    # A result asks for its metrics, its record and its warnings, each of which looks here.
+    digest = hashlib.blake2b(np.ascontiguousarray(positions).tobytes()).digest()
+    for known_design, known_mesh, known_digest, found in _latest:
+        if known_design() is design and known_mesh() is mesh and known_digest == digest:
+            return found
+    sheets = None
+    if any(layer.seal for layer in design.layers):
+        layers = all_layer_triangles(design, mesh)
+        sheets = np.concatenate([layer.spanning for layer in layers])
+    floor = None if design.floor is None else design.floor.z
+    found = find_penetration(mesh, positions, sheets=sheets, floor=floor)
+    if mesh.fractions is not None:
+        found = _of_shapes(design, mesh, positions, found)
+    _latest[:] = [(weakref.ref(design), weakref.ref(mesh), digest, found)]
+    return found
+
+
+_latest: list[
+    tuple[weakref.ReferenceType[Design], weakref.ReferenceType[Mesh], bytes, Penetration]
+] = []
+
+
+def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagnostic]:
+    """Say where a body is in itself or in its floor (a check of :data:`CHECKS`).
+
+    One warning for each two parts that are in each other, the deepest first.
+    """
+    least = TOLD * voxel_size(mesh)
+    groups: dict[tuple[bool, frozenset[int]], list[Overlap]] = {}
+    for region in penetration_of(design, mesh, positions).regions:
+        if region.inverted or region.depth > least:
+            groups.setdefault((region.inverted, frozenset(region.parts)), []).append(region)
+    for (inverted, _), told in groups.items():
+        deepest = told[0]
+        where, what = _turned(design, deepest) if inverted else overlapping(design, deepest)
+        what += f" {near(deepest.at_rest)}"
+        if len(told) > 1:
+            what += f" and at {len(told) - 1} more place{'s' if len(told) > 2 else ''}"
+        hint = "lower the load"
+        if not inverted:
+            what += "; contact is not simulated"
+            hint += ", or leave more room there"
+        yield Diagnostic("warning", where, what, hint, deepest.at_rest)
+
+
+def overlapping(design: Design, region: Overlap) -> tuple[str, str]:
+    """The parts that are in each other, and how deep, in words."""
+    by = f"by {region.depth * 1e3:.2g} mm"
+    names = [part_name(design, part) for part in region.parts]
+    if region.parts[1] == FLOOR:
+        return names[0], f"is below the floor {by}"
+    if names[0] == names[1]:
+        return names[0], f"walls overlap {by}"
+    return " and ".join(names), f"overlap {by}"
+
+
+def _turned(design: Design, region: Overlap) -> tuple[str, str]:
+    return part_name(design, region.parts[0]), "the surface is turned inside out"
+
+
+def part_name(design: Design, part: int) -> str:
+    """What messages call a part, counted from 1."""
+    if part == FLOOR:
+        return "floor"
+    if part == FILM:
+        return "layer"
+    found = design.parts[part - 1]
+    if found.name is not None:
+        return found.name
+    return found.shape if isinstance(found.shape, str) else f"parts[{part - 1}]"
+
+
+def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration) -> Penetration:
+    """The same for the shapes within cut voxels, which reach out of them.
+
+    What is at one place are a point of the surface of the voxels, outside the shapes by a distance,
+    and a point inside by another, both unloaded. The shapes overlap by the second less the first.
+    """
+    if not found.regions:
+        return found
+    vertices, tets, numbers = found.covered.T
+    surface = mesh.vertices[vertices]
+    inside = _rest_places(mesh, positions, positions[vertices], tets)
+    ends = [(region.at_rest, region.against) for region in found.regions]
+    first = np.concatenate([surface, [start for start, _ in ends]])
+    second = np.concatenate([inside, [end for _, end in ends]])
+    now = np.concatenate([positions[vertices], [region.at_now for region in found.regions]])
+    owner = np.concatenate([numbers, np.arange(len(ends))])
+    depths = -_distances(design, mesh, first) - _distances(design, mesh, second)
+    kept: list[tuple[int, Overlap]] = []
+    for index, region in enumerate(found.regions):
+        if region.inverted or region.parts[1] == FLOOR:
+            kept.append((index, region))
+            continue
+        mine = np.flatnonzero(owner == index)
+        best = int(mine[np.argmax(depths[mine])])
+        if depths[best] > 0.0:
+            moved = replace(
+                region,
+                depth=float(depths[best]),
+                at_rest=point(first[best]),
+                against=point(second[best]),
+                at_now=point(now[best]),
+            )
+            kept.append((index, moved))
+    kept.sort(key=lambda entry: -entry[1].depth)
+    renumbered = {index: number for number, (index, _) in enumerate(kept)}
+    covered = [[v, t, renumbered[r]] for v, t, r in found.covered.tolist() if r in renumbered]
+    rows = np.array(covered, dtype=np.int32).reshape(-1, 3)
+    return Penetration(tuple(region for _, region in kept), found.pairs, rows)
+
+
+def _rest_places(mesh: Mesh, positions: Floats, points: Floats, tets: NDArray[np.int32]) -> Floats:
+    """Where points in tetrahedra at their positions now are in the unloaded body, (c, 3)."""
+    corners = mesh.tets[tets]
+    now, rest = positions[corners], mesh.vertices[corners]
+    frames = np.swapaxes(now[:, 1:] - now[:, :1], 1, 2)
+    inner = np.linalg.solve(frames, (points - now[:, 0])[..., None])
+    before: Floats = rest[:, 0] + (np.swapaxes(rest[:, 1:] - rest[:, :1], 1, 2) @ inner)[..., 0]
+    return before
+
+
+def _distances(design: Design, mesh: Mesh, points: Floats) -> Floats:
+    """Signed distances from the shapes, to first order: negative inside, (c,)."""
+    shapes = built_parts(design)
+    step = 0.01 * voxel_size(mesh)
+    around = np.concatenate([np.zeros((1, 3)), step * np.eye(3), -step * np.eye(3)])
+    levels = np.min(
+        [shape.evaluate((points[:, None] + around).reshape(-1, 3)) for shape in shapes], axis=0
+    ).reshape(-1, 7)
+    slope = np.linalg.norm(levels[:, 1:4] - levels[:, 4:], axis=1) / (2.0 * step)
+    distances: Floats = levels[:, 0] / np.maximum(slope, 1e-6)
+    return distances

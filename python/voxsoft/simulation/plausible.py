@@ -1,0 +1,104 @@
+"""Numbers that are possible and hardly meant: meters for millimeters, pascals for kilopascals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from voxsoft.design import Design, Gravity, Pressure, Traction
+from voxsoft.materials import Rigid
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.units import format_quantity
+
+# Bounds lie where no soft robot is known to be, ten times or more from what is usual, and within a
+# thousand, the slip of a unit, of it.
+#: m: inflatable arms of a few meters are the longest; a finger in meters for millimeters has 80.
+_LONGEST: Final = 5.0
+#: kg: a body of 5 m that is full of silicone from end to end has a ton from 0.45 m across.
+_HEAVIEST: Final = 1000.0
+#: m: there are at least some voxels in 5 m; a voxel of 0.5 mm in meters has 0.5.
+_COARSEST: Final = 0.2
+#: Pa: 5 mm of water. Membranes answer to it, walls of silicone do not.
+_LOWEST_PRESSURE: Final = 50.0
+#: Pa: the softest silicones have 10 kPa, gels for robots a few.
+_SOFTEST: Final = 1000.0
+#: kg/m³: foams begin at 20, and osmium has 22,600; 1.07 is silicone in g/cm³.
+_LIGHTEST, _DENSEST = 10.0, 25_000.0
+#: m/s²: a hundred times the weight on earth; 9810 is that in mm/s².
+_STRONGEST: Final = 1000.0
+
+_METERS: Final = 'lengths in Python are in m: write 2*mm or "2 mm"'
+
+
+def implausible_numbers(body: object, mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
+    """Find numbers of a body that are likely in another unit than was meant.
+
+    Parameters
+    ----------
+    body
+        A design, or voxels, of which only the size can be judged.
+    mesh
+        Its mesh.
+    mass
+        Its mass in kg.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families, Pressure
+    >>> from voxsoft.design.discretize import mesh_of
+    >>> soft = families.cylinder().replace(loads=[Pressure(value=3)])
+    >>> print(*implausible_numbers(soft, mesh_of(soft), mass=0.1))
+    loads[0].value: 3 Pa is less than 5 mm of water. Try: pressures in Python are in Pa: write \
+3*kPa or "3 kPa"
+    """
+    yield from _of_size(mesh, mass)
+    if isinstance(body, Design):
+        yield from _of_loads(body)
+        yield from _of_materials(body)
+
+
+def _of_size(mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
+    longest = float(np.ptp(mesh.vertices, axis=0).max())
+    if mesh.voxel_size is not None and mesh.voxel_size > _COARSEST:
+        size = format_quantity(mesh.voxel_size, "length")
+        yield _warning("voxel_size", f"is {size}: each voxel is as large as a robot", _METERS)
+    if longest > _LONGEST:
+        size = format_quantity(float(f"{longest:.4g}"), "length")
+        yield _warning("parts", f"the body is {size} long", _METERS)
+    if mass > _HEAVIEST:
+        yield _warning("parts", f"the body has a mass of {mass:,.0f} kg", _METERS)
+
+
+def _of_loads(design: Design) -> Iterator[Diagnostic]:
+    # A file states the unit; what was typed in Python may have been meant in kPa.
+    for index, load in enumerate(design.loads if design.is_typed("loads") else ()):
+        where = f"loads[{index}].value"
+        if isinstance(load, (Pressure, Traction)):
+            largest = float(np.abs(load.value).max())
+            if 0.0 < largest < _LOWEST_PRESSURE:
+                what = f"{format_quantity(largest, 'pressure')} is less than 5 mm of water"
+                hint = f'pressures in Python are in Pa: write {largest:g}*kPa or "{largest:g} kPa"'
+                yield _warning(where, what, hint)
+        elif isinstance(load, Gravity) and abs(load.value) > _STRONGEST:
+            what = f"{format_quantity(load.value, 'acceleration')} is {load.value / 9.81:,.0f} g"
+            yield _warning(where, what, "accelerations are in m/s^2: 9.81 on earth")
+
+
+def _of_materials(design: Design) -> Iterator[Diagnostic]:
+    for index, part in enumerate(design.parts):
+        material, where = design.material_of(part), f"parts[{index}].material"
+        young = material.young(design.voxel_size)
+        if not isinstance(material, Rigid) and 0.0 < young < _SOFTEST:
+            stiff = format_quantity(float(f"{young:.4g}"), "modulus")
+            what = f"has a Young's modulus of {stiff}, softer than any silicone or gel"
+            yield _warning(where, what, 'moduli are in Pa: write 60*kPa or "60 kPa"')
+        if not _LIGHTEST <= material.density <= _DENSEST:
+            what = f"has a density of {format_quantity(material.density, 'density')}"
+            yield _warning(where, what, 'densities are in kg/m^3: silicone has "1070 kg/m^3"')
+
+
+def _warning(where: str, what: str, hint: str) -> Diagnostic:
+    return Diagnostic("warning", where, what, hint)

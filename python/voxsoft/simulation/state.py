@@ -1,0 +1,65 @@
+"""The result of a state that no solver ended in: a body as it stands at some moment."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.result import Result, Status
+from voxsoft.simulation.run import result_of
+from voxsoft.simulation.setup import Setup
+
+#: Every state is within it: nothing is solved.
+_ANY: float = 1e300
+
+
+def result_at(
+    setup: Setup,
+    positions: NDArray[np.float64],
+    *,
+    status: Status = "not-at-rest",
+    message: str = "a state, as it stands",
+    time: float = 0.0,
+) -> Result:
+    """Measure a state under the loads of its design in their final size; nothing is solved.
+
+    Parameters
+    ----------
+    setup
+        The body.
+    positions
+        Where its vertices are in m, (n, 3).
+    status, message
+        How it came to be there.
+    time
+        When that was [s].
+
+    Returns
+    -------
+    Result
+        With the forces, the residual, the metrics and the warnings of these positions.
+
+    Raises
+    ------
+    SimulationError
+        Positions that are not finite.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> from voxsoft.simulation import simulate
+    >>> setup = Setup.of(families.beam())
+    >>> found = simulate(setup)
+    >>> halfway = result_at(setup, setup.mesh.vertices + found.displacements / 2)
+    >>> round(halfway.metrics["sag"] / found.metrics["sag"], 3), halfway.residual > 1.0
+    (0.5, True)
+    """
+    if not np.isfinite(positions).all():
+        raise SimulationError("state", "holds positions that are not finite", "go back before it")
+    report = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
+    used = {"method": "none", "way": "as it stands"}
+    measured = result_of(setup, used, report, seconds=0.0)
+    return replace(measured, status=status, message=message, time=time)

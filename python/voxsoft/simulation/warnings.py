@@ -1,0 +1,70 @@
+"""What is doubtful about a body as it is loaded: told wherever it is shown.
+
+Each check is a function of the design, its mesh and the positions of the vertices, or of the design
+and its stress and strain there, so that results at rest, frames of a run and the live body of the
+studio are judged alike. To add one, write it in a file of its own and name it in :data:`CHECKS` or
+:data:`FIELD_CHECKS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design
+from voxsoft.fields import Fields
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.chambers import ambiguous_indices
+from voxsoft.simulation.collapse import collapsed_voxels
+from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.overlaps import overlap_warnings
+from voxsoft.simulation.surfaces import doubtful_surfaces
+from voxsoft.simulation.tested_range import beyond_tests
+from voxsoft.simulation.thickness import doubtful_thickness
+
+#: From a design, its mesh and positions in m, (n, 3), to what is doubtful.
+Check = Callable[[Design, Mesh, NDArray[np.float64]], Iterable[Diagnostic]]
+#: From a design and its stress and strain to what is doubtful.
+FieldCheck = Callable[[Design, Fields], Iterable[Diagnostic]]
+
+
+def _ambiguous_indices(design: Design, mesh: Mesh, _: NDArray[np.float64]) -> Iterator[Diagnostic]:
+    return ambiguous_indices(design, mesh)
+
+
+CHECKS: Final[tuple[Check, ...]] = (
+    _ambiguous_indices,
+    doubtful_surfaces,
+    doubtful_thickness,
+    overlap_warnings,
+)
+FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
+
+
+def warnings_at(
+    design: Design, mesh: Mesh, positions: NDArray[np.float64], fields: Fields | None = None
+) -> tuple[Diagnostic, ...]:
+    """Find what is doubtful about a body at some positions.
+
+    Parameters
+    ----------
+    design, mesh
+        The body.
+    positions
+        Its vertices in m, (n, 3).
+    fields
+        Its stress and strain there, where they are known already.
+
+    Returns
+    -------
+    tuple of Diagnostic
+        Each with the place, what is wrong there, and what to try; empty if nothing is.
+    """
+    known = fields_of(design, mesh, positions) if fields is None else fields
+    of_fields = (warning for check in FIELD_CHECKS for warning in check(design, known))
+    of_places = (warning for check in CHECKS for warning in check(design, mesh, positions))
+    return (*of_fields, *of_places)

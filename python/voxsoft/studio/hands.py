@@ -1,0 +1,77 @@
+"""What hands have done to a body: loads that were changed and springs that pull.
+
+Another revision of the design makes another body; hands stay where they were.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.message import Triple
+from voxsoft.studio.mover import Mover
+
+
+@dataclass(frozen=True)
+class _Load:
+    """A load that was changed: its kind, its size in the design, and its size now."""
+
+    kind: str
+    written: float
+    now: float
+
+
+@dataclass(frozen=True)
+class _Pull:
+    """A spring: its number, where on the unloaded body it pulls, toward what, and how hard."""
+
+    number: int
+    at: NDArray[np.float64]
+    target: Triple
+    stiffness: float
+
+
+@dataclass(frozen=True)
+class Hands:
+    """Loads by their place in the design, those that are as written being None, and pulls."""
+
+    loads: tuple[_Load | None, ...]
+    pulls: tuple[_Pull, ...]
+
+    @classmethod
+    def on(cls, mover: Mover) -> Hands:
+        """See what hands have done to a body in motion."""
+        body = mover.body
+        rest = body.mesh.vertices[body.surface.vertices]
+        pairs = zip(body.loads, mover.loads, strict=True)
+        return cls(
+            tuple(
+                None if now == load.value else _Load(load.kind, load.value, now)
+                for load, now in pairs
+            ),
+            tuple(
+                _Pull(pull.id, rest[pull.vertex], pull.target, pull.stiffness)
+                for pull in mover.grabs()
+            ),
+        )
+
+    @property
+    def idle(self) -> bool:
+        """Whether they have done nothing."""
+        return not self.pulls and not any(self.loads)
+
+    def lay_on(self, body: StudioBody) -> Mover:
+        """Do the same to another body; a load that was written anew is left as it is written."""
+        mover = Mover(body)
+        for index, (load, held) in enumerate(zip(body.loads, self.loads, strict=False)):
+            if held is not None and (load.kind, load.value) == (held.kind, held.written):
+                mover.set_load(index, value=held.now, factor=None)
+        rest = body.mesh.vertices[body.surface.vertices]
+        for pull in self.pulls:
+            shown = int(np.linalg.norm(rest - pull.at, axis=1).argmin())
+            vertex = int(body.surface.vertices[shown])
+            mover.grab(pull.number, vertex, pull.target, pull.stiffness, shown=shown)
+        return mover

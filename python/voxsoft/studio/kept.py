@@ -1,0 +1,71 @@
+"""A run folder of what is on the screen: the state itself, with its live loads and pulls."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+
+from voxsoft import files
+from voxsoft.files.designs import read_document
+from voxsoft.studio.commands import RunSpec
+from voxsoft.studio.edits import with_value
+from voxsoft.studio.exports import Shown
+from voxsoft.studio.task import Task
+from voxsoft.units import format_quantity
+
+
+def keep(shown: Shown, base: Path, folder: Path) -> str:
+    """Write what is shown as a run folder; nothing is solved again.
+
+    Parameters
+    ----------
+    shown
+        What is shown.
+    base
+        Where relative paths of the design begin.
+    folder
+        Where to write.
+
+    Returns
+    -------
+    str
+        What was kept, in a sentence.
+
+    Raises
+    ------
+    VoxSoftError
+        The state cannot be measured, or the folder not written.
+    """
+    result = shown.measured()
+    pulls = {"pulls": [msgspec.to_builtins(pull) for pull in shown.pulls]}
+    files.write_run(result, folder, more=pulls if shown.pulls else {})
+    text = with_live_loads(shown)
+    # With the text as it was typed the parameters can go on to be varied.
+    task = Task(folder.name, folder.name, text, str(base), RunSpec())
+    task.write(folder)
+    return f"{folder.name}: {result.message}{_under(shown)}"
+
+
+def with_live_loads(shown: Shown) -> str:
+    """The text of the design with the loads as they are, where they were changed by hand."""
+    text = shown.text
+    live = shown.body.under(shown.factors).design.document["loads"]
+    written = read_document(text, shown.name).get("loads", [])
+    for index, factor in enumerate(shown.factors):
+        if factor != 1.0 and index < len(written):
+            text = with_value(text, ["loads", index, "value"], live[index]["value"])
+    return text
+
+
+def _under(shown: Shown) -> str:
+    """What holds the state there beside the design."""
+    told = []
+    for load, factor in zip(shown.body.loads, shown.factors, strict=True):
+        if factor != 1.0:
+            told.append(f"{load.label} {format_quantity(factor * load.value, load.quantity)}")
+    if shown.pulls:
+        total = sum(sum(part**2 for part in pull.force) ** 0.5 for pull in shown.pulls)
+        count = "1 pull" if len(shown.pulls) == 1 else f"{len(shown.pulls)} pulls"
+        told.append(f"{count} by hand, {format_quantity(float(f'{total:.3g}'), 'force')}")
+    return f" under {', '.join(told)}" if told else ""

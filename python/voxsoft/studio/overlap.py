@@ -1,0 +1,65 @@
+"""What the page is told while the shown body is in itself: how deep, and where it is now."""
+
+from __future__ import annotations
+
+import time
+from typing import Final
+
+from voxsoft.studio import events
+from voxsoft.studio.canvas import Moment
+from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.overlap_event import overlap_of
+from voxsoft.studio.playback import Playback
+from voxsoft.studio.tab import Tab
+
+#: While time runs the body is looked over at most so often [s], and for at most this part of it.
+EVERY: Final = 0.3
+SHARE: Final = 0.05
+
+
+class OverlapWatch:
+    """Looks over what is played back, and tells the tabs where it is in itself.
+
+    Parameters
+    ----------
+    playback
+        What is shown.
+    outlet
+        Where events go.
+    """
+
+    def __init__(self, playback: Playback, outlet: Outlet) -> None:
+        self._playback, self._outlet = playback, outlet
+        self._seen: tuple[int, int] | None = None
+        self._next = 0.0
+        self._told: events.Overlap | None = None
+
+    def look(self) -> None:
+        """Look over what is shown now, unless that was done, or time runs and it was just done."""
+        playback, started = self._playback, time.perf_counter()
+        body = playback.body
+        if body is None or body.refusal is not None or (playback.moving and started < self._next):
+            return
+        moment = playback.moment
+        key = (body.topology, _number(playback, moment))
+        if key == self._seen:
+            return
+        self._seen = key
+        positions = playback.require_canvas().positions(moment)
+        found = overlap_of(body.setup.design, body.setup.mesh, positions, body.topology)
+        ended = time.perf_counter()
+        self._next = ended + max(EVERY, (ended - started) / SHARE)
+        # A body that is not in itself is told of once.
+        before = self._told
+        if before is None or before.topology != found.topology or before.places or found.places:
+            self._told = found
+            self._outlet.tell(found)
+
+    def welcome(self, tab: Tab) -> None:
+        """Tell a new tab what the others know."""
+        if self._told is not None:
+            self._outlet.tell_one(tab, self._told)
+
+
+def _number(playback: Playback, moment: Moment) -> int:
+    return moment.frame if playback.shown is None else -moment.frame

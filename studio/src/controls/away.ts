@@ -1,0 +1,27 @@
+import { type RefObject, useEffect } from "react";
+
+/** Calls `close` on Escape and on a press outside of the element, as long as that is open. */
+export function useAway(
+  box: RefObject<HTMLElement | null>,
+  open: boolean,
+  close: (by: "escape" | "press") => void,
+): void {
+  useEffect(() => {
+    if (!open) return;
+    const press = (event: PointerEvent) => {
+      if (!box.current?.contains(event.target as Node)) close("press");
+    };
+    const key = (event: KeyboardEvent) => {
+      if (event.key !== "Escape") return;
+      // One Escape does one thing: what lies over the picture closes before its tools end.
+      event.stopPropagation();
+      close("escape");
+    };
+    addEventListener("pointerdown", press, true);
+    addEventListener("keydown", key, true);
+    return () => {
+      removeEventListener("pointerdown", press, true);
+      removeEventListener("keydown", key, true);
+    };
+  });
+}

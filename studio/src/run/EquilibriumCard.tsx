@@ -1,0 +1,67 @@
+import { Section } from "../controls/Choice";
+import { formatKind, siUnit } from "../controls/kinds";
+import { cleaned, formatNumber, formatQuantity } from "../controls/units";
+import { Findings } from "../panes/body/Findings";
+import type { EquilibriumEvent } from "../protocol";
+import { useStudio } from "../store/studio";
+
+/** The numbers of the state that is shown, or null where it is no equilibrium, or not yet told. */
+export function useEquilibrium(): EquilibriumEvent | null {
+  return useStudio(({ equilibrium, stat }) =>
+    equilibrium !== null &&
+    stat?.state === "at-rest" &&
+    stat.topology === equilibrium.topology &&
+    stat.frame === equilibrium.frame
+      ? equilibrium
+      : null,
+  );
+}
+
+/** What the equilibrium that is shown comes to: probes, metrics, chambers, and what is doubtful. */
+export function EquilibriumCard() {
+  const found = useEquilibrium();
+  if (!found) return null;
+  const facts: [string, string][] = [
+    ...found.probes.map((probe): [string, string] => [`Probe ${probe.name}`, moved(probe)]),
+    ...found.metrics.map(({ name, value, kind }): [string, string] => [
+      name.replaceAll("_", " "),
+      formatKind(value === null ? null : cleaned(value, siUnit(kind)), kind),
+    ]),
+    ["Largest strain", `${formatNumber(100 * found.largest_strain, 3)} %`],
+    ["Out of balance", `${found.residual} of the load`],
+  ];
+  return (
+    <Section title="Result">
+      <div data-testid="equilibrium">
+        <Findings findings={found.warnings} />
+        <dl className="facts">
+          {facts.map(([name, value]) => (
+            <div key={name}>
+              <dt>{name}</dt>
+              <dd>{value}</dd>
+            </div>
+          ))}
+          {found.chambers.map((chamber) => (
+            <div key={chamber.name}>
+              <dt>{chamber.name.charAt(0).toUpperCase() + chamber.name.slice(1)}</dt>
+              <dd>
+                {formatQuantity(chamber.pressure, "Pa", 4)}, {formatQuantity(chamber.volume, "m^3")}{" "}
+                <span className="muted">
+                  (unloaded {formatQuantity(chamber.rest_volume, "m^3")})
+                </span>
+              </dd>
+            </div>
+          ))}
+        </dl>
+      </div>
+    </Section>
+  );
+}
+
+function moved(probe: EquilibriumEvent["probes"][number]): string {
+  const total = Math.hypot(...probe.displacement);
+  // What is left of rounding beside the whole is no motion.
+  const clean = (x: number) => (Math.abs(x) < 1e-6 * total ? 0 : x);
+  const parts = probe.displacement.map((x) => formatNumber(1000 * clean(x), 3)).join(", ");
+  return `${formatQuantity(total, "m", 4)} (${parts} mm)`;
+}

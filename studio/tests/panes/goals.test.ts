@@ -1,0 +1,28 @@
+import { expect, it } from "vitest";
+import { fittingKeys, readPercentile } from "../../src/panes/design/Goals";
+import type { Metric } from "../../src/protocol";
+
+const metric = (takes: Partial<Metric>): Metric => ({
+  name: "max_stress",
+  kind: "pressure",
+  ...{ needs_probe: false, needs_cavity: false, takes_percentile: false },
+  ...takes,
+});
+
+it("keeps a percentile only where the next metric takes one", () => {
+  const value = { percentile: 99, max: "20 kPa" };
+  expect(fittingKeys(metric({ takes_percentile: true }), value, [])).toEqual(value);
+  expect(fittingKeys(metric({}), value, [])).toEqual({ max: "20 kPa" });
+  expect(fittingKeys(metric({ needs_probe: true }), value, ["tip"])).toEqual({
+    max: "20 kPa",
+    probe: "tip",
+  });
+});
+
+it("reads a percentile, and refuses what is none", () => {
+  expect(readPercentile("99 %")).toEqual({ value: 99 });
+  expect(readPercentile(" ")).toEqual({ value: null });
+  for (const text of ["0", "100.5", "-1", "most"]) {
+    expect(readPercentile(text)).toHaveProperty("problem");
+  }
+});

@@ -1,0 +1,80 @@
+"""Bodies in themselves are told of on the command line: runs, and the best designs of a study."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from voxsoft.cli.app import app
+
+ROOT = Path(__file__).parents[2]
+DATA = ROOT / "tests" / "data"
+#: The template's body of the paper's material, which comes to rest in a second.
+PNEUNET = [
+    ROOT / "examples" / "pneunet.toml",
+    *("--set", "parts.1.material=ecoflex-00-30-lattice"),
+    *("--set", 'materials.firm={model="lattice", edge="200 kPa", bulk="1 MPa"}'),
+]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
+
+def call(*arguments):
+    outcome = CliRunner().invoke(app, [str(argument) for argument in arguments])
+    assert outcome.exit_code == 0, outcome.stderr
+    return outcome
+
+
+def overlaps(told):
+    return {each["where"]: each for each in told["warnings"] if "overlap" in each["what"]}
+
+
+def test_a_gripper_in_its_ball_and_in_itself_is_told():
+    """Fingers are in the ball by millimeters, and chambers in their neighbors."""
+    told = json.loads(call("run", DATA / "gripper.toml", "--json").stdout)
+    assert told["status"] == "ok"
+    assert told["penetration"] > 2e-3
+    found = {frozenset(where.split(" and ")) for where in overlaps(told)}
+    assert {frozenset({"ball", "right"}), frozenset({"ball", "left"})} <= found
+    assert {frozenset({"right"}), frozenset({"left"})} <= found
+    for warning in overlaps(told).values():
+        assert warning["what"].endswith("contact is not simulated")
+        x, y, z = warning["at"]  # on the unloaded body
+        assert abs(x) <= 0.0375
+        assert abs(y) <= 0.01
+        assert -0.06 <= z <= 0.0
+    # Both fingers are one another's image, and so is what is said of them.
+    depths = [
+        each["what"].split(" near")[0]
+        for each in told["warnings"]
+        if each["where"] in ("left", "right")
+    ]
+    assert depths[0] == depths[1]
+
+
+def test_chambers_that_meet_are_told_from_the_load_where_they_do():
+    free = json.loads(call("run", *PNEUNET, "--json").stdout)
+    assert free["penetration"] == 0.0
+    assert overlaps(free) == {}
+    outcome = call("run", *PNEUNET, "--set", "loads.0.value=5 kPa")
+    line = next(line for line in outcome.stderr.splitlines() if "overlap" in line)
+    assert line.startswith("warning: chambers: walls overlap by ")
+    assert "contact is not simulated. Try: lower the load" in line
+
+
+def test_the_best_designs_of_a_study_are_not_green_where_they_are_in_themselves():
+    outcome = call("sweep", DATA / "pushed.toml", "--workers", "1")
+    said = [line for line in outcome.stderr.splitlines() if line.startswith("warning: rank")]
+    assert len(said) == 1
+    assert said[0].startswith("warning: rank 1: ")
+    assert "overlap by 2 mm near" in said[0]
+    told = json.loads(call("sweep", DATA / "pushed.toml", "--json").stdout)
+    assert "overlap by 2 mm near" in told["best"]["warnings"][0]
+    table = Path(told["folder"], "table.csv").read_text().splitlines()
+    assert "penetration" in table[0]
+    assert "warnings" in table[0]
+    assert sum("contact is not simulated" in row for row in table) == 1

@@ -1,0 +1,133 @@
+"""Whatever a design is called, what it leaves behind stays in its folder, on every system."""
+
+import contextlib
+import json
+import tempfile
+import unicodedata
+from pathlib import Path, PureWindowsPath
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+from typer.testing import CliRunner
+
+from voxsoft._folders import LONGEST, folder_name
+from voxsoft.cli.app import app
+from voxsoft.files import load
+from voxsoft.study import Study
+
+NASTY = [
+    "/elsewhere/evil", "../../escaped", "finger/v2", "a\0b", "..", ".", "...", "", " ", "/", "\\",
+    "C:\\Windows\\evil", "C:evil", "con", "CON.txt", "com1", "COM¹", "lpt9.x", "nul", "a" * 5000,
+    "ü" * 300, "\U0001f916" * 90, "-rf", "--out", "~", "~root", ".bashrc", "x.", "x ", "a\nb",
+    "a\u202eb", "\u200b", "$(id)", "`id`", "%2e%2e%2f", "a:b", "a|b", "a?b*", "\ud800", "‥", "．．",
+]  # fmt: skip
+
+PIECES = st.sampled_from(["/", "\\", "..", ".", ":", "\0", "con", " ", "~", "ü", "\u202e", "．"])
+NAMES = st.one_of(st.text(), st.lists(PIECES, max_size=9).map("".join), st.sampled_from(NASTY))
+
+#: Two voxels that carry their weight: a whole run takes milliseconds.
+TINY = """
+voxel_size = "5 mm"
+[shapes]
+body = { kind = "box", size = ["5 mm", "5 mm", "= height"] }
+[parameters]
+height = { value = "10 mm", min = "5 mm", max = "10 mm", step = "5 mm" }
+[materials]
+m = { model = "neo-hookean", young = "100 kPa", poisson = 0.3, density = "1000 kg/m^3" }
+[[parts]]
+shape = "body"
+material = "m"
+[[clamps]]
+region = { z = ["0 mm", "0 mm"] }
+[[loads]]
+kind = "gravity"
+[probes]
+top = { z = ["-1 m", "1 m"] }
+[objectives.rise]
+maximize = "displacement"
+probe = "top"
+axis = "z"
+"""
+
+
+@given(NAMES)
+@settings(deadline=None)
+@example("/elsewhere/evil")
+def test_a_name_is_that_of_one_folder_here(name):
+    made = folder_name(name)
+    assert made == unicodedata.normalize("NFKC", made)
+    assert Path("runs", made).name == made
+    assert PureWindowsPath("runs", made).name == made
+    assert 0 < len(made.encode("utf-8")) <= LONGEST + len("_")
+    assert made.isprintable()
+    assert not made.startswith((".", "-"))
+    assert not made.endswith((".", " "))
+    device = made.split(".")[0].upper()
+    assert device not in {"CON", "PRN", "AUX", "NUL"}
+    assert not (device[:3] in {"COM", "LPT"} and device[3:].isdigit() and len(device) == 4)
+    assert folder_name(made) == made
+
+
+@pytest.mark.parametrize("name", NASTY, ids=repr)
+def test_a_folder_of_any_name_can_be_made(tmp_path, name):
+    folder = tmp_path / f"{folder_name(name)}-12345678-comparison.html"
+    folder.mkdir()
+    assert [child.name for child in tmp_path.iterdir()] == [folder.name]
+
+
+def names_of_designs():
+    """Those that a design can have: text that can be seen, of at most 200 characters."""
+    return st.sampled_from([n for n in NASTY if 0 < len(n) <= 200 and n.isprintable()])
+
+
+@contextlib.contextmanager
+def in_a_fresh_folder():
+    """Give a folder to work in below one that nothing may be written to."""
+    with tempfile.TemporaryDirectory() as outer:
+        home = Path(outer, "a", "b", "home")
+        home.mkdir(parents=True)
+        with contextlib.chdir(home):
+            yield home
+        strays = {p for p in Path(outer).rglob("*") if p.is_file() and home not in p.parents}
+        assert not strays
+        assert [child.name for child in Path(outer).iterdir()] == ["a"]
+
+
+@given(names_of_designs())
+@settings(deadline=None, max_examples=6, suppress_health_check=[HealthCheck.too_slow])
+@example("../../escaped")
+@example("/elsewhere/evil")
+def test_what_is_written_for_a_design_stays_below_the_folder(name):
+    with in_a_fresh_folder() as home:
+        file = design_called(name, home)
+        outcome = CliRunner().invoke(app, ["run", str(file)])
+        assert outcome.exit_code == 0, outcome.output
+        Study(load(file))
+        assert_named(name, home, ("runs", "studies"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["../../escaped", "/elsewhere/evil"])
+def test_reports_and_sweeps_stay_there_too(name):
+    with in_a_fresh_folder() as home:
+        file = design_called(name, home)
+        quick = ["--outside", "none", "--voxel-sizes", "none", "--splits", "1"]
+        for call in (["compare", str(file), *quick], ["sweep", str(file)]):
+            outcome = CliRunner().invoke(app, call)
+            assert outcome.exit_code == 0, outcome.output
+        assert_named(name, home, ("runs",))
+
+
+def design_called(name, home):
+    file = home / "design.toml"
+    file.write_text(f"name = {json.dumps(name)}\n{TINY}", encoding="utf-8")
+    return file
+
+
+def assert_named(name, home, folders):
+    assert {child.name for child in home.iterdir()} == {"design.toml", *folders}
+    made = [child.name for folder in folders for child in (home / folder).iterdir()]
+    assert len(made) == 2
+    starts = folder_name(name), folder_name(name, "study")
+    assert all(each.startswith(starts) for each in made)

@@ -1,0 +1,71 @@
+"""The registry of metrics: one place for each, and nothing that answers for another."""
+
+import numpy as np
+import pytest
+
+from voxsoft import Objective, check, simulate
+from voxsoft.design import families
+from voxsoft.errors import DesignError
+from voxsoft.metrics import METRICS, Metric
+from voxsoft.simulation import Setup
+from voxsoft.simulation.loaded_state import LoadedState
+from voxsoft.simulation.targets import check_targets
+from voxsoft.units import KINDS
+
+SOFT = 'parts.0.material={model="neo-hookean", young="60 kPa"}'
+
+
+@pytest.fixture(scope="module")
+def pressed():
+    small = families.cylinder(radius="20 mm", height="30 mm")
+    return simulate(small.with_values(SOFT, "loads.0.value=1 kPa"))
+
+
+def test_every_metric_has_its_own_name_and_kind():
+    for name, metric in METRICS.items():
+        assert metric.name == name
+        assert metric.kind in KINDS
+
+
+def test_a_metric_without_a_value_cannot_be_made():
+    with pytest.raises(TypeError, match="value"):
+        Metric("curvature", "number", slope=None)
+
+
+def test_a_name_that_is_no_metric_is_refused(pressed):
+    with pytest.raises(DesignError, match=r'"curvature" is not a metric'):
+        pressed.metric("curvature")
+
+
+@pytest.mark.parametrize("name", METRICS)
+def test_a_result_and_the_state_that_derivatives_use_agree(pressed, name):
+    """Two readings of one registry; supports carry nothing here, up to 1e-8 of about 1 N."""
+    state = LoadedState(Setup(pressed.design, pressed.mesh), pressed.positions)
+    target = Objective(maximize=name)
+    assert METRICS[name].value(state, target) == pytest.approx(
+        pressed.metric(name), rel=1e-6, abs=1e-8
+    )
+
+
+@pytest.mark.parametrize("name", METRICS)
+def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
+    """Whatever is accepted is used: an axis of a mass, a cavity of a displacement are not."""
+    given = {"probe": "top", "axis": "z", "cavity": 0}
+    used = METRICS[name].needs | METRICS[name].takes
+    for option, value in given.items():
+        objectives = {"aim": {"maximize": name, option: value}}
+        document = {**families.cylinder().document, "objectives": objectives, "constraints": {}}
+        design = families.cylinder().from_document(document)
+        if option in used:
+            check_targets(design)
+            continue
+        with pytest.raises(DesignError, match=rf"objectives.aim.{option}: {name} .*Try: leave"):
+            check_targets(design)
+        assert not check(design).valid
+        with pytest.raises(DesignError, match=f"{option}: {name} "):
+            pressed.metric(name, **{option: value})
+
+
+def test_an_axis_gives_a_component_and_no_axis_the_magnitude(pressed):
+    parts = [pressed.metric("displacement", axis=axis) for axis in ("x", "y", "z")]
+    assert pressed.metric("displacement") == pytest.approx(np.linalg.norm(parts))
