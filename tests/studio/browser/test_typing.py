@@ -75,6 +75,7 @@ def test_a_new_name_comes_on_top_of_what_was_typed(typed):
 def test_opening_another_document_keeps_what_was_typed_for_undo(typed):
     typed.find("templates").click()
     typed.find("template-sphere").click()
+    typed.find("discard").click()
     typed.find("document-name").get_by_text("sphere").wait_for()
     typed.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
     typed.find("document-name").get_by_text("finger").wait_for()
