@@ -16,11 +16,12 @@ BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 RUST := $(shell sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
-.PHONY: help install demo test test-rust test-python test-studio test-all lint format bench docs studio wasm clean
+.PHONY: help install demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
 
 help:
 	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
 	@echo "make test      set up, run all quick tests"
+	@echo "make test-browser  every way through the studio in Chromium, some five minutes"
 	@echo "make test-all  also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
 	@echo "make lint      formatters, linters, types, layers"
 	@echo "make bench     benchmarks"
@@ -53,7 +54,11 @@ test-rust:
 	cargo test --workspace --exclude voxsoft-python --quiet
 
 test-python: install
-	$(BIN)/python -m pytest -n $(JOBS) -m "not slow"
+	$(BIN)/python -m pytest -n $(JOBS) -m "not slow and not browser"
+
+# `make test` drives Chromium along the main ways, from a new user's to the exported page; these are the others.
+test-browser: install
+	$(BIN)/python -m pytest -n $(JOBS) -m "browser and not slow" tests/studio/browser
 
 # The page's own units; users need no Node, and neither does anyone who leaves the page alone.
 test-studio:

@@ -26,7 +26,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from measure import Report
-from studio_wire import wire
+from studio_wire import pulled_alone, wire
 
 from voxsoft.design.families import family_text
 
@@ -336,6 +336,7 @@ def main() -> None:
             design = Path(folder) / f"{name.split()[0]}.toml"
             design.write_text(text, encoding="utf-8")
             with served(design, Path(folder) / f"runs_{design.stem}") as address:
+                pulled_alone(report, name, address)
                 pulled(report, browser, name, address)
         browser.close()
     report.show()

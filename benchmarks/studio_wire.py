@@ -7,11 +7,15 @@ says what the server and the wire could give to a page that keeps up.
 from __future__ import annotations
 
 import json
+import math
 import struct
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 from urllib.parse import parse_qs, urlsplit
 
+import numpy as np
 from measure import Report
 
 from voxsoft.studio.wire import PROTOCOL
@@ -23,6 +27,10 @@ if TYPE_CHECKING:
 TOPOLOGY, FRAME = 1, 2
 #: Simulated time before frames are counted [s], how long they are counted, how long to wait [s].
 WARM, WINDOW, PATIENCE = 0.005, 5.0, 120.0
+#: Bytes before what a binary message carries.
+HEADER = 64
+#: The circle that a hand leads the tip around [m], and its spring [N/m].
+RADIUS, STIFFNESS = 0.01, 20.0
 
 
 class Tab:
@@ -56,8 +64,9 @@ class Tab:
         return simulated, vertices
 
 
-def wire(report: Report, count: int, address: str) -> None:
-    """Frames per second that the server makes, and how much of time they show."""
+@contextmanager
+def visited(address: str) -> Iterator[tuple[Tab, bytes]]:
+    """A tab at an address, with the topology of the body that it is sent first."""
     from websockets.sync.client import connect
 
     parts = urlsplit(address)
@@ -68,7 +77,13 @@ def wire(report: Report, count: int, address: str) -> None:
         tab.send("hello", protocol=PROTOCOL)
         while (message := tab.binary())[4] != TOPOLOGY:
             pass
-        (drawn,) = struct.unpack_from("<I", message, 24)
+        yield tab, message
+
+
+def wire(report: Report, count: int, address: str) -> None:
+    """Frames per second that the server makes, and how much of time they show."""
+    with visited(address) as (tab, topology):
+        (drawn,) = struct.unpack_from("<I", topology, 24)
         tab.send("play")
         while (first := tab.frame())[0] < WARM:
             pass
@@ -83,3 +98,33 @@ def wire(report: Report, count: int, address: str) -> None:
         )
     report.add(f"{count:,} voxels: frames of the server alone", frames / gone, "1/s")
     report.add(f"{count:,} voxels: simulated time", (last[0] - first[0]) / gone, "s/s")
+
+
+def pulled_alone(report: Report, name: str, address: str) -> None:
+    """The same while a hand leads the tip around a circle, once a second."""
+    with visited(address) as (tab, topology):
+        (drawn,) = struct.unpack_from("<I", topology, 24)
+        rest = np.frombuffer(topology, "<f4", 3 * drawn, HEADER).reshape(-1, 3)
+        tip = int(rest[:, 0].argmax())
+        center = rest[tip].astype(float)
+
+        def lead(gone: float) -> None:
+            turn = 2 * math.pi * gone
+            way = RADIUS * np.array([0.0, math.sin(turn), 1.0 - math.cos(turn)])
+            target = (center + way).tolist()
+            tab.send("grab", id=1, vertex=tip, target=target, stiffness=STIFFNESS)
+
+        tab.send("play")
+        lead(0.0)
+        while (first := tab.frame())[0] < WARM:
+            pass
+        started, frames, last = time.perf_counter(), 0, first
+        while (gone := time.perf_counter() - started) < WINDOW:
+            last = tab.frame()
+            frames += 1
+            lead(gone)
+        tab.send("reset")
+    if last[1] != drawn or last[0] <= first[0]:
+        raise SystemExit(f"wrong answer: frames of {name} show another body, or no motion")
+    report.add(f"{name}, pulled: frames of the server alone", frames / gone, "1/s")
+    report.add(f"{name}, pulled: simulated time of those", (last[0] - first[0]) / gone, "s/s")

@@ -76,6 +76,7 @@ def test_a_killed_study_resumes_and_repeats_no_finished_trial(start, tmp_path):
     assert len(evaluated) - 110 <= 4
 
 
+@pytest.mark.slow
 def test_the_workers_of_a_killed_study_end(start):
     process = start()
     wait_for(process, 5)
@@ -118,6 +119,7 @@ def test_ctrl_c_says_how_to_go_on(start):
     assert output.split()[-2:] == ["finished", "110"], errors
 
 
+@pytest.mark.slow
 def test_two_runs_of_one_study_at_once_are_refused(start):
     first = start()
     wait_for(first, 3)
@@ -129,6 +131,7 @@ def test_two_runs_of_one_study_at_once_are_refused(start):
     assert output.split()[-2:] == ["finished", "110"]
 
 
+@pytest.mark.slow
 def test_a_full_disk_names_the_file_and_what_was_finished_stays(start):
     import resource
 

@@ -22,10 +22,18 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [DOCS / "start.md", *sorted(DOCS.glob("tutorials/*.md")), *sorted(DOCS.glob("how-to/*.md"))]
-#: Pages whose Python is also run as a script: readers paste it, and workers import it then.
+#: Pages whose Python is also run as a script.
 SCRIPTS = {DOCS / "start.md", *DOCS.glob("tutorials/*.md"), DOCS / "how-to" / "dask.md"}
-#: Pages that take a quarter of a minute or more; the way of a new user is always run.
-LONG = {"compare.md", "dask.md", "export.md", "layers-and-fibers.md", "material-card.md"}
+#: Pages that take ten seconds or more; the way of a new user is always run.
+LONG = {
+    "calibrate-a-beam.md",
+    "compare.md",
+    "dask.md",
+    "design-and-study.md",
+    "export.md",
+    "layers-and-fibers.md",
+    "material-card.md",
+}
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
 #: What a long command says of its progress when it has no terminal; a page leaves it out.
@@ -126,8 +134,16 @@ def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
     run_page(page)
-    if page in SCRIPTS:
-        run_script(page)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", sorted(SCRIPTS), ids=lambda page: str(page.relative_to(DOCS)))
+def test_the_python_of_a_page_runs_as_a_script(page, tmp_path, monkeypatch):
+    """Readers paste it, and worker processes import it then."""
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(tmp_path)
+    run_page(page)
+    run_script(page)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(DOCS)))

@@ -90,7 +90,7 @@ def run_block(block):
 
 
 @pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", range(1))
 def test_random_designs_become_sound_meshes(block):
     counts = run_block(block)
     # An empty part is a valid find, but a block of them would test nothing.
@@ -99,7 +99,7 @@ def test_random_designs_become_sound_meshes(block):
 
 @pytest.mark.slow
 @pytest.mark.timeout(SECONDS_PER_BLOCK)
-@pytest.mark.parametrize("block", range(4, 100))
+@pytest.mark.parametrize("block", range(1, 100))
 def test_many_more_random_designs_become_sound_meshes(block):
     counts = run_block(block)
     assert np.count_nonzero(counts) > BLOCK / 2

@@ -27,14 +27,14 @@ def assert_becomes_voxels(seed):
         assert voxels.count > 0
 
 
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", range(2))
 def test_random_shapes_become_voxels(block):
     for seed in range(100 * block, 100 * block + 100):
         assert_becomes_voxels(seed)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("block", range(4, 100))
+@pytest.mark.parametrize("block", range(2, 100))
 def test_many_more_random_shapes_become_voxels(block):
     for seed in range(100 * block, 100 * block + 100):
         assert_becomes_voxels(seed)

@@ -149,7 +149,7 @@ import sys
 from pathlib import Path
 from voxsoft.studio.server import StudioServer
 server = StudioServer(Path(sys.argv[1]), runs=Path(sys.argv[2]), port=0, token="token")
-server.run(lambda address: print(server.port, flush=True))
+server.run_and_exit(lambda address: print(server.port, flush=True))
 """
 
 

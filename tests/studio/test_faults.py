@@ -128,7 +128,10 @@ def memory_of(studio):
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="tells no memory of processes")
 @pytest.mark.parametrize(
     ("path", "value"),
-    [(["voxel_size"], "20 um"), (["shapes", "outer", "height"], "1000 km")],
+    [
+        (["voxel_size"], "20 um"),
+        pytest.param(["shapes", "outer", "height"], "1000 km", marks=pytest.mark.slow),
+    ],
 )
 def test_a_design_larger_than_the_memory_is_refused_before_it_takes_any(
     in_own_process, tmp_path, path, value

@@ -63,6 +63,7 @@ def test_a_worker_of_a_study_that_is_killed_costs_time_only(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 @linux
 def test_a_full_disk_is_said_and_the_study_goes_on_once_there_is_room(studio):
     import resource
@@ -89,6 +90,7 @@ def test_a_full_disk_is_said_and_the_study_goes_on_once_there_is_room(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 def test_a_folder_of_runs_that_cannot_be_written_is_said_and_nothing_is_started(studio):
     runs = studio.session.runs
     shutil.rmtree(runs, ignore_errors=True)
@@ -109,6 +111,7 @@ def test_a_folder_of_runs_that_cannot_be_written_is_said_and_nothing_is_started(
     run(scenario())
 
 
+@pytest.mark.slow
 def test_two_tabs_that_start_a_job_at_once_start_two(studio):
     async def scenario():
         async with studio.page() as one, studio.page() as other:

@@ -66,6 +66,7 @@ def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 def test_a_study_goes_on_without_tabs_and_is_there_when_one_comes_back(studio):
     async def begin():
         async with studio.page() as page:
@@ -82,6 +83,7 @@ def test_a_study_goes_on_without_tabs_and_is_there_when_one_comes_back(studio):
     assert len(next(e for e in reversed(told) if e["t"] == "trials")["trials"]) == 8
 
 
+@pytest.mark.slow
 def test_a_study_waits_goes_on_and_stops(studio):
     async def scenario():
         async with studio.page() as page:

@@ -141,6 +141,7 @@ def test_a_calibration_of_the_command_line_is_told_from_its_files(tmp_path):
         stored_job(tmp_path / "fit")
 
 
+@pytest.mark.slow
 def test_a_study_is_told_again_after_a_restart(make_studio):
     first = make_studio()
 

@@ -182,6 +182,7 @@ class Links(HTMLParser):
         self.found += [value for name, value in attrs if name in ("src", "href", "data", "action")]
 
 
+@pytest.mark.slow
 def test_the_report_holds_everything_itself(found, tmp_path):
     path = files.write_comparison(found, tmp_path / "report.html")
     text = path.read_text(encoding="utf-8")

@@ -59,6 +59,7 @@ def test_stairs_under_pressure_are_told_from_boxes(shape, round, fill):
         assert max(map(abs, warning.at)) < 20 * mm
 
 
+@pytest.mark.slow
 def test_it_is_said_where_the_estimates_are_shown(tmp_path, capsys):
     body = design(SPHERE, "binary").replace(voxel_size=5 * mm)
     found = vs.compare(body, solvers=["statics"], outside="none", voxel_sizes=[], splits=[1, 2])

@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from voxsoft.calibration.misfit import Evaluation, Linearized, Misfit
 
@@ -57,6 +56,8 @@ def descend(
     if count == 1:
         around = ((np.arange(looks) + 0.5) / looks)[:, None]
     else:
+        from scipy.stats import qmc  # slow to load
+
         around = qmc.LatinHypercube(count, seed=seed).random(looks)
     batch = misfit.many(around)
     yield batch

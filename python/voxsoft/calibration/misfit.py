@@ -11,7 +11,6 @@ from typing import Final, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import minimize_scalar
 
 from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.linearization import seen_slopes
@@ -136,6 +135,7 @@ def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) ->
     >>> round(best_scale(shape, 1.1 * shape), 9)
     1.1
     """
+    from scipy.optimize import minimize_scalar  # slow to load
 
     def total(scale: float) -> float:
         return float(np.linalg.norm(scale * simulated - measured, axis=1).sum())

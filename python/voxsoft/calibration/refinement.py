@@ -7,7 +7,6 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from voxsoft.calibration.misfit import Evaluation, Misfit
 
@@ -75,6 +74,7 @@ def minimized(
     first_step, converged
         Edge of the simplex at first and at the end, in natural logarithms.
     """
+    from scipy.optimize import minimize  # slow to load
 
     def finite(logs: NDArray[np.float64]) -> float:
         return min(error(np.clip(logs / spans, 0.0, 1.0)), _LARGEST_ERROR)

@@ -43,4 +43,4 @@ def studio(
             webbrowser.open(address)
 
     with errors_in_words():
-        StudioServer(source, runs=runs, port=port).run(ready)
+        StudioServer(source, runs=runs, port=port).run_and_exit(ready)

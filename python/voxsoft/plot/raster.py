@@ -18,6 +18,8 @@ Floats = NDArray[np.float64]
 _PORTION = 2_000_000
 _NOTHING = np.uint64(0xFFFF_FFFF_FFFF_FFFF)
 _DEPTH_STEPS = 2.0**32 - 2
+# What rounding may take from a weight on the edge of a triangle.
+_INSIDE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,7 @@ def rasterize(points: Floats, triangles: NDArray[np.integer], width: int, height
     front = np.full(width * height, _NOTHING, dtype=np.uint64)
     corners = points[triangles]
     for chosen in _portions(corners, width, height):
-        tri, pixel, weights = _candidates(corners, chosen, width)
-        depth = np.einsum("ik,ik->i", weights, corners[tri, :, 2])
+        tri, pixel, depth = _covered_by(corners, chosen, width)
         steps = np.round((depth - low) / (high - low) * _DEPTH_STEPS).astype(np.uint64)
         np.minimum.at(front, pixel, (steps << np.uint64(32)) | tri.astype(np.uint64))
     pixels = np.flatnonzero(front != _NOTHING)
@@ -144,19 +145,54 @@ def _portions(corners: Floats, width: int, height: int) -> list[_Portion]:
     ]
 
 
-def _candidates(
+def _covered_by(
     corners: Floats, portion: _Portion, width: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], Floats]:
-    """List the pixels inside each triangle: triangle, pixel and weights, (p,), (p,), (p, 3)."""
-    counts = portion.size.prod(axis=1)
-    which = np.repeat(np.arange(len(counts)), counts)
-    place = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
-    column = portion.first[which, 0] + place % portion.size[which, 0]
-    row = portion.first[which, 1] + place // portion.size[which, 0]
-    triangle = portion.triangles[which]
-    weights = _barycentric(corners[triangle], column + 0.5, row + 0.5)
-    inside = (weights >= -1e-9).all(axis=1)
-    return triangle[inside], (row * width + column)[inside], weights[inside]
+    """List the pixels inside each triangle: triangle, pixel and depth, (p,) each.
+
+    Weights are linear along a row, so that each row of pixels has one span inside a triangle.
+    """
+    a, b, c = corners[portion.triangles].transpose(1, 0, 2)
+    ab, ac = b - a, c - a
+    area = ab[:, 0] * ac[:, 1] - ab[:, 1] * ac[:, 0]
+    # Slopes of the weights of a, b and c along x and y, and those of the depth.
+    of_b, of_c = np.stack([ac[:, 1], -ac[:, 0]]) / area, np.stack([-ab[:, 1], ab[:, 0]]) / area
+    slopes = np.stack([-of_b - of_c, of_b, of_c])
+    steepness = of_b * ab[:, 2] + of_c * ac[:, 2]
+
+    which, down = _spread_out(portion.size[:, 1])
+    row = portion.first[which, 1] + down
+    dy = row + 0.5 - a[which, 1]
+    at_a = slopes[:, 1, which] * dy + np.array([1.0, 0.0, 0.0])[:, None]
+    left, right = _span(slopes[:, 0, which], at_a)
+    start = np.maximum(np.ceil(left + a[which, 0] - 0.5), portion.first[which, 0])
+    last = portion.first[which, 0] + portion.size[which, 0] - 1
+    stop = np.minimum(np.floor(right + a[which, 0] - 0.5), last)
+    first = start.astype(np.int64)
+
+    span, along = _spread_out(np.maximum(stop - start + 1.0, 0.0).astype(np.int64))
+    # What the first pixel of a span has, and how it changes along it.
+    edge = a[which, 2] + steepness[1, which] * dy
+    edge += steepness[0, which] * (first + 0.5 - a[which, 0])
+    depth = edge[span] + steepness[0, which[span]] * along
+    pixel = (row * width + first)[span] + along
+    return portion.triangles[which[span]], pixel, depth
+
+
+def _spread_out(counts: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Number the members of groups of some sizes, (g,): their group and place in it, (p,) each."""
+    group = np.repeat(np.arange(len(counts)), counts)
+    return group, np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts)
+
+
+def _span(slope: Floats, value: Floats) -> tuple[Floats, Floats]:
+    """Find where all of three linear functions, (3, r), are positive: from and to, (r,)."""
+    level = value + _INSIDE
+    with np.errstate(divide="ignore", invalid="ignore"):
+        zero = -level / slope
+    left = np.where(slope > 0.0, zero, np.where((slope == 0.0) & (level < 0.0), np.inf, -np.inf))
+    right = np.where(slope < 0.0, zero, np.inf)
+    return left.max(axis=0), right.min(axis=0)
 
 
 def _barycentric(corners: Floats, x: NDArray[np.floating], y: NDArray[np.floating]) -> Floats:

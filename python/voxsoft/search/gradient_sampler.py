@@ -12,7 +12,6 @@ from optuna.distributions import BaseDistribution, FloatDistribution
 from optuna.samplers import BaseSampler, RandomSampler
 from optuna.study import Study
 from optuna.trial import FrozenTrial
-from scipy.optimize import minimize
 
 from voxsoft.errors import StudyError
 from voxsoft.search.genes import value_of_gene
@@ -133,6 +132,8 @@ class GradientSampler(BaseSampler):
             genes = np.random.default_rng([self._seed, start]).random(len(self._space))
         descent = _Descent(self, trials)
         # Its stubs want arrays of one dimension, which NumPy's own types do not tell.
+        from scipy.optimize import minimize  # slow to load
+
         run: Any = minimize
         first = trials.get(0)
         count = 0

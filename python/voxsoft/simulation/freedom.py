@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from voxsoft.simulation.setup import Setup
 
@@ -41,6 +39,9 @@ def moves_freely(setup: Setup) -> bool:
 
 def _joined(setup: Setup) -> list[NDArray[np.intp]]:
     """Vertices of each piece."""
+    from scipy.sparse import coo_array  # slow to load
+    from scipy.sparse.csgraph import connected_components
+
     tets, count = setup.mesh.tets, len(setup.mesh.vertices)
     pairs = tets[:, :1].repeat(3, axis=1).ravel(), tets[:, 1:].ravel()
     links = coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))

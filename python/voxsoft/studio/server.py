@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
 import socket
+import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import NoReturn
 
 import uvicorn
 
@@ -87,6 +90,18 @@ class StudioServer:
         # uvicorn ends tidily on Ctrl-C, and then raises it once more.
         with contextlib.suppress(KeyboardInterrupt), self._listener:
             asyncio.run(serving())
+
+    def run_and_exit(self, ready: Callable[[str], None]) -> NoReturn:
+        """Serve as the only work of this process, which then ends.
+
+        Threads may still be in native code, such as that of a library which is being loaded. Some of
+        it aborts where the interpreter is taken down around it, so the process ends at once: all
+        that is kept has been written by then.
+        """
+        self.run(ready)
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(0)
 
     def stop(self) -> None:
         """Let :meth:`run` end, which another thread has called."""

@@ -20,6 +20,7 @@ FLAGS = [
     "--use-gl=angle",
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    "--disable-gpu-compositing",
     "--disable-quic",
     "--no-first-run",
     "--disable-background-networking",
@@ -36,7 +37,7 @@ from voxsoft.studio.server import StudioServer
 source, runs, port, token = sys.argv[1:]
 source = Path(source) if source else None
 server = StudioServer(source, runs=Path(runs), port=int(port), token=token)
-server.run(lambda address: print(address, flush=True))
+server.run_and_exit(lambda address: print(address, flush=True))
 """
 
 COARSE = """

@@ -13,6 +13,8 @@ from voxsoft.simulation import Setup, simulate
 from voxsoft.studio.stills import design_in
 from voxsoft.study import Study
 
+pytestmark = pytest.mark.browser
+
 
 def pixels(tab, part=(0.0, 1.0)):
     """Colors of a part of the picture between two shares of its width, (h, w, 3)."""

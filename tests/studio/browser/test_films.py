@@ -4,7 +4,10 @@ import base64
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
+
+pytestmark = pytest.mark.browser
 
 PLAYED = """(data) => new Promise((done) => {
   const video = document.createElement('video');

@@ -2,6 +2,10 @@
 
 import re
 
+import pytest
+
+pytestmark = pytest.mark.browser
+
 PULLED_AT_A_CORNER = """
 schema = "voxsoft/1"
 name = "pulled"

@@ -4,6 +4,8 @@ import re
 
 import pytest
 
+pytestmark = pytest.mark.browser
+
 # Longer than any of these short jobs takes on two busy cores, in milliseconds.
 JOB = 120_000
 

@@ -6,6 +6,8 @@ import struct
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.browser
+
 # Graphics that take their time, whatever this machine has: each fence passes late.
 SLOW_GRAPHICS = """
 const P = WebGL2RenderingContext.prototype;

@@ -6,6 +6,8 @@ import pytest
 
 from voxsoft.studio.wire import PROTOCOL
 
+pytestmark = pytest.mark.browser
+
 
 def test_nothing_leaves_the_machine_and_nothing_goes_wrong(tab, outside):
     for mode in ("design", "calibrate", "optimize", "runs", "simulate"):

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.browser
+
 EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
@@ -335,8 +337,9 @@ def test_an_equilibrium_has_numbers_and_is_kept_as_it_is(tab):
 
 
 def test_solving_can_be_canceled(own_server, open_tab):
-    # Small voxels take long enough to be canceled.
-    text = own_server.source.read_text().replace('voxel_size = "5 mm"', 'voxel_size = "1.25 mm"')
+    # Rubber of 16,384 voxels takes minutes: a press comes in time, however busy the machine is.
+    text = own_server.source.read_text().replace('voxel_size = "5 mm"', 'voxel_size = "0.625 mm"')
+    text = text.replace("-lattice", "")
     own_server.stop()
     own_server.source.write_text(text)
     own_server.start()

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+pytestmark = pytest.mark.browser
+
 
 def boxes(tab, selector):
     """Where elements are on the page: left, top, right and bottom of what encloses them all."""
