@@ -54,21 +54,21 @@ test-rust:
 	cargo test --workspace --exclude voxsoft-python --quiet
 
 test-python: install
-	$(BIN)/python -m pytest -n $(JOBS) -m "not slow and not browser"
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "not slow and not browser"
 
 # `make test` drives Chromium along the main ways, from a new user's to the exported page; these are the others.
 test-browser: install
-	$(BIN)/python -m pytest -n $(JOBS) -m "browser and not slow" tests/studio/browser
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "browser and not slow" tests/studio/browser
 
 # The page's own units; users need no Node, and neither does anyone who leaves the page alone.
 test-studio:
 	@if ! command -v npm >/dev/null; then echo "The tests of the studio's page in TypeScript are skipped: there is no Node here."; \
-	elif ! (cd studio && npm ci --silent); then echo "The tests of the studio's page in TypeScript are skipped: npm could not fetch what they need."; \
+	elif ! (cd studio && { [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --silent; }); then echo "The tests of the studio's page in TypeScript are skipped: npm could not fetch what they need."; \
 	else cd studio && NO_COLOR=1 npm test --silent; fi
 
 test-all: install
 	cargo test --workspace --exclude voxsoft-python --quiet -- --include-ignored
-	$(BIN)/python -m pytest -n $(JOBS)
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal
 
 lint: install
 	cargo fmt --check

@@ -54,6 +54,7 @@ def test_one_thread_and_the_default_give_the_same_bits():
     assert digest("0") == alone
 
 
+@pytest.mark.slow
 def test_a_thousand_threads_work():
     """They do get in each other's way: a solution with its short loops takes a minute."""
     assert digest("1000", "only sampling") == digest("1", "only sampling")

@@ -108,6 +108,7 @@ def test_a_study_waits_goes_on_and_stops(studio):
     run(scenario())
 
 
+@pytest.mark.slow
 def test_a_restart_of_the_server_costs_no_trial(make_studio, tmp_path):
     first = make_studio()
 

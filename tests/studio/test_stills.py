@@ -189,6 +189,7 @@ def test_solving_ends_when_nobody_waits(studio, study, monkeypatch):
     assert ended.wait(20)
 
 
+@pytest.mark.slow
 def test_the_specimen_of_a_calibration_stands_where_its_stations_are(make_studio, tmp_path):
     beam = tmp_path / "beam.toml"
     beam.write_text(families.family_text("paper-beam"))

@@ -198,7 +198,7 @@ fn every_primitive_is_classified_as_in_float64() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
     fn random_compositions_are_classified_as_in_float64(

@@ -32,14 +32,14 @@ fn does_not_depend_on_step_substeps_sweeps_or_damping() {
         ..Dynamics::default()
     };
     let mut variants = Vec::new();
-    for divisor in [1u32, 2, 4, 8] {
+    for divisor in [2u32, 8] {
         let time_step = base.time_step / f64::from(divisor);
         variants.push(Dynamics {
             time_step,
             ..base.clone()
         });
     }
-    for iterations in 1..=8 {
+    for iterations in [1, 2, 5, 8] {
         variants.push(Dynamics {
             iterations,
             ..base.clone()

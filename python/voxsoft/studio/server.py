@@ -94,7 +94,7 @@ class StudioServer:
     def run_and_exit(self, ready: Callable[[str], None]) -> NoReturn:
         """Serve as the only work of this process, which then ends.
 
-        Threads may still be in native code, such as that of a library which is being loaded. Some of
+        Threads may still be in native code, such as that of a library being loaded. Some of
         it aborts where the interpreter is taken down around it, so the process ends at once: all
         that is kept has been written by then.
         """

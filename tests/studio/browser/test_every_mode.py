@@ -7,6 +7,8 @@ import re
 
 import pytest
 
+pytestmark = pytest.mark.browser
+
 # Long enough for the short jobs on two busy cores, in milliseconds.
 JOB = 120_000
 
