@@ -19,16 +19,16 @@ RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 .PHONY: help install demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
 
 help:
-	@echo "make demo      set up, run the paper's 105-design study, show table and figure"
-	@echo "make test      set up, run all quick tests"
-	@echo "make test-browser  every way through the studio in Chromium, some five minutes"
-	@echo "make test-all  also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
-	@echo "make lint      formatters, linters, types, layers"
-	@echo "make bench     benchmarks"
-	@echo "make docs      the documentation as web pages in target/docs"
-	@echo "make studio    check, test and build the studio's page (needs Node 20.19 or newer; its built form is in the repository)"
-	@echo "make wasm      build the core for the browser (needs rustup target add wasm32-unknown-unknown; its built form is in the repository)"
-	@echo "make install   only the environment: .venv/bin/voxsoft"
+	@echo "make demo         set up, run the paper's 105-design study, show table and figure"
+	@echo "make test         set up, run all quick tests"
+	@echo "make test-browser every way through the studio in Chromium, some five minutes"
+	@echo "make test-all     also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
+	@echo "make lint         formatters, linters, types, layers"
+	@echo "make bench        benchmarks"
+	@echo "make docs         the documentation as web pages in target/docs"
+	@echo "make studio       check, test and build the studio's page (needs Node 20.19 or newer; its built form is in the repository)"
+	@echo "make wasm         build the core for the browser (needs rustup target add wasm32-unknown-unknown; its built form is in the repository)"
+	@echo "make install      only the environment: .venv/bin/voxsoft"
 
 install: $(STAMP)
 
