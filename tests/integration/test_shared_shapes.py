@@ -116,6 +116,7 @@ def test_a_soup_of_triangles_is_a_clear_problem(cells):
         voxelize(soup.shape, soup.longest / cells)
 
 
+@pytest.mark.slow
 @needs_data
 def test_the_chamber_of_a_pneunet_file_is_found():
     (body,) = (each for each in SPECIMENS if each.file == "01_pneunetCut.stl")

@@ -172,7 +172,7 @@ class Tab:
         """Wait for a condition in the page; its policy forbids Playwright's own way."""
         end = time.monotonic() + patience
         while not (value := (frame or self.page).evaluate(condition)):
-            assert time.monotonic() < end, f"never came: {condition}"
+            assert time.monotonic() < end, f"never came: {condition}; logged: {self.errors}"
             time.sleep(0.03)
         return value
 
