@@ -20,7 +20,8 @@ const APPEARANCES: { value: Appearance; label: string }[] = [
 /** The tools over the picture. */
 export function ViewBar(props: { view: Viewport }) {
   const view = useView();
-  const fields = useStudio((state) => state.hello?.fields ?? []);
+  // A new list in the selector would be another state each time, for ever, while the server has not said hello.
+  const fields = useStudio((state) => state.hello?.fields) ?? [];
   const smooth = useStudio((state) => state.body?.smooth ?? false);
   const recording = useShown((shown) => shown.recording);
   const [open, setOpen] = useState<"more" | "film" | null>(null);
