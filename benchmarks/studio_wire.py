@@ -18,7 +18,7 @@ from urllib.parse import parse_qs, urlsplit
 import numpy as np
 from measure import Report
 
-from voxsoft.studio.wire import PROTOCOL
+from voxsoft.studio.wire import HEADER, PROTOCOL
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
@@ -29,8 +29,6 @@ TOPOLOGY, FRAME = 1, 2
 WARM, WINDOW, PATIENCE = 0.005, 5.0, 120.0
 #: The clock's time in which the server looks a new body over beside its motion [s].
 AT_FIRST = 4.0
-#: Bytes before what a binary message carries.
-HEADER = 64
 #: The circle that a hand leads the tip around [m], and its spring [N/m].
 RADIUS, STIFFNESS = 0.01, 20.0
 

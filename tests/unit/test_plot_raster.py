@@ -1,5 +1,7 @@
 """The depth buffer: what is in front is seen, and light and colors follow the surface."""
 
+import warnings
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -44,6 +46,21 @@ def test_values_are_interpolated_to_the_centers_of_pixels():
     picture = seen.spread(columns, -1.0)
     assert picture.shape == (10, 10)
     assert picture[0, 0] == -1.0
+
+
+def test_edges_along_rows_and_columns_beyond_the_picture_and_between_pixels():
+    """Along a row a weight may not change at all: such an edge bounds no span."""
+    points = np.array([[0.5, -20.0, 1], [0.5, 30, 1], [9.5, 30, 1], [9.5, -20, 1]])
+    with np.errstate(all="raise"), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        seen = rasterize(points, QUADS, 10, 10)
+        sliver = np.array([[2.0, 2.6, 1], [2.0, 2.9, 1], [8.0, 2.9, 1]])
+        nothing = rasterize(sliver, np.array([[0, 1, 2]]), 10, 10)
+        level = np.array([[1.0, 1, 1], [1, 9, 1], [9, 9, 1]])
+        half = rasterize(level, np.array([[0, 1, 2]]), 10, 10)
+    assert len(seen.pixels) == 100
+    assert len(nothing.pixels) == 0
+    assert len(half.pixels) == 36, "a half of 8 by 8 pixels, with its diagonal"
 
 
 def test_many_triangles_are_cut_into_portions(monkeypatch):

@@ -165,8 +165,9 @@ def _covered_by(
     dy = row + 0.5 - a[which, 1]
     at_a = slopes[:, 1, which] * dy + np.array([1.0, 0.0, 0.0])[:, None]
     left, right = _span(slopes[:, 0, which], at_a)
-    start = np.maximum(np.ceil(left + a[which, 0] - 0.5), portion.first[which, 0])
     last = portion.first[which, 0] + portion.size[which, 0] - 1
+    # A row that misses the triangle begins, at the latest, where its box has ended.
+    start = np.clip(np.ceil(left + a[which, 0] - 0.5), portion.first[which, 0], last + 1)
     stop = np.minimum(np.floor(right + a[which, 0] - 0.5), last)
     first = start.astype(np.int64)
 

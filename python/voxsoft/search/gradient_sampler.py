@@ -131,9 +131,9 @@ class GradientSampler(BaseSampler):
         if start > 0:
             genes = np.random.default_rng([self._seed, start]).random(len(self._space))
         descent = _Descent(self, trials)
-        # Its stubs want arrays of one dimension, which NumPy's own types do not tell.
         from scipy.optimize import minimize  # slow to load
 
+        # Its stubs want arrays of one dimension, which NumPy's own types do not tell.
         run: Any = minimize
         first = trials.get(0)
         count = 0
