@@ -6,7 +6,7 @@ use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voxsoft_statics::{Ensemble, Status, Variant};
+use voxsoft_statics::{Ensemble, Variant};
 
 use crate::gate;
 use crate::simulate::{PyProblem, rows};
@@ -70,15 +70,7 @@ impl PyEnsemble {
             ensemble.settle(&variants, tolerance, &stop)
         })?;
         let report = PyDict::new(py);
-        let status = |status| match status {
-            Status::AtRest => "at-rest",
-            Status::Cancelled => "cancelled",
-            Status::LimitReached
-            | Status::NotConverged
-            | Status::Mechanism
-            | Status::OutOfMemory(_) => "not-converged",
-        };
-        let statuses: Vec<&str> = found.iter().map(|f| status(f.status)).collect();
+        let statuses: Vec<&str> = found.iter().map(|f| f.status.name()).collect();
         report.set_item("status", statuses)?;
         let vertices = found.first().map_or(0, |f| f.positions.len());
         let flat: Vec<f64> = found

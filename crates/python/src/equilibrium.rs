@@ -128,20 +128,11 @@ pub fn equilibrium<'py>(
             ]
         })
         .collect();
-    let status_of_path = answer.status;
-    let status = match status_of_path {
-        voxsoft_statics::Status::AtRest => "at-rest",
-        voxsoft_statics::Status::LimitReached => "limit-reached",
-        voxsoft_statics::Status::NotConverged => "not-converged",
-        voxsoft_statics::Status::Mechanism => "mechanism",
-        voxsoft_statics::Status::OutOfMemory(_) => "out-of-memory",
-        voxsoft_statics::Status::Cancelled => "cancelled",
-    };
     let mut state = State::at_rest(inner.body());
     state.positions.clone_from(&answer.positions);
     let common = Answer {
         state,
-        status: Status::AtRest,
+        status: answer.status,
         residual: answer.residual,
         steps: u64::from(answer.iterations),
         back_offs: answer.back_offs,
@@ -150,8 +141,7 @@ pub fn equilibrium<'py>(
     };
     let factor_of = |load: &Load| answer.factor_of(load);
     let report = problem.report(py, common, watch, &factor_of)?;
-    report.set_item("status", status)?;
-    if let voxsoft_statics::Status::OutOfMemory(bytes) = status_of_path {
+    if let Status::OutOfMemory(bytes) = answer.status {
         report.set_item("needed_bytes", bytes)?;
     }
     report.set_item("factor", factor)?;

@@ -8,10 +8,10 @@ use pyo3::types::PyDict;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Filling, Floor, History, Load, LoadKind, Material, Membrane, MembraneMaterial,
-    Mesh, Motion, Problem, ProblemError, State, elastic,
+    Body, Clamp, Filling, Floor, Gravity, History, Load, LoadKind, Material, Membrane,
+    MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State, elastic,
 };
-use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Status, Trial, relax, simulate};
+use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
 use crate::gate;
 use crate::materials::{MaterialArgument, material};
@@ -111,7 +111,7 @@ impl PyProblemParts {
 
     #[pyo3(signature = (acceleration, history=None))]
     fn gravity(&mut self, acceleration: Vec3, history: HistoryArgument) -> PyResult<()> {
-        self.load(LoadKind::Gravity(acceleration), history)
+        self.load(Gravity { acceleration }, history)
     }
 
     /// A pressure on triangles, and on the given parts of cut tetrahedra.
@@ -126,7 +126,7 @@ impl PyProblemParts {
         let triangles = rows("triangles", &triangles)?;
         let voids = self::voids(voids)?;
         self.load(
-            LoadKind::Pressure {
+            Pressure {
                 triangles,
                 voids,
                 pressure,
@@ -144,7 +144,7 @@ impl PyProblemParts {
     ) -> PyResult<()> {
         let forces = rows("forces", &forces)?;
         let vertices = vertices.as_array().to_vec();
-        self.load(LoadKind::Forces { vertices, forces }, history)
+        self.load(PointForces { vertices, forces }, history)
     }
 
     fn floor(&mut self, z: f64) {
@@ -207,8 +207,9 @@ fn voids(argument: VoidsArgument<'_>) -> PyResult<Vec<([u32; 4], f64)>> {
 }
 
 impl PyProblemParts {
-    fn load(&mut self, kind: LoadKind, history: HistoryArgument) -> PyResult<()> {
+    fn load(&mut self, kind: impl Into<LoadKind>, history: HistoryArgument) -> PyResult<()> {
         let history = self::history(history).map_err(to_python)?;
+        let kind = kind.into();
         self.loads.push(Load { kind, history });
         Ok(())
     }
@@ -446,15 +447,7 @@ impl PyProblem {
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let report = PyDict::new(py);
-        let status = match answer.status {
-            Status::AtRest => "at-rest",
-            Status::EndTime => "end-time",
-            Status::Slow => "slow",
-            Status::NotAtRest => "not-at-rest",
-            Status::Diverged => "diverged",
-            Status::Cancelled => "cancelled",
-        };
-        report.set_item("status", status)?;
+        report.set_item("status", answer.status.name())?;
         report.set_item("positions", from_rows(py, positions))?;
         report.set_item("velocities", from_rows(py, &answer.state.velocities))?;
         report.set_item("time", answer.state.time)?;

@@ -1,7 +1,8 @@
 use thiserror::Error;
 use voxsoft_solid::{
-    Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind,
-    Material, Membrane, MembraneMaterial, Mesh, Model, Motion, ProblemError,
+    Clamp, Fiber, Filling, Floor, Gravity, History, HyperelasticMaterial, LatticeMaterial, Load,
+    LoadKind, Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure,
+    ProblemError,
 };
 use voxsoft_xpbd::{Damping, Dynamics};
 
@@ -249,16 +250,20 @@ impl Reader<'_> {
 
     fn load(&mut self) -> Read<Load> {
         let kind = match self.u8()? {
-            kind::GRAVITY => LoadKind::Gravity(self.f64s()?),
-            kind::PRESSURE => LoadKind::Pressure {
+            kind::GRAVITY => LoadKind::from(Gravity {
+                acceleration: self.f64s()?,
+            }),
+            kind::PRESSURE => Pressure {
                 pressure: self.f64()?,
                 triangles: self.list(12, Self::u32s)?,
                 voids: self.list(24, |from| Ok((from.u32s()?, from.f64()?)))?,
-            },
-            kind::FORCES => LoadKind::Forces {
+            }
+            .into(),
+            kind::FORCES => PointForces {
                 vertices: self.list(4, Self::u32)?,
                 forces: self.list(24, Self::f64s)?,
-            },
+            }
+            .into(),
             _ => return Err(SceneError::Value("kind of a load")),
         };
         let history = self.history()?;

@@ -55,27 +55,23 @@ impl Scene {
         out.list(&self.clamps, Writer::clamp);
         out.list(&self.loads, |out, load| {
             match &load.kind {
-                LoadKind::Gravity(acceleration) => {
+                LoadKind::Gravity(gravity) => {
                     out.u8(kind::GRAVITY);
-                    out.f64s(acceleration);
+                    out.f64s(&gravity.acceleration);
                 }
-                LoadKind::Pressure {
-                    triangles,
-                    voids,
-                    pressure,
-                } => {
+                LoadKind::Pressure(load) => {
                     out.u8(kind::PRESSURE);
-                    out.f64(*pressure);
-                    out.list(triangles, |out, row| out.u32s(row));
-                    out.list(voids, |out, (corners, part)| {
+                    out.f64(load.pressure);
+                    out.list(&load.triangles, |out, row| out.u32s(row));
+                    out.list(&load.voids, |out, (corners, part)| {
                         out.u32s(corners);
                         out.f64(*part);
                     });
                 }
-                LoadKind::Forces { vertices, forces } => {
+                LoadKind::Forces(load) => {
                     out.u8(kind::FORCES);
-                    out.list(vertices, |out, vertex| out.u32(*vertex));
-                    out.list(forces, |out, row| out.f64s(row));
+                    out.list(&load.vertices, |out, vertex| out.u32(*vertex));
+                    out.list(&load.forces, |out, row| out.f64s(row));
                 }
             }
             out.history(&load.history);

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use voxsoft_frames::Display;
 use voxsoft_scene::{Scene, SceneError};
 use voxsoft_solid::{
-    Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind,
-    Material, Membrane, MembraneMaterial, Mesh, Model, Motion,
+    Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, Material,
+    Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics};
@@ -63,12 +63,12 @@ fn full() -> Scene {
         center: [0.0; 3],
         history: ramp.clone(),
     };
-    let pressure = LoadKind::Pressure {
+    let pressure = Pressure {
         triangles: triangles.clone(),
         voids: vec![([0, 1, 2, 3], 0.5)],
         pressure: 300.0,
     };
-    let pull = LoadKind::Forces {
+    let pull = PointForces {
         vertices: vec![3],
         forces: vec![[0.0, 1e-3, 0.0]],
     };
@@ -91,7 +91,7 @@ fn full() -> Scene {
         loads: vec![
             Load::gravity([0.0, 0.0, -9.81]),
             Load {
-                kind: pressure,
+                kind: pressure.into(),
                 history: ramp,
             },
             Load::constant(pull),

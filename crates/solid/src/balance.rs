@@ -115,10 +115,9 @@ pub fn rests_on_floor(
     force: f64,
 ) -> bool {
     axis == 2
-        && force < 0.0
         && problem
             .floor()
-            .is_some_and(|floor| positions[vertex][2] <= floor.z)
+            .is_some_and(|floor| floor.carries(positions[vertex][2], force))
 }
 
 /// Whether the kinetic energy (J) is below `tolerance` times the elastic energy at `positions`, or

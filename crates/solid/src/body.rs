@@ -13,9 +13,12 @@
 
 use std::f64::consts::TAU;
 use std::ops::Range;
+use std::sync::Arc;
 
+use crate::assembly::check_indices;
 use crate::color::{color_order, interleave};
 use crate::lattice::LatticeConstants;
+use crate::terms::{Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{
     Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube,
@@ -56,29 +59,7 @@ pub struct Mesh {
     pub membranes: Vec<Membrane>,
 }
 
-/// An edge constraint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Edge {
-    /// The two vertices.
-    pub vertices: [u32; 2],
-    /// Rest length in m.
-    pub length: f64,
-    /// Stiffness in N/m: the inverse of the compliance.
-    pub stiffness: f64,
-}
-
-/// A volume constraint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tet {
-    /// The four vertices.
-    pub vertices: [u32; 4],
-    /// Rest volume in m³.
-    pub volume: f64,
-    /// Stiffness in Pa/m³ on `V − V₀`: the inverse of the compliance.
-    pub stiffness: f64,
-}
-
-/// Masses and constraints.
+/// Masses and terms.
 ///
 /// Constraints are solved in chunks of several blocks (voxels) of one colour; blocks of one colour
 /// share no vertex. Within a chunk, constraints of different blocks alternate. An edge belongs to
@@ -87,12 +68,12 @@ pub struct Tet {
 pub struct Body {
     rest: Vec<Vec3>,
     masses: Vec<f64>,
-    edges: Vec<Edge>,
-    tets: Vec<Tet>,
+    edges: Edges,
+    tets: Tets,
     voxels: Vec<[u32; 8]>,
-    bricks: Vec<Brick>,
-    hyperelastic: Vec<HyperelasticMaterial>,
-    membranes: Vec<Membrane>,
+    bricks: Bricks,
+    membranes: Membranes,
+    attached: Vec<Attached>,
     chunk_edges: Vec<u32>,
     chunk_tets: Vec<u32>,
     colors: Vec<u32>,
@@ -223,12 +204,15 @@ impl Body {
             unit_strain_energy: (edge_energy + brick_energy) / 2.0,
             rest: mesh.vertices.clone(),
             masses,
-            edges,
-            tets,
+            edges: Edges(edges),
+            tets: Tets(tets),
             voxels,
-            bricks,
-            hyperelastic,
-            membranes: mesh.membranes.clone(),
+            bricks: Bricks {
+                bricks,
+                materials: hyperelastic,
+            },
+            membranes: Membranes(mesh.membranes.clone()),
+            attached: Vec::new(),
             chunk_edges,
             chunk_tets,
             colors: order.colors,
@@ -251,14 +235,67 @@ impl Body {
         self.masses.iter().sum()
     }
 
+    /// Adds a term that is not of the mesh, which nothing but its vertices ties to the body.
+    pub fn attach(&mut self, term: Arc<dyn Term>) -> Result<(), ProblemError> {
+        let (what, count) = ("vertex of an attached term", self.rest.len());
+        let mut outcome = Ok(());
+        term.visit_pattern(&mut |vertices| {
+            if outcome.is_ok() {
+                outcome = check_indices(what, vertices, count);
+            }
+        });
+        outcome?;
+        self.attached.push(Attached(term));
+        Ok(())
+    }
+
+    /// Everything that has an energy, block by block.
+    pub fn terms(&self) -> impl Iterator<Item = &dyn Term> {
+        let own: [&dyn Term; 4] = [&self.edges, &self.tets, &self.bricks, &self.membranes];
+        own.into_iter().chain(self.attached())
+    }
+
+    /// All but hyperelastic voxels, which answer to more than positions within a step ([`crate::elastic::respond`]).
+    pub fn terms_but_bricks(&self) -> impl Iterator<Item = &dyn Term> {
+        let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.membranes];
+        own.into_iter().chain(self.attached())
+    }
+
+    /// All but membranes, whose stiffness some solvers deal with apart.
+    pub fn terms_but_membranes(&self) -> impl Iterator<Item = &dyn Term> {
+        let own: [&dyn Term; 3] = [&self.edges, &self.tets, &self.bricks];
+        own.into_iter().chain(self.attached())
+    }
+
+    /// What joins vertices that need not share a voxel: membranes and attached terms.
+    pub fn terms_beyond_voxels(&self) -> impl Iterator<Item = &dyn Term> {
+        let own: [&dyn Term; 1] = [&self.membranes];
+        own.into_iter().chain(self.attached())
+    }
+
+    /// The terms that are not of the mesh.
+    pub fn attached(&self) -> impl Iterator<Item = &dyn Term> {
+        self.attached.iter().map(|attached| &*attached.0)
+    }
+
+    /// All hyperelastic voxels as one block.
+    pub fn brick_term(&self) -> &Bricks {
+        &self.bricks
+    }
+
+    /// All membranes as one block.
+    pub fn membrane_term(&self) -> &Membranes {
+        &self.membranes
+    }
+
     /// All edge constraints, chunk after chunk.
     pub fn edges(&self) -> &[Edge] {
-        &self.edges
+        &self.edges.0
     }
 
     /// All volume constraints, chunk after chunk.
     pub fn tets(&self) -> &[Tet] {
-        &self.tets
+        &self.tets.0
     }
 
     /// The corners of every block that is a cube along the axes, of any material, in the order of the
@@ -269,17 +306,17 @@ impl Body {
 
     /// All hyperelastic voxels, blocks of one colour after the other.
     pub fn bricks(&self) -> &[Brick] {
-        &self.bricks
+        &self.bricks.bricks
     }
 
     /// The material of a hyperelastic voxel.
     pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
-        &self.hyperelastic[brick.material as usize]
+        self.bricks.material_of(brick)
     }
 
     /// All membranes.
     pub fn membranes(&self) -> &[Membrane] {
-        &self.membranes
+        &self.membranes.0
     }
 
     /// The chunks in the order of solution: the ranges of their edges and tetrahedra.
@@ -316,6 +353,16 @@ impl Body {
             }
         }
         norm(sub(high, low))
+    }
+}
+
+/// An attached term; two are the same if they are one.
+#[derive(Debug, Clone)]
+struct Attached(Arc<dyn Term>);
+
+impl PartialEq for Attached {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
     }
 }
 

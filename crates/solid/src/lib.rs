@@ -34,6 +34,7 @@
 //! # Ok::<(), voxsoft_solid::ProblemError>(())
 //! ```
 
+pub mod assembly;
 pub mod balance;
 mod batches;
 pub mod body;
@@ -43,38 +44,47 @@ mod brick_energy;
 mod brick_thickness;
 mod clamp;
 mod color;
+pub mod conformance;
 mod cube;
 pub mod elastic;
 mod error;
 pub mod fields;
+mod floor;
 pub mod hands;
 mod history;
 pub mod hyperelastic;
 pub mod lanes;
 mod lattice;
-mod load;
+mod loads;
 mod material;
 pub mod matrix;
 mod membrane;
 pub mod mixed;
 mod problem;
+mod solver;
 mod state;
 mod stepper;
 pub mod strips;
+mod terms;
 pub mod vector;
 
-pub use body::{Body, Edge, Mesh, Tet};
+pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
 pub use brick::{Brick, Filling};
 pub use clamp::{Clamp, Motion};
 pub use error::ProblemError;
+pub use floor::Floor;
 pub use hands::{Grab, Hands};
 pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model};
 pub use lattice::{LatticeConstants, LatticeMaterial};
-pub use load::{Load, LoadKind};
+pub use loads::{
+    ExternalForce, Gravity, Load, LoadKind, PointForces, Pressure, Vertices, enclosed_volume,
+};
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
-pub use problem::{Floor, Problem, enclosed_volume};
+pub use problem::Problem;
+pub use solver::{Observer, Progress, Solution, Solver, Status};
 pub use state::State;
 pub use stepper::{Ask, Damping, LiveStatus, Look, Method, Stepper};
+pub use terms::{Bricks, Edge, Edges, Membranes, Strain, Term, Tet, Tets};

@@ -11,99 +11,53 @@
 //! The equilibrium is the same; the way there is several times shorter (Magisano, Leonetti and Garcea
 //! 2017, doi 10.1016/j.cma.2016.09.044).
 
-use crate::batches::in_order;
-use crate::brick::BrickStrain;
-use crate::elastic::{FORCE_BATCH, STIFFNESS_BATCH};
-use crate::membrane::Plane;
-use crate::vector::{Vec3, dot, sub};
-use crate::{Body, elastic};
+use crate::Body;
+use crate::assembly::Visitor;
+use crate::terms::{Strain, Term};
+use crate::vector::Vec3;
 
-/// The strain of every piece of a body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Strains {
-    edges: Vec<f64>,
-    tets: Vec<f64>,
-    bricks: Vec<BrickStrain>,
-    membranes: Vec<Plane>,
+/// The strain of every element of a body.
+pub struct Strains<'a> {
+    terms: Vec<Box<dyn Strain + 'a>>,
 }
 
-impl Strains {
+impl<'a> Strains<'a> {
     /// The strains that a step `moves` from `positions` leads to, to first order.
-    pub fn predict(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
-        let edges = body.edges().iter().map(|edge| {
-            let (change, gradient) = edge.evaluate(positions);
-            let [a, b] = edge.vertices.map(|v| moves[v as usize]);
-            change + dot(gradient, sub(a, b))
-        });
-        let tets = body.tets().iter().map(|tet| {
-            let (change, gradients) = tet.evaluate(positions);
-            let along = tet.vertices.into_iter().zip(gradients);
-            change + along.map(|(v, g)| dot(g, moves[v as usize])).sum::<f64>()
-        });
-        let bricks = body
-            .bricks()
-            .iter()
-            .map(|brick| brick.predict_strain(positions, moves));
-        let membranes = body
-            .membranes()
-            .iter()
-            .map(|membrane| membrane.predict_strain(positions, moves));
+    pub fn predict(body: &'a Body, positions: &[Vec3], moves: &[Vec3]) -> Self {
+        let predict = |term: &'a dyn Term| {
+            let strain = term.predict(positions, moves);
+            strain.unwrap_or_else(|| Box::new(AsItIs(term)))
+        };
         Self {
-            edges: edges.collect(),
-            tets: tets.collect(),
-            bricks: bricks.collect(),
-            membranes: membranes.collect(),
+            terms: body.terms().map(predict).collect(),
         }
     }
 
-    /// Adds the forces at `positions` of the stress that these strains predict, in N. Constraints are
-    /// linear in their strains, so theirs are the true ones.
-    pub fn add_forces(&self, body: &Body, positions: &[Vec3], forces: &mut [Vec3]) {
-        elastic::add_constraint_forces(body, positions, forces);
-        let bricks = body.bricks();
-        in_order(
-            bricks.len(),
-            FORCE_BATCH,
-            |i| {
-                let material = body.material_of(&bricks[i]);
-                bricks[i].predicted_forces(material, &self.bricks[i], positions)
-            },
-            |i, corners| bricks[i].add_to(&corners, forces),
-        );
-        for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
-            membrane.add_predicted_forces(*strain, positions, forces);
+    /// Adds the forces at `positions` of the stress that these strains predict, in N.
+    pub fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        for term in &self.terms {
+            term.add_forces(positions, forces);
         }
     }
 
-    /// The tangent at `positions` with the stress of these strains, piece by piece as in
+    /// The tangent at `positions` with the stress of these strains, an element at a time as in
     /// [`crate::elastic::visit_stiffness`].
-    pub fn visit_stiffness(
-        &self,
-        body: &Body,
-        positions: &[Vec3],
-        visit: &mut dyn FnMut(&[u32], &[f64]),
-    ) {
-        for (edge, change) in body.edges().iter().zip(&self.edges) {
-            let matrix = edge.hessian(positions, Some(*change));
-            visit(&edge.vertices, matrix.as_flattened());
+    pub fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        for term in &self.terms {
+            term.visit_stiffness(positions, visit);
         }
-        for (tet, change) in body.tets().iter().zip(&self.tets) {
-            let matrix = tet.hessian(positions, Some(*change));
-            visit(&tet.vertices, matrix.as_flattened());
-        }
-        let bricks = body.bricks();
-        in_order(
-            bricks.len(),
-            STIFFNESS_BATCH,
-            |i| {
-                let material = body.material_of(&bricks[i]);
-                bricks[i].stiffness(material, positions, Some(&self.bricks[i]))
-            },
-            |i, matrix| visit(&bricks[i].vertices, matrix.as_flattened()),
-        );
-        for (membrane, strain) in body.membranes().iter().zip(&self.membranes) {
-            let matrix = membrane.stiffness(positions, Some(*strain));
-            visit(&membrane.vertices(), matrix.as_flattened());
-        }
+    }
+}
+
+/// A term without strains of its own to carry along.
+struct AsItIs<'a>(&'a dyn Term);
+
+impl Strain for AsItIs<'_> {
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.0.add_forces(positions, forces);
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        self.0.visit_stiffness(positions, visit);
     }
 }

@@ -1,16 +1,7 @@
-use crate::balance::cavity_volume;
-use crate::elastic::volume_hessian;
-use crate::load::is_closed;
-use crate::matrix::{cross_matrix, plus};
-use crate::vector::{Vec3, axpy, cross, dot, scale, sub};
-use crate::{Body, Clamp, History, Load, LoadKind, ProblemError, Tet};
-
-/// A horizontal plane without friction that no vertex may pass.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Floor {
-    /// Its height in m.
-    pub z: f64,
-}
+use crate::assembly::{Visitor, check_indices};
+use crate::loads::Vertices;
+use crate::vector::Vec3;
+use crate::{Body, Clamp, Floor, History, Load, ProblemError};
 
 /// A body with clamps, loads and maybe a floor.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +15,7 @@ pub struct Problem {
 }
 
 impl Problem {
-    /// Joins the pieces after checking every index and number.
+    /// Joins the parts after checking every index and number.
     pub fn new(
         body: Body,
         clamps: Vec<Clamp>,
@@ -42,12 +33,9 @@ impl Problem {
             }
         }
         for load in &loads {
-            check_load(load, count)?;
+            load.kind.check(count)?;
         }
-        let conservative = loads.iter().all(|load| match &load.kind {
-            LoadKind::Pressure { triangles, .. } => is_closed(triangles),
-            LoadKind::Gravity(_) | LoadKind::Forces { .. } => true,
-        });
+        let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
             body,
             clamps,
@@ -106,65 +94,35 @@ impl Problem {
         factor_of: &dyn Fn(&Load) -> f64,
         forces: &mut [Vec3],
     ) {
+        let on = self.vertices(positions);
         for load in &self.loads {
-            let factor = factor_of(load);
-            match &load.kind {
-                LoadKind::Gravity(acceleration) => {
-                    for (force, mass) in forces.iter_mut().zip(self.body.masses()) {
-                        axpy(force, factor * mass, *acceleration);
-                    }
-                }
-                LoadKind::Pressure {
-                    triangles,
-                    voids,
-                    pressure,
-                } => {
-                    let pressure = factor * pressure;
-                    add_pressure(triangles, pressure, positions, forces);
-                    for &(vertices, part) in voids {
-                        let gradients = unstiff(vertices).evaluate(positions).1;
-                        for (vertex, gradient) in vertices.into_iter().zip(gradients) {
-                            axpy(&mut forces[vertex as usize], part * pressure, gradient);
-                        }
-                    }
-                }
-                LoadKind::Forces {
-                    vertices,
-                    forces: values,
-                } => {
-                    for (&vertex, value) in vertices.iter().zip(values) {
-                        axpy(&mut forces[vertex as usize], factor, *value);
-                    }
-                }
-            }
+            load.kind.add_forces(on, factor_of(load), forces);
+        }
+    }
+
+    fn vertices<'a>(&'a self, positions: &'a [Vec3]) -> Vertices<'a> {
+        Vertices {
+            rest: self.body.rest(),
+            positions,
+            masses: self.body.masses(),
         }
     }
 
     /// The potential (J) of the loads with a factor for each, zero for a body that has not moved in
     /// dead loads: its derivative is minus the force, if the loads are conservative.
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
-        let mut work = 0.0;
-        for load in &self.loads {
-            let factor = factor_of(load);
-            let moved = |vertex: usize| sub(positions[vertex], self.body.rest()[vertex]);
-            work += factor
-                * match &load.kind {
-                    LoadKind::Gravity(acceleration) => (0..positions.len())
-                        .map(|v| self.body.masses()[v] * dot(*acceleration, moved(v)))
-                        .sum::<f64>(),
-                    LoadKind::Forces { vertices, forces } => vertices
-                        .iter()
-                        .zip(forces)
-                        .map(|(&v, force)| dot(*force, moved(v as usize)))
-                        .sum(),
-                    LoadKind::Pressure {
-                        triangles,
-                        voids,
-                        pressure,
-                    } => pressure * enclosed_volume(triangles, voids, positions),
-                };
-        }
-        -work
+        let on = self.vertices(positions);
+        let work = |load: &Load| factor_of(load) * load.kind.work(on);
+        -self.loads.iter().map(work).sum::<f64>()
+    }
+
+    /// The work (J) of all pressures with a factor for each: what volume control prescribes.
+    pub fn pressure_work(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
+        let on = self.vertices(positions);
+        let pressures = self.loads.iter().filter(|load| load.kind.is_pressure());
+        pressures
+            .map(|load| factor_of(load) * load.kind.work(on))
+            .sum()
     }
 
     /// Whether all loads come from a potential, so that the stiffness matrix is symmetric: a pressure
@@ -173,45 +131,32 @@ impl Problem {
         self.conservative
     }
 
-    /// Hands minus the derivative of the external forces by positions (N/m) to `visit` piece by
-    /// piece, as [`crate::elastic::visit_stiffness`] does.
-    ///
-    /// On a closed surface the forces are `p ∂V/∂x`, and a triangle's part of `V` is `−a·(b × c)/6`; an
-    /// open one loads each corner with a third of `−p A n`, whose derivative is not symmetric.
+    /// Hands minus the derivative of the external forces by positions (N/m) to `visit`, piece by
+    /// piece as [`crate::elastic::visit_stiffness`] does.
     pub fn visit_load_stiffness(
         &self,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        visit: &mut dyn FnMut(&[u32], &[f64]),
+        visit: Visitor<'_>,
     ) {
-        for load in &self.loads {
-            let LoadKind::Pressure {
-                triangles,
-                voids,
-                pressure,
-            } = &load.kind
-            else {
-                continue;
-            };
-            let pressure = factor_of(load) * pressure;
-            let closed = is_closed(triangles);
-            for triangle in triangles {
-                let corners = triangle.map(|v| positions[v as usize]);
-                let matrix = if closed {
-                    closed_pressure_stiffness(pressure, corners)
-                } else {
-                    open_pressure_stiffness(pressure, corners)
-                };
-                visit(triangle, matrix.as_flattened());
-            }
-            for (vertices, part) in voids {
-                let mut matrix = volume_hessian(vertices.map(|v| positions[v as usize]));
-                for entry in matrix.as_flattened_mut() {
-                    *entry *= -part * pressure;
-                }
-                visit(vertices, matrix.as_flattened());
-            }
+        for load in self.loads.iter().filter(|load| load.kind.follows()) {
+            let factor = factor_of(load);
+            load.kind.visit_stiffness(positions, factor, visit);
         }
+    }
+
+    /// Hands over the vertices of every element and every piece of the loads' stiffness: the tangent joins no
+    /// others.
+    pub fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.body.terms().for_each(|term| term.visit_pattern(visit));
+        self.visit_load_pattern(visit);
+    }
+
+    /// That of the loads alone.
+    pub fn visit_load_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.loads
+            .iter()
+            .for_each(|load| load.kind.visit_pattern(visit));
     }
 
     /// Puts held vertices where their clamps want them at `time`, motions being scaled by `ramp`.
@@ -230,122 +175,10 @@ impl Problem {
     }
 }
 
-/// Each triangle hands a third of `−p A n` to each corner (`A n` the current area vector), which on a
-/// closed surface is `p` times the gradient of the enclosed volume and sums to zero.
-fn add_pressure(triangles: &[[u32; 3]], pressure: f64, positions: &[Vec3], forces: &mut [Vec3]) {
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|v| positions[v as usize]);
-        let force = scale(-pressure / 6.0, cross(sub(b, a), sub(c, a)));
-        for &vertex in triangle {
-            axpy(&mut forces[vertex as usize], 1.0, force);
-        }
-    }
-}
-
-/// The volume in m³ enclosed by triangles whose normals point out of the solid, plus parts of tetrahedra.
-pub fn enclosed_volume(
-    triangles: &[[u32; 3]],
-    voids: &[([u32; 4], f64)],
-    positions: &[Vec3],
-) -> f64 {
-    let within: f64 = voids
-        .iter()
-        .map(|&(vertices, part)| part * unstiff(vertices).evaluate(positions).0)
-        .sum();
-    within + cavity_volume(triangles, positions)
-}
-
-/// A tetrahedron of which only the volume is asked.
-fn unstiff(vertices: [u32; 4]) -> Tet {
-    Tet {
-        vertices,
-        volume: 0.0,
-        stiffness: 0.0,
-    }
-}
-
-fn closed_pressure_stiffness(pressure: f64, corners: [Vec3; 3]) -> [[f64; 9]; 9] {
-    let mut matrix = [[0.0; 9]; 9];
-    for (row, column, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        let block = cross_matrix(scale(-pressure / 6.0, corners[other]));
-        for i in 0..3 {
-            for j in 0..3 {
-                matrix[3 * row + i][3 * column + j] = block[i][j];
-                matrix[3 * column + j][3 * row + i] = block[i][j];
-            }
-        }
-    }
-    matrix
-}
-
-fn open_pressure_stiffness(pressure: f64, [a, b, c]: [Vec3; 3]) -> [[f64; 9]; 9] {
-    let u = cross_matrix(scale(pressure / 6.0, sub(b, a)));
-    let v = cross_matrix(scale(pressure / 6.0, sub(c, a)));
-    let blocks = [plus(&v, -1.0, &u), v.map(|row| row.map(|x| -x)), u];
-    let mut matrix = [[0.0; 9]; 9];
-    for (row, entries) in matrix.iter_mut().enumerate() {
-        for (column, entry) in entries.iter_mut().enumerate() {
-            *entry = blocks[column / 3][row % 3][column % 3];
-        }
-    }
-    matrix
-}
-
-fn check_load(load: &Load, count: usize) -> Result<(), ProblemError> {
-    let finite = |values: &[f64]| {
-        if values.iter().all(|value| value.is_finite()) {
-            Ok(())
-        } else {
-            Err(ProblemError::NotFinite { what: "a load" })
-        }
-    };
-    match &load.kind {
-        LoadKind::Gravity(acceleration) => finite(acceleration),
-        LoadKind::Pressure {
-            triangles,
-            voids,
-            pressure,
-        } => {
-            finite(&[*pressure])?;
-            for (vertices, part) in voids {
-                finite(&[*part])?;
-                check_indices("vertex of a cut voxel", vertices, count)?;
-            }
-            check_indices(
-                "vertex of a pressure triangle",
-                triangles.as_flattened(),
-                count,
-            )
-        }
-        LoadKind::Forces { vertices, forces } => {
-            finite(forces.as_flattened())?;
-            if vertices.len() != forces.len() {
-                return Err(ProblemError::Length {
-                    what: "forces on vertices",
-                    got: forces.len(),
-                    expected: vertices.len(),
-                });
-            }
-            check_indices("vertex of a force", vertices, count)
-        }
-    }
-}
-
-fn check_indices(what: &'static str, vertices: &[u32], count: usize) -> Result<(), ProblemError> {
-    match vertices.iter().find(|&&vertex| vertex as usize >= count) {
-        Some(&index) => Err(ProblemError::Index {
-            what,
-            index: index as usize,
-            count,
-        }),
-        None => Ok(()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LatticeMaterial, Mesh};
+    use crate::{LatticeMaterial, Mesh, Pressure};
 
     /// A tetrahedron whose four faces, or three of them, feel a pressure from outside.
     fn pressed(faces: usize, voids: Vec<([u32; 4], f64)>) -> Problem {
@@ -364,7 +197,7 @@ mod tests {
         let material = LatticeMaterial::from_moduli(1.0, 1.0, 1.0).unwrap();
         let body = Body::new(&mesh, &[material]).unwrap();
         let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]][..faces].to_vec();
-        let load = Load::constant(LoadKind::Pressure {
+        let load = Load::constant(Pressure {
             triangles,
             voids,
             pressure: 2.0,

@@ -13,7 +13,8 @@ use voxsoft_solid::vector::{Vec3, add, scale};
 use crate::equilibrium::Failure;
 use crate::path::{Ending, Path, status_of};
 use crate::point::Point;
-use crate::settings::{Progress, Settings, Status};
+use crate::settings::{Progress, Settings};
+use voxsoft_solid::Status;
 
 /// Steps of the look for a limit, and how long they are against the last step that converged.
 const LOOK_STEPS: u32 = 60;

@@ -14,7 +14,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Load, LoadKind, Problem, elastic};
+use voxsoft_solid::{Load, Problem, elastic};
 
 use crate::ordering::nested_dissection;
 use crate::system::{FactorError, Means};
@@ -182,13 +182,13 @@ impl DirectSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&Strains<'_>>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
         self.assemble_pieces(jump, residual, |add| {
             match strains {
-                Some(strains) => strains.visit_stiffness(problem.body(), positions, add),
+                Some(strains) => strains.visit_stiffness(positions, add),
                 None => elastic::visit_stiffness(problem.body(), positions, add),
             }
             problem.visit_load_stiffness(positions, factor_of, add);
@@ -435,26 +435,13 @@ impl DirectSystem {
 
 /// For each vertex the vertices that share a piece of stiffness with it, itself included.
 fn adjacency(problem: &Problem, count: usize) -> Vec<Vec<u32>> {
-    let body: &Body = problem.body();
     let mut neighbors: Vec<Vec<u32>> = (0..count as u32).map(|v| vec![v]).collect();
     let mut join = |vertices: &[u32]| {
         for &a in vertices {
             neighbors[a as usize].extend(vertices.iter().copied().filter(|&b| b != a));
         }
     };
-    body.edges().iter().for_each(|e| join(&e.vertices));
-    body.tets().iter().for_each(|t| join(&t.vertices));
-    body.bricks().iter().for_each(|b| join(&b.vertices));
-    body.membranes().iter().for_each(|m| join(&m.vertices()));
-    for load in problem.loads() {
-        if let LoadKind::Pressure {
-            triangles, voids, ..
-        } = &load.kind
-        {
-            triangles.iter().for_each(|t| join(t));
-            voids.iter().for_each(|(t, _)| join(t));
-        }
-    }
+    problem.visit_pattern(&mut join);
     for list in &mut neighbors {
         list.sort_unstable();
         list.dedup();

@@ -105,7 +105,7 @@ impl<'a> Equilibrium<'a> {
         let mut held = problem.held().to_vec();
         if let Some(floor) = problem.floor() {
             for (held, point) in held.iter_mut().zip(problem.body().rest()) {
-                held[2] |= point[2] <= floor.z;
+                held[2] |= floor.touches(point[2]);
             }
         }
         Ok(Self {
@@ -143,14 +143,14 @@ impl<'a> Equilibrium<'a> {
     /// Net forces on free coordinates with the elastic ones that `strains` predict.
     pub fn predicted_forces(
         &self,
-        strains: &Strains,
+        strains: &Strains<'_>,
         positions: &[Vec3],
         point: Point,
     ) -> Vec<f64> {
         let mut net = vec![[0.0; 3]; positions.len()];
         self.problem
             .add_scaled_loads(positions, &point.factor_of(), &mut net);
-        strains.add_forces(self.problem.body(), positions, &mut net);
+        strains.add_forces(positions, &mut net);
         self.system.gather(&net)
     }
 
@@ -219,7 +219,7 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let body = self.problem.body();
-        let mut strains: Option<Strains> = None;
+        let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         for iteration in 0..=MIXED_ITERATIONS {
@@ -519,11 +519,7 @@ impl<'a> Equilibrium<'a> {
                 continue;
             }
             let carried = self.held[vertex][2];
-            let keep = if carried {
-                net[vertex][2] <= 0.0
-            } else {
-                positions[vertex][2] < floor.z - slack
-            };
+            let keep = floor.keeps(carried, positions[vertex][2], net[vertex][2], slack);
             changed |= keep != carried;
             self.held[vertex][2] = keep;
         }

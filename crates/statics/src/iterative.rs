@@ -5,7 +5,7 @@
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
-use voxsoft_solid::{Load, LoadKind, Problem, elastic};
+use voxsoft_solid::{Load, Problem, elastic};
 
 use crate::multigrid::{
     BlockMatrix, Factors, Hierarchy, Workspace, cells_of, color, for_each, sum,
@@ -59,7 +59,9 @@ impl IterativeSystem {
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.bricks().len();
-        if !whole || !problem.is_conservative() {
+        // Coarser levels join nothing farther apart than the corners of a voxel.
+        let attached = body.attached().next().is_some();
+        if !whole || attached || !problem.is_conservative() {
             return Ok(None);
         }
         let Some(mut cells) = cells_of(body) else {
@@ -92,7 +94,7 @@ impl IterativeSystem {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&Strains<'_>>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
@@ -127,7 +129,7 @@ impl IterativeSystem {
             }
         };
         match strains {
-            Some(strains) => strains.visit_stiffness(problem.body(), positions, &mut add),
+            Some(strains) => strains.visit_stiffness(positions, &mut add),
             None => elastic::visit_stiffness(problem.body(), positions, &mut add),
         }
         problem.visit_load_stiffness(positions, factor_of, &mut add);
@@ -269,36 +271,47 @@ impl IterativeSystem {
     }
 }
 
+/// The vertices of elements, one after the other.
+#[derive(Default)]
+struct Elements {
+    vertices: Vec<u32>,
+    ends: Vec<usize>,
+}
+
+impl Elements {
+    fn push(&mut self, vertices: &[u32]) {
+        self.vertices.extend_from_slice(vertices);
+        self.ends.push(self.vertices.len());
+    }
+
+    fn get(&self, index: usize) -> &[u32] {
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.vertices[start..self.ends[index]]
+    }
+}
+
 /// The columns of each vertex: the corners of its voxels, and what membranes and pressures join.
 fn pattern(problem: &Problem) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
-    let mut pieces: Vec<&[u32]> = body.voxels().iter().map(|v| v.as_slice()).collect();
-    let membranes: Vec<[u32; 3]> = body.membranes().iter().map(|m| m.vertices()).collect();
-    pieces.extend(membranes.iter().map(|m| m.as_slice()));
-    for load in problem.loads() {
-        if let LoadKind::Pressure {
-            triangles, voids, ..
-        } = &load.kind
-        {
-            pieces.extend(triangles.iter().map(|t| t.as_slice()));
-            pieces.extend(voids.iter().map(|(t, _)| t.as_slice()));
-        }
+    let mut elements = Elements::default();
+    body.voxels().iter().for_each(|v| elements.push(v));
+    for term in body.terms_beyond_voxels() {
+        term.visit_pattern(&mut |vertices| elements.push(vertices));
     }
-    // The pieces at each vertex, then the vertices of those pieces.
+    problem.visit_load_pattern(&mut |vertices| elements.push(vertices));
+    // The elements at each vertex, then the vertices of those elements.
     let mut starts = vec![0u32; count + 1];
-    for piece in &pieces {
-        for &vertex in *piece {
-            starts[vertex as usize + 1] += 1;
-        }
+    for &vertex in &elements.vertices {
+        starts[vertex as usize + 1] += 1;
     }
     for vertex in 0..count {
         starts[vertex + 1] += starts[vertex];
     }
     let mut next = starts.clone();
     let mut at = vec![0u32; starts[count] as usize];
-    for (index, piece) in pieces.iter().enumerate() {
-        for &vertex in *piece {
+    for index in 0..elements.ends.len() {
+        for &vertex in elements.get(index) {
             at[next[vertex as usize] as usize] = index as u32;
             next[vertex as usize] += 1;
         }
@@ -311,7 +324,7 @@ fn pattern(problem: &Problem) -> BlockMatrix {
         row.clear();
         row.push(vertex as u32);
         for &index in &at[starts[vertex] as usize..starts[vertex + 1] as usize] {
-            row.extend_from_slice(pieces[index as usize]);
+            row.extend_from_slice(elements.get(index as usize));
         }
         row.sort_unstable();
         row.dedup();

@@ -6,11 +6,10 @@ use voxsoft_solid::vector::Vec3;
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure, Found};
 use crate::point::Point;
-use crate::settings::{
-    Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings, Status,
-};
+use crate::settings::{Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings};
 use crate::system::{FactorError, Means, System};
 use crate::volume;
+use voxsoft_solid::Status;
 
 /// A step that took no more iterations than this lets the next one grow.
 pub(crate) const EASY: u32 = 6;

@@ -1,4 +1,4 @@
-use voxsoft_solid::{Load, LoadKind};
+use voxsoft_solid::Load;
 
 /// Where on the path: factors on pressures and on everything else.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,9 +17,10 @@ impl Point {
 
     pub fn factor_of(self) -> impl Fn(&Load) -> f64 {
         move |load| {
-            let factor = match load.kind {
-                LoadKind::Pressure { .. } => self.pressure,
-                LoadKind::Gravity(_) | LoadKind::Forces { .. } => self.dead,
+            let factor = if load.kind.is_pressure() {
+                self.pressure
+            } else {
+                self.dead
             };
             factor * load.history.at(f64::INFINITY)
         }

@@ -1,8 +1,9 @@
 use std::ops::ControlFlow;
 
-use voxsoft_solid::Load;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Load, Problem, Solution, Solver, State, Status};
 
+use crate::path::solve;
 use crate::point::Point;
 
 /// How a load path is followed.
@@ -74,22 +75,36 @@ impl Default for Settings {
     }
 }
 
-/// How a solution ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// Equilibrium under all that was asked.
-    AtRest,
-    /// The path has a limit: no equilibrium near it carries more than [`Answer::limit`].
-    LimitReached,
-    /// Newton's method found no equilibrium for the smallest step, and no limit explains it.
-    NotConverged,
-    /// The tangent stays singular: a part of the body moves freely.
-    Mechanism,
-    /// The tangent takes more memory than there is: about this many bytes, or zero where only the
-    /// allocation showed it.
-    OutOfMemory(u64),
-    /// The observer asked to stop.
-    Cancelled,
+impl Solver for Settings {
+    fn name(&self) -> &'static str {
+        "statics"
+    }
+
+    fn solve(
+        &self,
+        problem: &Problem,
+        start: Option<&[Vec3]>,
+        observer: &mut voxsoft_solid::Observer<'_>,
+    ) -> Solution {
+        let answer = solve(problem, start, self, &mut |progress| {
+            observer(&voxsoft_solid::Progress {
+                steps: u64::from(progress.iterations),
+                positions: progress.positions,
+                residual: progress.residual,
+            })
+        });
+        Solution {
+            state: State {
+                positions: answer.positions,
+                ..State::at_rest(problem.body())
+            },
+            status: answer.status,
+            residual: answer.residual,
+            steps: u64::from(answer.iterations),
+            back_offs: answer.back_offs,
+            breakdown: None,
+        }
+    }
 }
 
 /// A converged point of the load path.

@@ -95,7 +95,7 @@ impl System {
         problem: &Problem,
         positions: &[Vec3],
         factor_of: &dyn Fn(&Load) -> f64,
-        strains: Option<&Strains>,
+        strains: Option<&Strains<'_>>,
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {

@@ -15,14 +15,14 @@ use std::ops::ControlFlow;
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
-use voxsoft_solid::{LoadKind, enclosed_volume};
 
 use crate::control::{Unknown, load_direction, product};
 use crate::equilibrium::{Failure, Forces};
 use crate::path::{Ending, Path, UNSTABLE_CUTS, status_of};
 use crate::point::Point;
-use crate::settings::{Progress, Settings, Status};
+use crate::settings::{Progress, Settings};
 use crate::system::Factor;
+use voxsoft_solid::Status;
 
 /// The volume counts as reached within this part of it.
 const VOLUME_TOLERANCE: f64 = 1e-9;
@@ -135,19 +135,8 @@ fn stability(path: &mut Path<'_, '_>, positions: &[Vec3], point: Point) -> (bool
 
 /// The volume that the pressures work on, weighted with them (J).
 fn volume(path: &Path<'_, '_>, positions: &[Vec3]) -> f64 {
-    let mut sum = 0.0;
-    for load in path.equilibrium.problem.loads() {
-        if let LoadKind::Pressure {
-            triangles,
-            voids,
-            pressure,
-        } = &load.kind
-        {
-            let weight = pressure * load.history.at(f64::INFINITY);
-            sum += weight * enclosed_volume(triangles, voids, positions);
-        }
-    }
-    sum
+    let problem = path.equilibrium.problem;
+    problem.pressure_work(positions, &|load| load.history.at(f64::INFINITY))
 }
 
 /// A state on the way to an equilibrium of a given volume.
@@ -237,7 +226,7 @@ fn step_mixed(
     settings: &Settings,
 ) -> Result<Seen, Failure> {
     let (mut positions, mut factor) = (now.positions.clone(), now.factor);
-    let mut strains: Option<Strains> = None;
+    let mut strains: Option<Strains<'_>> = None;
     let (mut best, mut lowest, mut since_lowest) = (f64::INFINITY, f64::INFINITY, 0);
     let size = path.equilibrium.problem.body().size();
     for iteration in 0..=MIXED_ITERATIONS {
@@ -415,7 +404,12 @@ impl Search {
     }
 }
 
-fn assemble(path: &mut Path<'_, '_>, positions: &[Vec3], point: Point, strains: Option<&Strains>) {
+fn assemble(
+    path: &mut Path<'_, '_>,
+    positions: &[Vec3],
+    point: Point,
+    strains: Option<&Strains<'_>>,
+) {
     let equilibrium = &mut path.equilibrium;
     equilibrium.iterations += 1;
     let mut unused = vec![0.0; equilibrium.system.size()];

@@ -5,7 +5,7 @@ mod common;
 use common::{block, cantilever, settled, vertices_where};
 use proptest::prelude::*;
 use voxsoft_solid::vector::{norm, sub};
-use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, LoadKind, Problem};
+use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, PointForces, Pressure, Problem};
 use voxsoft_statics::{Ensemble, Settings, Status, Variant};
 
 const EDGE: f64 = 25e3;
@@ -96,7 +96,7 @@ proptest! {
             let body = Body::new(&mesh, &[lattice(edge * EDGE, bulk * BULK)]).unwrap();
             let loads = vec![
                 Load::gravity([0.0, 0.0, -9.81 * weight]),
-                Load::constant(LoadKind::Forces {
+                Load::constant(PointForces {
                     vertices: far.clone(),
                     forces: vec![pull.map(|f| f * forces); far.len()],
                 }),
@@ -121,7 +121,7 @@ fn what_cannot_be_laid_out_is_refused() {
     let mesh = block([2, 1, 1], 5e-3);
     let wall = Clamp::fixed(vertices_where(&mesh, |x| x[0] < 1e-9));
     let body = || Body::new(&mesh, &[lattice(EDGE, BULK)]).unwrap();
-    let pressure = Load::constant(LoadKind::Pressure {
+    let pressure = Load::constant(Pressure {
         triangles: vec![[0, 1, 2]],
         voids: vec![],
         pressure: 1.0,

@@ -10,7 +10,7 @@ use voxsoft_solid::matrix::determinant;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{
     Ask, Body, Clamp, Damping, Floor, HyperelasticMaterial, LatticeMaterial, LiveStatus, Load,
-    LoadKind, Look, Material, Model, Problem, Stepper,
+    Look, Material, Model, PointForces, Pressure, Problem, Stepper,
 };
 use voxsoft_statics::{Implicit, ImplicitSettings, Settings};
 use voxsoft_voxel::Grid;
@@ -66,7 +66,7 @@ fn chamber(soft: impl Into<Material>, firm: impl Into<Material>, pressure: f64) 
     let mesh = mesh_of(&grid);
     let body = Body::new(&mesh, &[firm.into(), soft.into()]).unwrap();
     let triangles = inner_faces(&grid, &mesh.vertices, side);
-    let load = Load::constant(LoadKind::Pressure {
+    let load = Load::constant(Pressure {
         triangles,
         voids: Vec::new(),
         pressure,
@@ -154,7 +154,7 @@ fn an_open_pressure_that_turns_with_the_surface_comes_to_rest_too() {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
     }
-    let load = Load::constant(LoadKind::Pressure {
+    let load = Load::constant(Pressure {
         triangles,
         voids: Vec::new(),
         pressure: 150.0,
@@ -302,7 +302,7 @@ fn viscous_stress_damps_as_the_closed_form_says() {
 fn a_free_body_takes_all_of_the_momentum_it_is_given() {
     let mesh = block([6, 2, 2], 5e-3);
     let body = Body::new(&mesh, &[rubber()]).unwrap();
-    let push = Load::constant(LoadKind::Forces {
+    let push = Load::constant(PointForces {
         vertices: vec![0, 5],
         forces: vec![[0.0, 0.0, 2e-3], [1e-3, 0.0, 0.0]],
     });

@@ -5,8 +5,8 @@ mod common;
 use common::{block, cantilever, mesh_of, rubber, settled, vertices_where};
 use voxsoft_solid::vector::{norm, sub};
 use voxsoft_solid::{
-    Body, Clamp, History, HyperelasticMaterial, LatticeMaterial, Load, LoadKind, Material,
-    Membrane, MembraneMaterial, Motion, Problem,
+    Body, Clamp, History, HyperelasticMaterial, LatticeMaterial, Load, Material, Membrane,
+    MembraneMaterial, Motion, Pressure, Problem,
 };
 use voxsoft_statics::{AdjointError, Answer, LinearSolver, Settings, Status, adjoint};
 use voxsoft_voxel::{Grid, tet_mesh};
@@ -66,7 +66,7 @@ fn chambers(material: impl Into<Material>, film: bool) -> Problem {
     let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
     let loads = vec![
         Load::gravity([0.0, 0.0, -9.81]),
-        Load::constant(LoadKind::Pressure {
+        Load::constant(Pressure {
             triangles,
             voids: vec![],
             pressure: 2e3,

@@ -26,7 +26,7 @@ use std::time::Instant;
 use textbook::Textbook;
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, LoadKind, Mesh, Problem, State};
+use voxsoft_solid::{Body, Clamp, LatticeMaterial, Load, Mesh, Pressure, Problem, State};
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Relaxation, Status, relax};
 
@@ -113,7 +113,7 @@ impl Design {
         let held = at(0.0).into_iter().map(|v| v as u32).collect();
         let [edge, bulk, density] = MATERIAL;
         let body = Body::new(&mesh, &[LatticeMaterial::from_moduli(edge, bulk, density)?])?;
-        let load = Load::constant(LoadKind::Pressure {
+        let load = Load::constant(Pressure {
             triangles: pressed.clone(),
             voids: Vec::new(),
             pressure: PRESSURE,

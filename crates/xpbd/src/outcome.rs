@@ -1,23 +1,7 @@
 use std::ops::ControlFlow;
 
-use voxsoft_solid::{Breakdown, State};
-
-/// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Status {
-    /// Residual force and speed fell below the tolerance.
-    AtRest,
-    /// The end time was reached, as asked.
-    EndTime,
-    /// A trial showed that the body comes to rest slowly, see [`crate::relaxation::Trial`].
-    Slow,
-    /// Steps or time ran out before the body came to rest.
-    NotAtRest,
-    /// The step was backed off as far as allowed and the body still flew apart.
-    Diverged,
-    /// The observer asked to stop.
-    Cancelled,
-}
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Breakdown, Problem, Solution, State, Status};
 
 /// The answer of a run: the last good state and how it was reached.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +20,41 @@ pub struct Answer {
     pub substep: f64,
     /// Where and when it broke down, for [`Status::Diverged`].
     pub breakdown: Option<Breakdown>,
+}
+
+impl Answer {
+    pub(crate) fn into_solution(self) -> Solution {
+        Solution {
+            state: self.state,
+            status: self.status,
+            residual: self.residual,
+            steps: self.steps,
+            back_offs: self.back_offs,
+            breakdown: self.breakdown,
+        }
+    }
+}
+
+/// The state at rest, or at other positions in m.
+pub(crate) fn start_at(problem: &Problem, positions: Option<&[Vec3]>) -> State {
+    let mut state = State::at_rest(problem.body());
+    if let Some(positions) = positions {
+        state.positions.copy_from_slice(positions);
+    }
+    state
+}
+
+/// Shows an observer of any solver what one of this crate is shown.
+pub(crate) fn shown<'a>(
+    observer: &'a mut voxsoft_solid::Observer<'_>,
+) -> impl FnMut(&Progress<'_>) -> ControlFlow<()> + 'a {
+    |progress| {
+        observer(&voxsoft_solid::Progress {
+            steps: progress.steps,
+            positions: &progress.state.positions,
+            residual: progress.residual,
+        })
+    }
 }
 
 /// What an observer is told now and then.

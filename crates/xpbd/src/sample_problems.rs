@@ -2,7 +2,8 @@
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Floor, History, LatticeMaterial, Load, LoadKind, Mesh, Motion, Problem,
+    Body, Clamp, Floor, History, LatticeMaterial, Load, Mesh, Motion, PointForces, Pressure,
+    Problem,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -42,7 +43,7 @@ pub(crate) fn problems() -> Vec<Problem> {
     let (body, triangles) = hollow();
     let gravity = Load::gravity([0.0, 0.0, -9.81]);
     let wall = Clamp::fixed(vertices(&body, |p| p[0] < 1e-9));
-    let pressure = Load::constant(LoadKind::Pressure {
+    let pressure = Load::constant(Pressure {
         voids: vec![(body.tets()[3].vertices, 0.3)],
         triangles,
         pressure: 800.0,
@@ -59,7 +60,7 @@ pub(crate) fn problems() -> Vec<Problem> {
             history: History::constant(),
         }),
     };
-    let pull = Load::constant(LoadKind::Forces {
+    let pull = Load::constant(PointForces {
         forces: vec![[0.0, 2e-3, 0.0]; end.len()],
         vertices: end,
     });

@@ -1,23 +1,70 @@
 //! Loads, clamps and floor of a problem on the slots of its strips.
 
 use voxsoft_solid::strips::{Columns, Strips};
-use voxsoft_solid::vector::{cross, scale, sub};
-use voxsoft_solid::{Load, LoadKind, Problem};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{ExternalForce, Load, Problem, Vertices};
 
-/// A pressure on triangles of slots.
-struct SlotPressure {
+/// A load that follows the body, on the few vertices that it joins, which are gathered for it.
+struct Follower {
     /// The index of the load.
     load: usize,
-    /// Pa
-    pressure: f64,
-    triangles: Vec<[u32; 3]>,
-    voids: Vec<([u32; 4], f64)>,
+    /// The load on vertices numbered from zero.
+    kind: Box<dyn ExternalForce>,
+    /// The slots of those vertices.
+    slots: Vec<u32>,
+    rest: Vec<Vec3>,
+    masses: Vec<f64>,
+    positions: Vec<Vec3>,
+    /// All external forces on them in N.
+    forces: Vec<Vec3>,
+}
+
+impl Follower {
+    fn new(problem: &Problem, strips: &Strips, load: usize) -> Self {
+        let kind = &problem.loads()[load].kind;
+        let mut vertices = Vec::new();
+        kind.visit_pattern(&mut |piece| vertices.extend_from_slice(piece));
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |vertex: u32| match vertices.binary_search(&vertex) {
+            Ok(place) => place as u32,
+            Err(_) => unreachable!("the pattern of a load holds all of its vertices"),
+        };
+        let body = problem.body();
+        let each = || vertices.iter().map(|&vertex| vertex as usize);
+        let zeros = vec![[0.0; 3]; vertices.len()];
+        Self {
+            load,
+            kind: kind.renumbered(&place),
+            slots: each().map(|vertex| strips.slot_of()[vertex]).collect(),
+            rest: each().map(|vertex| body.rest()[vertex]).collect(),
+            masses: each().map(|vertex| body.masses()[vertex]).collect(),
+            positions: zeros.clone(),
+            forces: zeros,
+        }
+    }
+
+    fn add_forces(&mut self, factor: f64, positions: &Columns, forces: &mut Columns) {
+        for (place, &slot) in self.slots.iter().enumerate() {
+            self.positions[place] = positions.get(slot);
+            self.forces[place] = forces.get(slot);
+        }
+        let on = Vertices {
+            rest: &self.rest,
+            positions: &self.positions,
+            masses: &self.masses,
+        };
+        self.kind.add_forces(on, factor, &mut self.forces);
+        for (&slot, force) in self.slots.iter().zip(&self.forces) {
+            forces.set(slot, *force);
+        }
+    }
 }
 
 /// External forces and prescribed motions. The problem and its strips come with every call, so that a run
 /// that goes on between calls can own them beside this.
 pub(crate) struct SlotProblem {
-    pressures: Vec<SlotPressure>,
+    followers: Vec<Follower>,
     /// The forces in N that do not follow the body, at the time they were last asked for.
     dead: Columns,
     dead_vary: bool,
@@ -29,23 +76,6 @@ pub(crate) struct SlotProblem {
 
 impl SlotProblem {
     pub fn new(problem: &Problem, strips: &Strips) -> Self {
-        let slot = |&v: &u32| strips.slot_of()[v as usize];
-        let pressure = |(index, load): (usize, &Load)| match &load.kind {
-            LoadKind::Pressure {
-                triangles,
-                voids,
-                pressure,
-            } => Some(SlotPressure {
-                load: index,
-                pressure: *pressure,
-                triangles: triangles.iter().map(|t| t.each_ref().map(slot)).collect(),
-                voids: voids
-                    .iter()
-                    .map(|(t, part)| (t.each_ref().map(slot), *part))
-                    .collect(),
-            }),
-            LoadKind::Gravity(_) | LoadKind::Forces { .. } => None,
-        };
         let mut free: [Vec<u64>; 3] = std::array::from_fn(|_| vec![0; strips.slots()]);
         for (&slot, held) in strips.slot_of().iter().zip(problem.held()) {
             for (axis, held) in held.iter().enumerate() {
@@ -53,8 +83,11 @@ impl SlotProblem {
             }
         }
         let loads = problem.loads().iter().enumerate();
+        let followers = loads.filter(|(_, load)| load.kind.follows());
         let mut slots = Self {
-            pressures: loads.filter_map(pressure).collect(),
+            followers: followers
+                .map(|(load, _)| Follower::new(problem, strips, load))
+                .collect(),
             dead: Columns::zeros(strips.slots()),
             dead_vary: false,
             clamps_move: problem.clamps().iter().any(|clamp| clamp.motion.is_some()),
@@ -67,7 +100,7 @@ impl SlotProblem {
 
     /// After the histories of loads have changed.
     pub fn renew_loads(&mut self, problem: &Problem, strips: &Strips) {
-        let varies = |load: &Load| !follows(load) && !load.history.is_constant();
+        let varies = |load: &Load| !load.kind.follows() && !load.history.is_constant();
         self.dead_vary = problem.loads().iter().any(varies);
         self.renew_dead(problem, strips, f64::INFINITY);
     }
@@ -76,7 +109,7 @@ impl SlotProblem {
         let rest = problem.body().rest();
         let mut forces = vec![[0.0; 3]; rest.len()];
         let factor = |load: &Load| {
-            if follows(load) {
+            if load.kind.follows() {
                 0.0
             } else {
                 load.history.at(time)
@@ -99,25 +132,9 @@ impl SlotProblem {
             self.renew_dead(problem, strips, time);
         }
         forces.copy_from(&self.dead);
-        for load in &self.pressures {
-            let pressure = load.pressure * problem.loads()[load.load].history.at(time);
-            for triangle in &load.triangles {
-                let [a, b, c] = triangle.map(|slot| positions.get(slot));
-                let force = scale(-pressure / 6.0, cross(sub(b, a), sub(c, a)));
-                triangle
-                    .iter()
-                    .for_each(|&slot| forces.add(slot, 1.0, force));
-            }
-            for (corners, part) in &load.voids {
-                let [a, b, c, d] = corners.map(|slot| positions.get(slot));
-                let (u, v, w) = (sub(b, a), sub(c, a), sub(d, a));
-                let factor = part * pressure / 6.0;
-                let gradients = [cross(v, w), cross(w, u), cross(u, v)];
-                for (slot, gradient) in corners[1..].iter().zip(gradients) {
-                    forces.add(*slot, factor, gradient);
-                    forces.add(corners[0], -factor, gradient);
-                }
-            }
+        for follower in &mut self.followers {
+            let factor = problem.loads()[follower.load].history.at(time);
+            follower.add_forces(factor, positions, forces);
         }
     }
 
@@ -151,9 +168,4 @@ impl SlotProblem {
     pub fn forget_placed(&mut self) {
         self.placed = false;
     }
-}
-
-/// Whether a load follows the body.
-fn follows(load: &Load) -> bool {
-    matches!(load.kind, LoadKind::Pressure { .. })
 }

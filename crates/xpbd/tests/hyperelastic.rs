@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, Load, LoadKind, Mesh, Problem, State};
+use voxsoft_solid::{Body, Clamp, HyperelasticMaterial, Load, Mesh, PointForces, Problem, State};
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics, Status, simulate};
 
@@ -35,7 +35,7 @@ fn bar(material: HyperelasticMaterial, pull: f64) -> Problem {
     };
     let end = chosen(0, LENGTH);
     let forces = vec![[pull / end.len() as f64, 0.0, 0.0]; end.len()];
-    let load = Load::constant(LoadKind::Forces {
+    let load = Load::constant(PointForces {
         vertices: end,
         forces,
     });

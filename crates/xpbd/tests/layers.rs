@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use common::{GRAVITY, block, relax, simulate, tip, where_};
 use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, sub};
 use voxsoft_solid::{
-    Body, Clamp, HyperelasticMaterial, LatticeMaterial, Load, LoadKind, Material, Membrane,
-    MembraneMaterial, Mesh, Problem, State, Stepper, elastic,
+    Body, Clamp, HyperelasticMaterial, LatticeMaterial, Load, Material, Membrane, MembraneMaterial,
+    Mesh, PointForces, Problem, State, Stepper, elastic,
 };
 use voxsoft_xpbd::{Damping, Dynamics, Live, Relaxation, Status};
 
@@ -239,7 +239,7 @@ fn bar_between_sheets(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
     let line = 1000.0 * h * h + 2.0 * fabric.density * fabric.thickness * h;
     let strain = 1e-3;
     let end = where_(&mesh, |p| p[0] > length - 1e-9);
-    let pull = Load::constant(LoadKind::Forces {
+    let pull = Load::constant(PointForces {
         forces: vec![[strain * stiffness / end.len() as f64, 0.0, 0.0]; end.len()],
         vertices: end,
     });

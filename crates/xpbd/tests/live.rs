@@ -6,8 +6,8 @@ use common::{GRAVITY, beam, block, problem, simulate, where_};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::vector::{norm, sub};
 use voxsoft_solid::{
-    Body, Clamp, Filling, Floor, History, HyperelasticMaterial, LiveStatus, Load, LoadKind, Look,
-    Mesh, Model, Problem, Stepper,
+    Body, Clamp, Filling, Floor, History, HyperelasticMaterial, LiveStatus, Load, Look, Mesh,
+    Model, PointForces, Problem, Stepper,
 };
 use voxsoft_xpbd::{Damping, Dynamics, Live, Status};
 
@@ -191,10 +191,11 @@ fn loads_follow_at_once_and_get_their_histories_back() {
     let end = where_(&mesh, |p| p[0] > 29e-3);
     let ramp = History::new(vec![0.0, 0.1], vec![0.0, 2.0]).unwrap();
     let push = |force: f64, history: History| Load {
-        kind: LoadKind::Forces {
+        kind: PointForces {
             forces: vec![[0.0, force, 0.0]; end.len()],
             vertices: end.clone(),
-        },
+        }
+        .into(),
         history,
     };
     let loads = |load: Load| problem(&mesh, 30e3, 100e3, vec![clamp.clone()], vec![load], None);

@@ -3,7 +3,7 @@
 mod common;
 
 use common::{DENSITY, block, problem, simulate, where_};
-use voxsoft_solid::{Clamp, History, Load, LoadKind};
+use voxsoft_solid::{Clamp, History, Load, PointForces};
 use voxsoft_xpbd::{Damping, Dynamics, Status};
 
 #[test]
@@ -41,10 +41,11 @@ fn a_heavy_column_swings_at_its_closed_form_frequency() {
     let pull = vec![[1e-4, 0.0, 0.0]; end.len()];
     // Pulled slowly, let go at 1 s.
     let load = Load {
-        kind: LoadKind::Forces {
+        kind: PointForces {
             vertices: end.clone(),
             forces: pull,
-        },
+        }
+        .into(),
         history: History::new(vec![0.0, 0.5, 1.0, 1.001], vec![0.0, 1.0, 1.0, 0.0]).unwrap(),
     };
     let problem = problem(&mesh, edge, bulk, vec![clamp], vec![load], None);

@@ -5,7 +5,7 @@ mod common;
 use common::{beam, block, problem, relax, simulate, tip, where_};
 use voxsoft_solid::balance::{balance, total_load};
 use voxsoft_solid::vector::{norm, sub};
-use voxsoft_solid::{Clamp, Floor, History, Load, LoadKind, Motion, State};
+use voxsoft_solid::{Clamp, Floor, History, Load, Motion, Pressure, State};
 use voxsoft_xpbd::{Damping, Dynamics, Relaxation, Status};
 
 /// The issue asks for 0.1 %; the tolerance on the residual (1e-4) bounds the error of the softest
@@ -211,7 +211,7 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
         .collect();
     let clamp = Clamp::fixed(where_(&mesh, |p| p[2] < 1e-9));
     let inflate = |pressure| {
-        let load = LoadKind::Pressure {
+        let load = Pressure {
             voids: Vec::new(),
             triangles: triangles.clone(),
             pressure,

@@ -29,7 +29,7 @@ mod measure;
 use std::collections::HashMap;
 
 use crate::batches::in_order;
-use crate::elastic::FORCE_BATCH;
+use crate::terms::FORCE_BATCH;
 use crate::vector::{Vec3, axpy, norm, sub};
 use crate::{Body, Mesh, State};
 

@@ -22,7 +22,8 @@ impl Strips {
     /// The strips of a body whose vertices are nodes of one cubic lattice along the axes and which holds
     /// nothing but edge and volume constraints; `None` for any other.
     pub fn of(body: &Body) -> Option<Self> {
-        if !body.bricks().is_empty() || !body.membranes().is_empty() || body.edges().is_empty() {
+        let other = !body.bricks().is_empty() || !body.membranes().is_empty();
+        if other || body.attached().next().is_some() || body.edges().is_empty() {
             return None;
         }
         let lattice = Lattice::of(body)?;

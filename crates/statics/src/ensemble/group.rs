@@ -12,7 +12,7 @@ use super::lane::{Lane, Look};
 use super::layout::Layout;
 use super::tangent::{Advance, Forces, Tangent};
 use super::{Settled, Task};
-use crate::settings::Status;
+use voxsoft_solid::Status;
 
 struct Count;
 

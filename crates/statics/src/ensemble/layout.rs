@@ -1,7 +1,7 @@
 //! What all candidates share: the order of elimination, and where each constraint goes in the tangent.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, LoadKind, Problem};
+use voxsoft_solid::{Load, Problem};
 
 /// Marks a vertex that is held along all axes, and a block of the tangent that does not exist.
 pub(super) const NONE: u32 = u32::MAX;
@@ -94,12 +94,10 @@ impl Layout {
     /// other.
     pub fn of(problem: &Problem) -> Option<Self> {
         let body = problem.body();
-        let plain = body.bricks().is_empty() && body.membranes().is_empty();
+        let beyond = body.attached().count() + body.membranes().len();
+        let plain = body.bricks().is_empty() && beyond == 0;
         let still = problem.clamps().iter().all(|clamp| clamp.motion.is_none());
-        let dead = problem.loads().iter().all(|load| match load.kind {
-            LoadKind::Gravity(_) | LoadKind::Forces { .. } => true,
-            LoadKind::Pressure { .. } => false,
-        });
+        let dead = problem.loads().iter().all(|load| !load.kind.follows());
         if !plain || !still || !dead || problem.floor().is_some() || body.edges().is_empty() {
             return None;
         }
@@ -149,7 +147,7 @@ impl Layout {
         let (edges, tets) = (edges.collect(), tets.collect());
         let loads = |weight: bool| {
             let factor = |load: &Load| {
-                if matches!(load.kind, LoadKind::Gravity(_)) == weight {
+                if load.kind.is_weight() == weight {
                     load.history.at(f64::INFINITY)
                 } else {
                     0.0

@@ -28,9 +28,9 @@ use std::sync::atomic::AtomicUsize;
 use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
-use crate::settings::Status;
 use group::Group;
 use layout::Layout;
+use voxsoft_solid::Status;
 
 /// What sets one candidate apart from the problem that all share, as factors.
 #[derive(Debug, Clone, Copy, PartialEq)]

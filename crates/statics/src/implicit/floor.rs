@@ -17,8 +17,12 @@ impl Implicit {
             return;
         };
         for (vertex, x) in positions.iter_mut().enumerate() {
-            if !self.problem.held()[vertex][2] && (self.carried[vertex] || x[2] < floor.z) {
-                x[2] = floor.z;
+            if !self.problem.held()[vertex][2] {
+                x[2] = if self.carried[vertex] {
+                    floor.z
+                } else {
+                    floor.stop(x[2])
+                };
             }
         }
     }
@@ -56,11 +60,7 @@ impl Implicit {
             if self.problem.held()[vertex][2] {
                 continue;
             }
-            let keep = if self.carried[vertex] {
-                value.net[vertex][2] <= 0.0
-            } else {
-                x[2] < floor.z - slack
-            };
+            let keep = floor.keeps(self.carried[vertex], x[2], value.net[vertex][2], slack);
             if keep {
                 x[2] = floor.z;
             }

@@ -11,9 +11,10 @@ use std::ops::ControlFlow;
 use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
-use voxsoft_solid::{Damping, Grab, Problem, State};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Damping, Grab, Problem, Solution, Solver, State, Status};
 
-use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, shown, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 pub use live::Live;
@@ -93,6 +94,22 @@ pub fn simulate(
     let substeps = substeps_of(subject, strips.as_ref());
     let arrays = arrays_of(subject, strips);
     run(subject, start, observer, arrays, substeps)
+}
+
+impl Solver for Dynamics {
+    fn name(&self) -> &'static str {
+        "dynamics"
+    }
+
+    fn solve(
+        &self,
+        problem: &Problem,
+        start: Option<&[Vec3]>,
+        observer: &mut voxsoft_solid::Observer<'_>,
+    ) -> Solution {
+        let start = start_at(problem, start);
+        simulate(problem, start, self, &mut shown(observer)).into_solution()
+    }
 }
 
 /// What a run is about. Its arrays borrow none of it, so that a run that goes on between calls can own

@@ -141,8 +141,8 @@ impl OnStrips {
         };
         let [_, _, height] = self.positions.axes_mut();
         for (height, free) in height.iter_mut().zip(&self.slots.free[2]) {
-            if *free != 0 && *height < floor.z {
-                *height = floor.z;
+            if *free != 0 {
+                *height = floor.stop(*height);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use voxsoft_solid::balance::{Balance, balance_of_forces};
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
-use voxsoft_solid::{Body, Floor, Problem, State, elastic};
+use voxsoft_solid::{Body, Problem, State, elastic};
 
 use super::grab::{Held, add_pulls};
 use super::sheets::Sheets;
@@ -69,9 +69,8 @@ impl OnVertices {
     }
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
-    /// Hyperelastic voxels and membranes are forces only: a substep of one over the highest frequency
-    /// integrates voxels as it stands (symplectic Euler), [`Sheets`] see to membranes, and there is
-    /// nothing to project.
+    /// All else is forces only: a substep of one over the highest frequency integrates voxels and attached
+    /// terms as it stands (symplectic Euler), [`Sheets`] see to membranes, and there is nothing to project.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -97,8 +96,8 @@ impl OnVertices {
         }
         self.viscosity
             .add_forces(body, &self.start, h, &mut self.forces);
-        for membrane in body.membranes() {
-            membrane.add_forces(&self.start, &mut self.forces);
+        for term in body.terms_beyond_voxels() {
+            term.add_forces(&self.start, &mut self.forces);
         }
         self.update_damping(subject);
         let kept = libm::exp(-self.damping_rate * h);
@@ -228,12 +227,12 @@ impl OnVertices {
     }
 
     fn lift_to_floor(&mut self, problem: &Problem) {
-        let Some(Floor { z }) = problem.floor() else {
+        let Some(floor) = problem.floor() else {
             return;
         };
         for (position, held) in self.state.positions.iter_mut().zip(problem.held()) {
-            if !held[2] && position[2] < z {
-                position[2] = z;
+            if !held[2] {
+                position[2] = floor.stop(position[2]);
             }
         }
     }

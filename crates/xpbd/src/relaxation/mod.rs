@@ -8,9 +8,10 @@ use std::ops::ControlFlow;
 use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
-use voxsoft_solid::{Problem, State, elastic};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Problem, Solution, Solver, State, Status, elastic};
 
-use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, Status};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, shown, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 /// Settings of [`relax`].
@@ -75,6 +76,22 @@ pub fn relax(
             let arrays = on_vertices::OnVertices::new(problem);
             run(problem, start, settings, observer, arrays, None)
         }
+    }
+}
+
+impl Solver for Relaxation {
+    fn name(&self) -> &'static str {
+        "relaxation"
+    }
+
+    fn solve(
+        &self,
+        problem: &Problem,
+        start: Option<&[Vec3]>,
+        observer: &mut voxsoft_solid::Observer<'_>,
+    ) -> Solution {
+        let start = start_at(problem, start);
+        relax(problem, start, self, &mut shown(observer)).into_solution()
     }
 }
 

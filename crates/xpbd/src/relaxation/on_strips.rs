@@ -48,7 +48,7 @@ impl<'a> OnStrips<'a> {
         let height = self.positions.axes()[2];
         let [_, _, force] = self.forces.axes_mut();
         for (force, height) in force.iter_mut().zip(height) {
-            if *height <= floor.z && *force < 0.0 {
+            if floor.carries(*height, *force) {
                 *force = 0.0;
             }
         }
@@ -76,8 +76,9 @@ impl<'a> OnStrips<'a> {
         let height = self.positions.axes_mut()[2].iter_mut();
         let rise = self.velocities.axes_mut()[2].iter_mut();
         for ((height, rise), free) in height.zip(rise).zip(&self.slots.free[2]) {
-            if *height < floor.z && *free != 0 {
-                *height = floor.z;
+            let stopped = floor.stop(*height);
+            if *free != 0 && stopped != *height {
+                *height = stopped;
                 *rise = 0.0;
             }
         }

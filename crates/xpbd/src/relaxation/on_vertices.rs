@@ -115,11 +115,14 @@ fn advance(
             state.positions[vertex][axis] += *velocity;
         }
         if let Some(floor) = problem.floor()
-            && state.positions[vertex][2] < floor.z
             && !problem.held()[vertex][2]
         {
-            state.positions[vertex][2] = floor.z;
-            state.velocities[vertex][2] = 0.0;
+            let height = &mut state.positions[vertex][2];
+            let stopped = floor.stop(*height);
+            if stopped != *height {
+                *height = stopped;
+                state.velocities[vertex][2] = 0.0;
+            }
         }
     }
 }

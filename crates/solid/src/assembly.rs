@@ -1,0 +1,52 @@
+//! Element matrices on their way into a matrix, and what can be done with them on the way.
+
+use crate::ProblemError;
+use crate::vector::Vec3;
+
+/// Takes element matrices one by one: the vertices of an element, and its dense row-major matrix with rows
+/// and columns `3 place + axis`.
+pub type Visitor<'a> = &'a mut dyn FnMut(&[u32], &[f64]);
+
+/// Adds the product of one element matrix with `direction`.
+pub(crate) fn add_product(
+    vertices: &[u32],
+    matrix: &[f64],
+    direction: &[Vec3],
+    product: &mut [Vec3],
+) {
+    for (row, entries) in matrix.chunks(3 * vertices.len()).enumerate() {
+        let mut sum = 0.0;
+        for (column, k) in entries.iter().enumerate() {
+            sum += k * direction[vertices[column / 3] as usize][column % 3];
+        }
+        product[vertices[row / 3] as usize][row % 3] += sum;
+    }
+}
+
+/// Adds, for each vertex of one element matrix, the largest of its three row sums of absolute values.
+pub(crate) fn add_row_sums(vertices: &[u32], matrix: &[f64], sums: &mut [f64]) {
+    let size = 3 * vertices.len();
+    for (place, vertex) in vertices.iter().enumerate() {
+        let rows = matrix[3 * place * size..].chunks(size).take(3);
+        let largest = rows
+            .map(|row| row.iter().map(|k| k.abs()).sum())
+            .fold(0.0, f64::max);
+        sums[*vertex as usize] += largest;
+    }
+}
+
+/// Refuses indices of vertices that do not exist.
+pub(crate) fn check_indices(
+    what: &'static str,
+    vertices: &[u32],
+    count: usize,
+) -> Result<(), ProblemError> {
+    match vertices.iter().find(|&&vertex| vertex as usize >= count) {
+        Some(&index) => Err(ProblemError::Index {
+            what,
+            index: index as usize,
+            count,
+        }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,145 @@
+//! External loads: each kind is a file here, a variant of [`LoadKind`], and nothing else in the core.
+
+mod gravity;
+mod point_forces;
+mod pressure;
+
+use std::fmt::Debug;
+
+use crate::assembly::Visitor;
+use crate::vector::Vec3;
+use crate::{History, ProblemError};
+
+pub use gravity::Gravity;
+pub use point_forces::PointForces;
+pub use pressure::{Pressure, enclosed_volume};
+
+/// The vertices that a load acts on: where they were at rest, where they are now, and what they weigh.
+#[derive(Debug, Clone, Copy)]
+pub struct Vertices<'a> {
+    /// Positions at rest in m.
+    pub rest: &'a [Vec3],
+    /// Positions in m.
+    pub positions: &'a [Vec3],
+    /// Lumped masses in kg.
+    pub masses: &'a [f64],
+}
+
+/// What a kind of load does to the vertices, at a factor of one if none is given.
+///
+/// [`crate::conformance::check_load`] holds every kind to what is promised here.
+pub trait ExternalForce: Debug + Send + Sync {
+    /// Checks numbers and indices against the number of vertices.
+    fn check(&self, vertices: usize) -> Result<(), ProblemError>;
+
+    /// Adds `factor` times the forces in N.
+    fn add_forces(&self, on: Vertices<'_>, factor: f64, forces: &mut [Vec3]);
+
+    /// Minus the potential in J: its derivative by positions is the force, if the load is conservative.
+    /// Dead loads have done no work on a body at rest.
+    fn work(&self, on: Vertices<'_>) -> f64;
+
+    /// Whether the forces depend on where the body is. Those of a dead load do not.
+    fn follows(&self) -> bool {
+        false
+    }
+
+    /// Whether the forces have a potential, so that their derivative is symmetric.
+    fn is_conservative(&self) -> bool {
+        true
+    }
+
+    /// Whether it is proportional to the masses.
+    fn is_weight(&self) -> bool {
+        false
+    }
+
+    /// Whether its work is a pressure times a volume, which volume control prescribes instead.
+    fn is_pressure(&self) -> bool {
+        false
+    }
+
+    /// Hands `factor` times minus the derivative of the forces by positions (N/m) to `visit`, piece by
+    /// piece as [`crate::Term::visit_stiffness`] does.
+    fn visit_stiffness(&self, _positions: &[Vec3], _factor: f64, _visit: Visitor<'_>) {}
+
+    /// Hands over the vertices of every piece of that derivative.
+    fn visit_pattern(&self, _visit: &mut dyn FnMut(&[u32])) {}
+
+    /// The same load on vertices with other numbers.
+    fn renumbered(&self, number: &dyn Fn(u32) -> u32) -> Box<dyn ExternalForce>;
+}
+
+/// The kinds of loads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadKind {
+    /// An acceleration of all mass.
+    Gravity(Gravity),
+    /// A pressure on a surface.
+    Pressure(Pressure),
+    /// Forces on vertices.
+    Forces(PointForces),
+}
+
+impl std::ops::Deref for LoadKind {
+    type Target = dyn ExternalForce;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Gravity(gravity) => gravity,
+            Self::Pressure(pressure) => pressure,
+            Self::Forces(forces) => forces,
+        }
+    }
+}
+
+impl From<Gravity> for LoadKind {
+    fn from(gravity: Gravity) -> Self {
+        Self::Gravity(gravity)
+    }
+}
+
+impl From<Pressure> for LoadKind {
+    fn from(pressure: Pressure) -> Self {
+        Self::Pressure(pressure)
+    }
+}
+
+impl From<PointForces> for LoadKind {
+    fn from(forces: PointForces) -> Self {
+        Self::Forces(forces)
+    }
+}
+
+/// A load with its history.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// What it does.
+    pub kind: LoadKind,
+    /// The factor over time.
+    pub history: History,
+}
+
+impl Load {
+    /// A constant gravity in m/s².
+    pub fn gravity(acceleration: Vec3) -> Self {
+        Self::constant(Gravity { acceleration })
+    }
+
+    /// A load that does not vary with time.
+    pub fn constant(kind: impl Into<LoadKind>) -> Self {
+        Self {
+            kind: kind.into(),
+            history: History::constant(),
+        }
+    }
+}
+
+/// Refuses numbers that are not finite.
+fn check_finite(values: &[f64]) -> Result<(), ProblemError> {
+    if values.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(ProblemError::NotFinite { what: "a load" })
+    }
+}

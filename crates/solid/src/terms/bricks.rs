@@ -1,0 +1,148 @@
+use super::{Strain, Term};
+use crate::assembly::Visitor;
+use crate::batches::in_order;
+use crate::brick::{Brick, BrickStrain, Tangent, Within};
+use crate::hyperelastic::HyperelasticMaterial;
+use crate::vector::Vec3;
+
+/// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
+pub(crate) const FORCE_BATCH: usize = 8192;
+const STIFFNESS_BATCH: usize = 256;
+
+/// All hyperelastic voxels of a body.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Bricks {
+    /// Voxels of one color after the other.
+    pub bricks: Vec<Brick>,
+    /// What the numbers of their materials stand for.
+    pub materials: Vec<HyperelasticMaterial>,
+}
+
+impl Bricks {
+    /// The material of a voxel.
+    pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
+        &self.materials[brick.material as usize]
+    }
+
+    /// The response within a step: the elastic energy and the potential of the forces in J; adds the forces
+    /// in N and sets the `pressures` in Pa.
+    pub fn respond(
+        &self,
+        positions: &[Vec3],
+        within: &[Within],
+        forces: &mut [Vec3],
+        pressures: &mut [f64],
+    ) -> (f64, f64) {
+        let (mut elastic, mut potential) = (0.0, 0.0);
+        self.each(
+            FORCE_BATCH,
+            |i, brick| brick.respond(self.material_of(brick), positions, &within[i]),
+            |i, brick, response| {
+                elastic += response.elastic;
+                potential += response.potential;
+                pressures[i] = response.pressure;
+                brick.add_to(&response.forces, forces);
+            },
+        );
+        (elastic, potential)
+    }
+
+    /// The tangent of that response.
+    pub fn visit_tangent_within(
+        &self,
+        positions: &[Vec3],
+        within: &[Within],
+        tangent: Tangent,
+        visit: Visitor<'_>,
+    ) {
+        self.each(
+            STIFFNESS_BATCH,
+            |i, brick| {
+                let material = self.material_of(brick);
+                brick.stiffness_within(material, positions, None, &within[i], tangent)
+            },
+            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
+        );
+    }
+
+    /// Works on voxels on all threads and takes the results in their order.
+    fn each<U: Send>(
+        &self,
+        batch: usize,
+        work: impl Fn(usize, &Brick) -> U + Sync,
+        mut take: impl FnMut(usize, &Brick, U),
+    ) {
+        let bricks = &self.bricks;
+        in_order(
+            bricks.len(),
+            batch,
+            |i| work(i, &bricks[i]),
+            |i, result| take(i, &bricks[i], result),
+        );
+    }
+}
+
+impl Term for Bricks {
+    fn name(&self) -> &'static str {
+        "hyperelastic voxels"
+    }
+
+    fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.bricks.iter().for_each(|brick| visit(&brick.vertices));
+    }
+
+    fn energy(&self, positions: &[Vec3]) -> f64 {
+        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
+        self.bricks.iter().map(energy).sum()
+    }
+
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.each(
+            FORCE_BATCH,
+            |_, brick| brick.forces(self.material_of(brick), positions),
+            |_, brick, corners| brick.add_to(&corners, forces),
+        );
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        self.each(
+            STIFFNESS_BATCH,
+            |_, brick| brick.stiffness(self.material_of(brick), positions, None),
+            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
+        );
+    }
+
+    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+        let strain = |brick: &Brick| brick.predict_strain(positions, moves);
+        Some(Box::new(Predicted {
+            block: self,
+            strains: self.bricks.iter().map(strain).collect(),
+        }))
+    }
+}
+
+/// Predicted strains.
+struct Predicted<'a> {
+    block: &'a Bricks,
+    strains: Vec<BrickStrain>,
+}
+
+impl Strain for Predicted<'_> {
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        let Self { block, strains } = self;
+        block.each(
+            FORCE_BATCH,
+            |i, brick| brick.predicted_forces(block.material_of(brick), &strains[i], positions),
+            |_, brick, corners| brick.add_to(&corners, forces),
+        );
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        let Self { block, strains } = self;
+        block.each(
+            STIFFNESS_BATCH,
+            |i, brick| brick.stiffness(block.material_of(brick), positions, Some(&strains[i])),
+            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
+        );
+    }
+}

@@ -1,0 +1,80 @@
+//! Blocks of like elements, each with an energy.
+//!
+//! A [`crate::Body`] is a list of such terms: those that its mesh brings (edges, tetrahedra, voxels,
+//! membranes), and any that are attached to it ([`crate::Body::attach`]). Solvers know a term by this
+//! trait, so a new kind of element is one file that implements it; dispatch is per block, never per element.
+//! What a solver has a quicker form of, it asks the body for by name: strips of edges and tetrahedra,
+//! multigrid on voxels, the inertia of membranes.
+
+mod bricks;
+mod edges;
+mod membranes;
+mod tets;
+
+use std::fmt::Debug;
+
+use crate::assembly::{Visitor, add_product, add_row_sums};
+use crate::brick::Tangent;
+use crate::vector::Vec3;
+
+pub use bricks::Bricks;
+pub(crate) use bricks::FORCE_BATCH;
+pub use edges::{Edge, Edges};
+pub use membranes::Membranes;
+pub(crate) use tets::volume_hessian;
+pub use tets::{Tet, Tets};
+
+/// A block of like elements.
+///
+/// [`crate::conformance::check_term`] holds every term to what is promised here.
+pub trait Term: Debug + Send + Sync {
+    /// What its elements are called.
+    fn name(&self) -> &'static str;
+
+    /// Hands over the vertices of every element: its stiffness joins no others.
+    fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32]));
+
+    /// The energy in J.
+    fn energy(&self, positions: &[Vec3]) -> f64;
+
+    /// Adds the forces in N, minus the gradient of the energy.
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]);
+
+    /// Hands the stiffness in N/m, the Hessian of the energy, to `visit`, an element at a time.
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+
+    /// The same with or without the stress that is there, which may make it indefinite.
+    fn visit_tangent(&self, positions: &[Vec3], _tangent: Tangent, visit: Visitor<'_>) {
+        self.visit_stiffness(positions, visit);
+    }
+
+    /// Adds for every vertex a bound in N/m on the row sum of the stiffness where the term is as stiff as it
+    /// gets near `positions`.
+    fn add_row_sums(&self, positions: &[Vec3], sums: &mut [f64]) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            add_row_sums(vertices, matrix, sums);
+        });
+    }
+
+    /// Adds the product with `direction` of the stiffness that the material has at `positions`.
+    fn add_product(&self, positions: &[Vec3], direction: &[Vec3], product: &mut [Vec3]) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            add_product(vertices, matrix, direction, product);
+        });
+    }
+
+    /// The strains that a step `moves` from `positions` leads to, to first order, as [`crate::mixed`] carries
+    /// them along; `None` for a term that is taken as it is where the step ends.
+    fn predict<'a>(&'a self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+        None
+    }
+}
+
+/// The strains of all elements of a term, unknowns of their own ([`crate::mixed`]).
+pub trait Strain {
+    /// Adds the forces at `positions` of the stress that these strains predict, in N.
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]);
+
+    /// Hands over the tangent at `positions` with the stress of these strains.
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+}

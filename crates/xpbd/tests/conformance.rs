@@ -1,0 +1,66 @@
+//! Relaxation, dynamics and live runs keep the laws of solvers and steppers.
+
+mod common;
+
+use common::{GRAVITY, beam, block, problem, where_};
+use voxsoft_solid::conformance::{check_solver, check_stepper};
+use voxsoft_solid::{Body, Clamp, Floor, HyperelasticMaterial, Load, Problem, Stepper};
+use voxsoft_xpbd::{Dynamics, Live, Relaxation};
+
+fn rubber() -> Problem {
+    let mesh = block([6, 2, 2], 5e-3);
+    let rubber = HyperelasticMaterial::neo_hookean(60e3, 0.4, 1070.0).unwrap();
+    let body = Body::new(&mesh, &[rubber]).unwrap();
+    let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
+    Problem::new(body, vec![clamp], vec![Load::gravity(GRAVITY)], None).unwrap()
+}
+
+/// A block that lies on a floor.
+fn lying() -> Problem {
+    let mesh = block([4, 4, 3], 5e-3);
+    let mut clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
+    clamp.axes = [true, true, false];
+    let floor = Some(Floor { z: 0.0 });
+    problem(
+        &mesh,
+        60e3,
+        400e3,
+        vec![clamp],
+        vec![Load::gravity(GRAVITY)],
+        floor,
+    )
+}
+
+#[test]
+fn relaxation_keeps_the_laws_of_a_solver() {
+    let settings = Relaxation::default();
+    for problem in [beam(60e3, 400e3), lying(), rubber()] {
+        check_solver(&settings, &problem, settings.tolerance).unwrap();
+    }
+}
+
+#[test]
+fn dynamics_keeps_the_laws_of_a_solver() {
+    let settings = Dynamics::default();
+    for problem in [beam(60e3, 400e3), lying(), rubber()] {
+        check_solver(&settings, &problem, settings.tolerance).unwrap();
+    }
+}
+
+#[test]
+fn live_runs_keep_the_laws_of_a_stepper() {
+    // Bodies with voxels of rubber take the plain loops anyway.
+    for (problem, deterministic) in [
+        (beam(60e3, 400e3), false),
+        (beam(60e3, 400e3), true),
+        (rubber(), false),
+    ] {
+        let settings = Dynamics {
+            deterministic,
+            ..Dynamics::default()
+        };
+        let make =
+            || -> Box<dyn Stepper> { Box::new(Live::new(problem.clone(), settings.clone())) };
+        check_stepper(&make, settings.tolerance).unwrap();
+    }
+}
