@@ -16,7 +16,7 @@ BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 RUST := $(shell sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
-.PHONY: help install demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
+.PHONY: help install page demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
 
 help:
 	@echo "make demo         set up, run the paper's 105-design study, show table and figure"
@@ -26,11 +26,11 @@ help:
 	@echo "make lint         formatters, linters, types, layers"
 	@echo "make bench        benchmarks"
 	@echo "make docs         the documentation as web pages in target/docs"
-	@echo "make studio       check, test and build the studio's page (needs Node 20.19 or newer; its built form is in the repository)"
-	@echo "make wasm         build the core for the browser (needs rustup target add wasm32-unknown-unknown; its built form is in the repository)"
+	@echo "make studio       check, test and build the studio's page (needs Node 20.19 or newer; users need none)"
+	@echo "make wasm         build the core for the browser, and the page with it (needs rustup target add wasm32-unknown-unknown)"
 	@echo "make install      only the environment: .venv/bin/voxsoft"
 
-install: $(STAMP)
+install: $(STAMP) page
 
 $(VENV)/bin/python:
 	@command -v $(PYTHON) >/dev/null || { echo "VoxSoft needs Python 3.11 or newer, and there is no '$(PYTHON)'. Install it from https://www.python.org, or name it: make install PYTHON=python3.12" >&2; exit 1; }
@@ -44,6 +44,10 @@ $(STAMP): $(VENV)/bin/python pyproject.toml Cargo.toml Cargo.lock $(RUST_SOURCES
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --upgrade "pip>=25.1" "maturin>=1.9,<2"
 	VIRTUAL_ENV=$(abspath $(VENV)) $(BIN)/maturin develop --release
 	@touch $@
+
+# The studio's page is one archive in the repository; it is built anew only where its sources changed and Node is there.
+page: | $(VENV)/bin/python
+	@$(BIN)/python studio/archive.py check
 
 demo: install
 	$(BIN)/voxsoft sweep examples/cylinder.toml --out runs/demo --confirm 3
@@ -61,7 +65,7 @@ test-browser: install
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal -m "browser and not slow" tests/studio/browser
 
 # The page's own units; users need no Node, and neither does anyone who leaves the page alone.
-test-studio:
+test-studio: page
 	@if ! command -v npm >/dev/null; then echo "The tests of the studio's page in TypeScript are skipped: there is no Node here."; \
 	elif ! (cd studio && { [ node_modules/.package-lock.json -nt package-lock.json ] || npm ci --silent; }); then echo "The tests of the studio's page in TypeScript are skipped: npm could not fetch what they need."; \
 	else cd studio && NO_COLOR=1 npm test --silent; fi
@@ -93,15 +97,16 @@ docs: install
 	$(BIN)/mkdocs build --strict
 
 studio:
-	@command -v npm >/dev/null || { echo "Building the studio's page needs Node 20.19 or newer. Users do not: the built page is part of the package." >&2; exit 1; }
-	cd studio && npm ci && npm run check && npm test && npm run build
+	$(PYTHON) studio/archive.py build
+	cd studio && npm run check && npm test
 
-# The page takes it up with the next `make studio`.
 wasm:
 	cargo build --quiet --profile wasm --target wasm32-unknown-unknown -p voxsoft-wasm
+	@mkdir -p studio/public
 	cp target/wasm32-unknown-unknown/wasm/voxsoft_wasm.wasm studio/public/voxsoft.wasm
 	@chmod 644 studio/public/voxsoft.wasm
 	@echo "studio/public/voxsoft.wasm: $$(wc -c < studio/public/voxsoft.wasm) bytes, $$(gzip -9c studio/public/voxsoft.wasm | wc -c) compressed"
+	$(PYTHON) studio/archive.py build
 
 clean:
 	rm -rf $(VENV) target runs dist

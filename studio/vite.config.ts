@@ -1,7 +1,6 @@
 import { fileURLToPath } from "node:url";
 import react from "@vitejs/plugin-react";
 import { defineConfig, type Plugin } from "vite";
-import { bundleSource } from "./bundle-source.ts";
 
 const root = fileURLToPath(new URL(".", import.meta.url));
 const server = process.env.VOXSOFT_STUDIO ?? "http://127.0.0.1:8765";
@@ -25,9 +24,10 @@ function plotsInMemory(): Plugin {
 
 export default defineConfig({
   root,
-  plugins: [react(), plotsInMemory(), bundleSource(root)],
+  plugins: [react(), plotsInMemory()],
   build: {
-    outDir: "../python/voxsoft/studio/static",
+    // archive.py packs it from there.
+    outDir: "../target/page",
     emptyOutDir: true,
     target: "es2022",
     modulePreload: { polyfill: false },
@@ -37,7 +37,7 @@ export default defineConfig({
     chunkSizeWarningLimit: 900,
     rolldownOptions: {
       output: {
-        // Names without hashes keep the committed bundle's history readable.
+        // Names without hashes keep what changes in the archive small.
         entryFileNames: "assets/[name].js",
         chunkFileNames: "assets/[name].js",
         assetFileNames: "assets/[name][extname]",

@@ -1,4 +1,4 @@
-// Builds static/viewer.html: one file with page, worker and core, which the server fills with a
+// Builds viewer.html: one file with page, worker and core, which the server fills with a
 // packed scene. Runs after the main build, into the same folder.
 import { existsSync, readFileSync, rmSync } from "node:fs";
 import { join } from "node:path";
@@ -8,7 +8,7 @@ import { defineConfig, type Plugin } from "vite";
 
 const root = fileURLToPath(new URL(".", import.meta.url));
 const core = join(root, "public/voxsoft.wasm");
-const outDir = join(root, "../python/voxsoft/studio/static");
+const outDir = join(root, "../target/page");
 
 function inlineCore(): Plugin {
   const name = "virtual:voxsoft-core";

@@ -115,7 +115,7 @@ def test_the_command_writes_a_page_of_a_file_and_of_a_run(tmp_path, monkeypatch)
 
 
 def test_a_missing_viewer_is_said(monkeypatch, tmp_path):
-    monkeypatch.setattr("voxsoft.studio.html.TEMPLATE", tmp_path / "viewer.html")
+    monkeypatch.setattr("voxsoft.studio.page.ARCHIVE", tmp_path / "page.zip")
     with pytest.raises(FileError, match="make studio"):
         families.beam().show()
 

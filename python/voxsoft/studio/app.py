@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
+import zlib
 from collections.abc import AsyncIterator
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
+from mimetypes import guess_type
 from typing import Any, Final
 
 from starlette.applications import Starlette
@@ -18,6 +19,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.studio import commands, events
+from voxsoft.studio.page import page_file
 from voxsoft.studio.protocol import ProtocolError, decode, encode
 from voxsoft.studio.security import Guard, cookie_name
 from voxsoft.studio.session import Session
@@ -25,7 +27,6 @@ from voxsoft.studio.tab import Tab
 from voxsoft.studio.uploads import safe_name
 from voxsoft.studio.wire import LARGEST_UPLOAD, PROTOCOL, CloseCode
 
-STATIC: Final = Path(__file__).with_name("static")
 #: Seconds in which a tab must say hello.
 HELLO_WITHIN: Final = 20.0
 #: Wrong messages in a row after which a tab is cut off.
@@ -38,7 +39,7 @@ LONGEST_REASON: Final = 120
 LOOK_AGAIN: Final = 0.2
 
 _NO_PAGE: Final = """<!doctype html><meta charset="utf-8"><title>VoxSoft studio</title>
-<p>The server runs, but the page was not built: run <code>make studio</code> in the sources,
+<p>The server runs, but there is no page: run <code>make studio</code> in the sources,
 or install VoxSoft from a wheel.</p>"""
 
 
@@ -94,9 +95,8 @@ class _Pages:
         self._stills.shutdown(wait=False, cancel_futures=True)
 
     async def index(self, request: Request) -> Response:
-        page = STATIC / "index.html"
-        text = page.read_text(encoding="utf-8") if page.is_file() else _NO_PAGE
-        response = HTMLResponse(text, headers={"cache-control": "no-store"})
+        page = page_file("index.html")
+        response = HTMLResponse(page or _NO_PAGE, headers={"cache-control": "no-store"})
         if token := request.query_params.get("token"):
             response.set_cookie(
                 cookie_name(self._port), token, httponly=True, samesite="strict", path="/"
@@ -104,10 +104,10 @@ class _Pages:
         return response
 
     async def asset(self, request: Request) -> Response:
-        return _static(Path("assets") / request.path_params["path"])
+        return _from_page(f"assets/{request.path_params['path']}", request)
 
     async def file(self, request: Request) -> Response:
-        return _static(Path(request.path_params["name"]))
+        return _from_page(request.path_params["name"], request)
 
     async def download(self, request: Request) -> Response:
         found = self._session.download(request.path_params["id"])
@@ -281,16 +281,15 @@ async def _receive(socket: WebSocket) -> str | bytes:
     return text if text is not None else message.get("bytes") or b""
 
 
-def _static(inner: Path) -> Response:
-    try:
-        path = (STATIC / inner).resolve()
-        is_ours = path.is_relative_to(STATIC.resolve()) and path.is_file()
-    except (OSError, ValueError):  # a name that no file can have: too long, or with a NUL
-        is_ours = False
-    if not is_ours:
-        return _problem(404, str(inner)[:80], "there is no such file")
+def _from_page(name: str, request: Request) -> Response:
+    content = page_file(name)
+    if content is None:
+        return _problem(404, name[:80], "there is no such file")
     # The browser asks each time whether a file changed: another version keeps its names.
-    return FileResponse(path, headers={"cache-control": "no-cache"})
+    headers = {"cache-control": "no-cache", "etag": f'"{zlib.crc32(content):08x}"'}
+    if request.headers.get("if-none-match") == headers["etag"]:
+        return Response(status_code=304, headers=headers)
+    return Response(content, headers=headers, media_type=guess_type(name)[0])
 
 
 def _problem(status: int, where: str, what: str, hint: str = "") -> JSONResponse:

@@ -24,9 +24,10 @@ from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
 from voxsoft.studio.mover import TOLERANCE, inner_loads
 from voxsoft.studio.overlap_event import overlap_of
+from voxsoft.studio.page import page_file
 
 #: The page without a scene, built with the studio's page.
-TEMPLATE: Final = Path(__file__).with_name("static") / "viewer.html"
+TEMPLATE: Final = "viewer.html"
 
 _PLACE: Final = '<script id="voxsoft-scene" type="application/octet-stream;base64">'
 _TITLE: Final = "<title>VoxSoft</title>"
@@ -199,11 +200,12 @@ def _packed(positions: NDArray[np.float64]) -> str:
 
 
 def _filled(scene: bytes, name: str) -> str:
-    if not TEMPLATE.is_file():
+    content = page_file(TEMPLATE)
+    if content is None:
         raise FileError("studio", "the viewer was not built", "run `make studio` in the sources")
-    template = TEMPLATE.read_text(encoding="utf-8")
+    template = content.decode()
     if template.count(_PLACE) != 1:
-        raise FileError(TEMPLATE.name, "has no place for a scene", "run `make studio` again")
+        raise FileError(TEMPLATE, "has no place for a scene", "run `make studio` again")
     packed = base64.b64encode(scene).decode("ascii")
     titled = template.replace(_TITLE, f"<title>{html.escape(name)} · VoxSoft</title>", 1)
     return titled.replace(_PLACE, _PLACE + packed, 1)

@@ -1,1 +1,0 @@
-function e(e,t){return e.name||`cavity ${t}`}function t(e,t,n){let r=[...t.entries()].filter(([,e])=>!e.name).map(([e])=>String(e)),i=[{value:`all`,label:`all`},...e.map(e=>({value:e,label:e})),...r.map(e=>({value:e,label:`cavity ${e}`}))];return i.some(e=>e.value===n)?i:[...i,{value:n,label:/^\d+$/.test(n)?`cavity ${n}`:n}]}export{t as n,e as t};

@@ -1,1 +1,0 @@
-import{i as e}from"./studio.js";async function t(t,n){try{await navigator.clipboard.writeText(t),e({level:`good`,what:`Copied ${n}`,hint:``})}catch{e({level:`error`,what:`The browser does not let this page copy`,hint:`Allow it to use the clipboard, then try again.`})}}export{t};

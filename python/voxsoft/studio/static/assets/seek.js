@@ -1,1 +1,0 @@
-import{a as e}from"./session.js";import{a as t}from"./studio.js";function n(n){let{stat:r}=t.getState();!r||r.last_frame<=r.first_frame||e({t:`seek`,time:n})}export{n as t};

@@ -1,1 +1,0 @@
-function e(e,t,n){if(!(t>e)||!Number.isFinite(t-e))return[e];let r=(t-e)/Math.max(1,n),i=10**Math.floor(Math.log10(r)),a=[1,2,5,10].map(e=>e*i).find(e=>e>=r*.999)??r,o=Math.ceil(e/a-1e-9),s=Math.floor(t/a+1e-9),c=[];for(let e=o;e<=s;e++)c.push(Number((e*a).toPrecision(12)));return c}function t([e,t],n=.06){let r=(t-e)*n;return[e-r,t+r]}export{e as n,t};

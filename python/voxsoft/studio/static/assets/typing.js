@@ -1,1 +1,0 @@
-import{a as e}from"./studio.js";var t=null;function n(e){return t=e,()=>{t===e&&(t=null)}}function r(){t?.flush()}function i(){return t?.text()??e.getState().document?.text??``}function a(){let e=globalThis.document?.activeElement;e?.matches(`input`)&&e.blur(),r()}export{i,r as n,n as r,a as t};
