@@ -1,7 +1,7 @@
 """Strips, a plate and a block of the voxels that are solved: bending, and where they are stable.
 
 ``python benchmarks/bending.py [--json]``. The cases are those by which the element was chosen
-(`benchmarks/elements.py`, docs/method/elements.md), here with the element of the package: strips
+(`research/elements.py`, docs/method/elements.md), here with the element of the package: strips
 100 mm long and 10 mm thick against Timoshenko's beam, a clamped plate of 200 x 200 x 5 mm against
 Kirchhoff's, and a block with sliding ends that is squeezed and drawn until it is not stable. No
 corner is singular in the strips: their roots are planes of symmetry.

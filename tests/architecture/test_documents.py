@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PATH = re.compile(r"`((?:crates|python|tests|docs|examples|benchmarks)/[\w./-]+)`")
+PATH = re.compile(r"`((?:crates|python|tests|docs|examples|benchmarks|research)/[\w./-]+)`")
 
 
 def named_paths():

@@ -54,7 +54,7 @@ export function evaluate(formula: string, parameters: Amounts = NO_PARAMETERS): 
 }
 
 /** Whether a text speaks of a parameter, so that it is a formula even without its `=`. */
-export function namesParameter(text: string, parameters: Amounts): boolean {
+function namesParameter(text: string, parameters: Amounts): boolean {
   return (text.match(/[A-Za-z_]\w*/g) ?? []).some((name) => Object.hasOwn(parameters, name));
 }
 

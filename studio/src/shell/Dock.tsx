@@ -53,13 +53,6 @@ export function forgetLayouts(): void {
   for (const mode of MODES) keepAs(keyOf(mode), {});
 }
 
-export function maximizePane(id: string): void {
-  const panel = dock?.getPanel(id);
-  if (!panel) return;
-  if (panel.api.isMaximized()) panel.api.exitMaximized();
-  else panel.api.maximize();
-}
-
 let filling = false;
 
 function fill(api: DockviewApi, mode: Mode): void {

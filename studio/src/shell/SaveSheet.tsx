@@ -6,7 +6,7 @@ import { useStudio } from "../store/studio";
 import { openNow } from "./actions";
 
 /** The name of a file, with the ending that design files have, once. */
-export function fileName(typed: string): string {
+function fileName(typed: string): string {
   const name = typed.trim();
   return /\.toml$/i.test(name) ? name : `${name}.toml`;
 }

@@ -65,7 +65,7 @@ export function stepFrames(count: number): void {
 }
 
 /** Show time slower by a step of 1, or faster by one of −1. */
-export function changePace(steps: number): void {
+function changePace(steps: number): void {
   const stat = useStudio.getState().stat;
   if (!stat) return;
   const pace = nextPace(stat.pace, steps);
@@ -271,7 +271,7 @@ export function openNow(draft: Pending): void {
 }
 
 /** The name of a key press as actions spell it, such as "Ctrl+Shift+Z". */
-export function keyName(
+function keyName(
   event: Pick<KeyboardEvent, "key" | "code" | "ctrlKey" | "metaKey" | "altKey" | "shiftKey">,
 ): string {
   const digit = event.altKey && /^Digit\d$/.test(event.code) ? event.code.slice(5) : null;
@@ -292,7 +292,7 @@ export function keyName(
 let clicked: Element | null = null;
 
 /** Whether a key belongs to the element that has the focus, and not to the page. */
-export function ownsKey(target: EventTarget | null, key: string): boolean {
+function ownsKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (target.isContentEditable || target.closest(".cm-editor")) return true;
   if (target instanceof HTMLButtonElement) {

@@ -15,7 +15,7 @@ export interface Layout {
   readonly leftShare: number;
 }
 
-export const LAYOUTS: Readonly<Record<Mode, Layout>> = {
+const LAYOUTS: Readonly<Record<Mode, Layout>> = {
   design: {
     left: [["design"], ["text"]],
     main: ["view"],

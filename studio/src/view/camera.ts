@@ -10,7 +10,7 @@ const STEEPEST = Math.PI / 2 - 1e-4;
 export type StandardView = "front" | "back" | "left" | "right" | "top" | "bottom" | "corner";
 
 /** Azimuth and elevation of the direction from the target to the eye. */
-export const STANDARD_VIEWS: Readonly<Record<StandardView, readonly [number, number]>> = {
+const STANDARD_VIEWS: Readonly<Record<StandardView, readonly [number, number]>> = {
   front: [-Math.PI / 2, 0],
   back: [Math.PI / 2, 0],
   left: [Math.PI, 0],

@@ -25,7 +25,7 @@ const LOAD_COLOR = "#e8704a";
 const PROBE_COLOR = "#56b4e9";
 
 /** The value of a load as text, at present. */
-export function loadText(load: BodyLoad, stat: StatEvent | null): string {
+function loadText(load: BodyLoad, stat: StatEvent | null): string {
   const value = stat?.loads[load.index] ?? load.value;
   return `${formatNumber(value / load.factor, 3)} ${unitText(load.unit)}`.trim();
 }

@@ -17,7 +17,7 @@ interface Curves {
 const number = (value: number | null | undefined) => value ?? Number.NaN;
 
 /** The curves of one quantity over the generations; lengths in mm, moduli in kPa. */
-export function curvesOf(generations: readonly GenerationEvent[], what: string): Curves {
+function curvesOf(generations: readonly GenerationEvent[], what: string): Curves {
   const index = generations.map((one) => one.index);
   if (what === "error") {
     return {

@@ -100,7 +100,7 @@ export function Adder(props: { what: string; schema: Schema; onAdd(value: unknow
 }
 
 /** The short word for an entry of a list, such as `pressure 4 kPa`. */
-export function aboutEntry(section: string, value: Table): string {
+function aboutEntry(section: string, value: Table): string {
   const region = value.region as Table | undefined;
   const place = region ? describeValue(region) : "";
   switch (section) {

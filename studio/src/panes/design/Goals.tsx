@@ -18,7 +18,7 @@ const AXES = [
 ];
 
 /** The fields that every metric has: which one, where, along what. */
-export function MetricFields(props: {
+function MetricFields(props: {
   metric: string;
   value: Table;
   onMetric(name: string): void;

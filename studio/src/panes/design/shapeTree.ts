@@ -13,7 +13,7 @@ export interface ShapeNode {
 type Table = Readonly<Record<string, unknown>>;
 
 /** Names that a shape refers to, in the order in which it does. */
-export function operandsOf(shape: unknown): string[] {
+function operandsOf(shape: unknown): string[] {
   if (typeof shape === "string") return [shape];
   if (Array.isArray(shape)) return shape.flatMap(operandsOf);
   if (typeof shape !== "object" || shape === null) return [];

@@ -20,7 +20,7 @@ export function unitIn(text: string, parameter: string): string | null {
 }
 
 /** An SI value in the unit in which a design writes that parameter. */
-export function inUnitOf(text: string, parameter: string, value: unknown): string | null {
+function inUnitOf(text: string, parameter: string, value: unknown): string | null {
   const unit = unitIn(text, parameter);
   if (unit === null || typeof value !== "number") return null;
   return `${formatNumber(value / factorOf(unit), 5)} ${unitText(unit)}`;

@@ -13,7 +13,7 @@ export interface Coloring {
   color(trial: TrialEvent): string;
 }
 
-export const FAILED = "var(--bad)";
+const FAILED = "var(--bad)";
 
 /** How trials are colored by an axis; the first objective where none is given. */
 export function coloring(

@@ -12,7 +12,7 @@ export interface Choice {
 }
 
 /** The range that the design gives, or one around the value where it gives none. */
-export function usualSweep(parameter: Parameter): Sweep {
+function usualSweep(parameter: Parameter): Sweep {
   const size = Math.abs(parameter.value) || parameter.factor;
   return {
     low: parameter.min ?? parameter.value - size / 2,

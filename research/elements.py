@@ -1,6 +1,6 @@
 """Elements for voxels, compared by measurement.
 
-``python benchmarks/elements.py [--json] [--fine] [--only NAME;NAME]``. Ten elements on the same
+``python research/elements.py [--fine] [--only NAME;NAME]``. Ten elements on the same
 cubes: bending, clamped beams, pressurised cylinders, locking, stability, cost. `--fine` adds every
 voxel split into 2 × 2 × 2 cubes. Needs ``pip install jax``. `docs/method/elements.md` reads the
 table.
@@ -13,13 +13,10 @@ the band of the latter is ±1 %. Strips are measured against Timoshenko's beam.
 from __future__ import annotations
 
 import argparse
-import json
-import sys
 import time
 from collections.abc import Iterator
 
 import numpy as np
-from measure import machine
 
 try:
     from element_energies import ELEMENTS, Element
@@ -244,17 +241,12 @@ def rows_of(element: Element, fine: bool) -> Iterator[Row]:
 def main() -> None:
     """Run everything."""
     parser = argparse.ArgumentParser(description="Elements for voxels")
-    parser.add_argument("--json", action="store_true", help="print one JSON object")
     parser.add_argument("--fine", action="store_true", help="also every voxel split in 2 × 2 × 2")
     parser.add_argument("--only", default=";".join(ELEMENTS), help="names of elements")
     chosen = parser.parse_args()
-    found: list[dict[str, str | float | None]] = []
     for name in chosen.only.split(";"):
         for figure, value, unit in rows_of(ELEMENTS[name], chosen.fine):
-            print(f"{name}: {figure}: {value:.4g} {unit}", file=sys.stderr, flush=True)
-            found.append({"name": f"{name}: {figure}", "value": value, "unit": unit, "ratio": None})
-    if chosen.json:
-        print(json.dumps({"machine": machine(), "rows": found}, indent=2, ensure_ascii=False))
+            print(f"{name}: {figure}: {value:.4g} {unit}", flush=True)
 
 
 if __name__ == "__main__":
