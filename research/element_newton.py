@@ -272,7 +272,7 @@ _QUADS = {
 }
 
 
-def faces_towards(body: Body, inside: NDArray[np.bool_], cavity: NDArray[np.bool_]) -> Ints:
+def faces_toward(body: Body, inside: NDArray[np.bool_], cavity: NDArray[np.bool_]) -> Ints:
     """Faces of the solid that look into the cells of `cavity`, seen from the solid side, (k, 4).
 
     Their order makes the enclosed volume of the cavity positive.

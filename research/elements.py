@@ -1,7 +1,7 @@
 """Elements for voxels, compared by measurement.
 
 ``python research/elements.py [--fine] [--only NAME;NAME]``. Ten elements on the same
-cubes: bending, clamped beams, pressurised cylinders, locking, stability, cost. `--fine` adds every
+cubes: bending, clamped beams, pressurized cylinders, locking, stability, cost. `--fine` adds every
 voxel split into 2 × 2 × 2 cubes. Needs ``pip install jax``. `docs/method/elements.md` reads the
 table.
 
@@ -28,7 +28,7 @@ try:
         Solver,
         body_of,
         chunks,
-        faces_towards,
+        faces_toward,
         kernel,
     )
 except ImportError as missing:
@@ -168,7 +168,7 @@ def cylinder(element: Element, wall: int, split: int) -> Row:
 
     inside, cavity = quarter(inside), quarter(cavity)
     body = body_of(inside, h * MM / split, material())
-    body.faces, body.pressure = faces_towards(body, inside, cavity), 4e3
+    body.faces, body.pressure = faces_toward(body, inside, cavity), 4e3
     body.held[body.vertices[:, 0] < 1e-9, 0] = True
     body.held[body.vertices[:, 1] < 1e-9, 1] = True
     body.held[body.vertices[:, 2] < 1e-9] = True

@@ -2,7 +2,7 @@
 
 # As `--set` takes them. The first are no designs; the others cannot be solved, or not judged.
 NO_DESIGN = [
-    ("colour=red", "is not known here"),
+    ("color=red", "is not known here"),
     ("voxel_size=5", "has no unit"),
     ("voxel_size=5 kPa", "expected a length"),
     ("voxel_size=-5 mm", "-5 mm"),

@@ -1,4 +1,4 @@
-"""VoxSoft: describe, mesh, simulate, calibrate and optimise soft robots.
+"""VoxSoft: describe, mesh, simulate, calibrate and optimize soft robots.
 
 What a user types, in one place; names are loaded when first used, so that ``import voxsoft`` stays
 light.

@@ -35,7 +35,7 @@ def test_shapes_are_all_there():
     assert set(shapes.__all__) - set(voxsoft.__all__) == {"KINDS", "Scope"}
 
 
-def test_a_misspelt_name_gets_a_suggestion():
+def test_a_misspelled_name_gets_a_suggestion():
     code = "import voxsoft as vs; vs.Desing"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     last = done.stderr.strip().splitlines()[-1]

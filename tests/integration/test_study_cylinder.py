@@ -13,7 +13,7 @@ def sweep(tmp_path_factory):
 def test_the_thinnest_wall_of_the_largest_body_rises_most(sweep):
     assert len(sweep.trials) == 105
     assert sweep.best.parameters == {"radius": 0.025, "height": 0.035, "wall": 0.005}
-    # Converged finite elements give 10.9 mm at the centre of the cap; the probe averages over it.
+    # Converged finite elements give 10.9 mm at the center of the cap; the probe averages over it.
     assert 0.003 < sweep.best.objectives["rise"] < 0.011
 
 

@@ -37,7 +37,7 @@ LAWS = settings(max_examples=60, deadline=None)
 @given(MATERIALS, STRETCHES, st.sampled_from(MODES))
 def test_stress_is_the_derivative_of_the_energy(material, stretch, mode):
     """n P = dU/dλ and its tangent, by central differences of fourth order."""
-    if isinstance(material, vs.Gent):  # whose derivatives grow without bound towards its limit
+    if isinstance(material, vs.Gent):  # whose derivatives grow without bound toward its limit
         assume(np.sum(principal_stretches(mode, stretch) ** 2) - 3.0 < 0.5 * material.jm)
     step = 2e-3 * stretch
     points = stretch + step * np.array([-2.0, -1.0, 1.0, 2.0])
@@ -57,7 +57,7 @@ def test_stress_is_the_derivative_of_the_energy(material, stretch, mode):
 @given(MATERIALS, st.permutations(range(3)), STRETCHES, STRETCHES)
 def test_gradient_and_hessian_belong_to_the_energy(material, order, first, second):
     stretches = np.array([first, second, 1.0 / (first * second)])[list(order)]
-    if isinstance(material, vs.Gent):  # whose derivatives grow without bound towards its limit
+    if isinstance(material, vs.Gent):  # whose derivatives grow without bound toward its limit
         assume(np.sum(stretches**2) - 3.0 < 0.5 * material.jm)
     step = 1e-4
     gradient, hessian = material.log_gradient(stretches), material.log_hessian(stretches)

@@ -38,7 +38,7 @@ def test_replace_gives_what_the_constructor_gives(model, record_property):
 
 
 def pad(**entries):
-    """A small pressurised pad, made in Python."""
+    """A small pressurized pad, made in Python."""
     outer, inner = vs.Box((20 * mm, 20 * mm, 10 * mm)), vs.Box((10 * mm, 10 * mm, 5 * mm))
     given = {
         "name": "pad",

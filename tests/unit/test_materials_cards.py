@@ -49,7 +49,7 @@ def test_a_card_says_where_it_comes_from_and_what_it_is_worth(card):
 
 @pytest.mark.parametrize("card", HYPERELASTIC, ids=lambda card: card.name)
 def test_a_hyperelastic_card_is_sound(card):
-    assert card.licence
+    assert card.license
     # Silicones for soft robots; the softest here is a slacker gel, the stiffest a casting rubber.
     assert 5e3 < card.material.young() < 2e6
     assert 1000 <= card.material.density <= 1200
@@ -84,8 +84,16 @@ def test_a_tensile_card_follows_the_measured_curve(name, noise):
     assert np.sqrt(np.mean(error**2)) < 1.5 * noise
 
 
-def test_derived_cards_keep_their_licence_beside_them():
+def test_derived_cards_keep_their_license_beside_them():
     text = (FOLDER / "srmd" / "LICENSE.md").read_text(encoding="utf-8")
     assert "Open Database License" in text
     for file in (FOLDER / "srmd").glob("*.toml"):
-        assert "Open Database License" in vs.load_card(file.stem).licence
+        assert "Open Database License" in vs.load_card(file.stem).license
+
+
+def test_the_older_spelling_of_a_card_is_read():
+    material = {"model": "neo-hookean", "young": "70 kPa"}
+    document = {"schema": "voxsoft-material/1", "name": "soft", "material": material}
+    found = vs.Card.from_document({**document, "licence": "MIT"})  # older
+    assert found == vs.Card.from_document({**document, "license": "MIT"})
+    assert found.license == "MIT"

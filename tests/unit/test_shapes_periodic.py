@@ -79,7 +79,7 @@ def test_distances_and_volumes_of_sheets_are_true_at_any_thickness(surface, leve
     found = np.abs(surface(period=1.0, form="solid", level=level).evaluate(places))
     # Each known point is on the surface, so the nearest is never closer than the surface (2⁻³⁰ of
     # an edge from bisection). A surface that crosses a cube crosses an edge of it within half its
-    # diagonal a = √3/192; with no curvature over 6 periods⁻¹ towards the place, that point is
+    # diagonal a = √3/192; with no curvature over 6 periods⁻¹ toward the place, that point is
     # further than the closest one by at most a²(1/d + 6)/2.
     reach = np.sqrt(3) / 192
     far = found > 0.05

@@ -1,4 +1,4 @@
-"""Pressurised cylinders against converged finite elements."""
+"""Pressurized cylinders against converged finite elements."""
 
 import csv
 from pathlib import Path

@@ -49,7 +49,7 @@ def test_a_bar_under_traction_stretches_by_the_lattice_modulus_at_every_voxel_si
     result = simulate(design)
     assert result.status == "ok"
     expected = pull / SOFT.young() * size[0]
-    # The cube pattern is not a centre of symmetry at the surface, where corners relax: a layer of
+    # The cube pattern is not a center of symmetry at the surface, where corners relax: a layer of
     # half a voxel, so the error is of order 1/cells; measured 1.3 %, 0.5 %, 0.2 %.
     assert result.metric("displacement", axis="x") == pytest.approx(expected, rel=0.04 / cells)
 

@@ -58,7 +58,7 @@ impl Display {
         })
     }
 
-    /// Tetrahedra of body vertices, each shrunk towards its center and with a tag for the client.
+    /// Tetrahedra of body vertices, each shrunk toward its center and with a tag for the client.
     pub fn tets(
         body: &Body,
         tets: &[[u32; 4]],

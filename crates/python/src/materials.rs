@@ -6,15 +6,15 @@ use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Mode
 
 use crate::simulate::to_python;
 
-/// The model's name, its constants, the bulk modulus (Pa) and the density (kg/m³); families of fibres
+/// The model's name, its constants, the bulk modulus (Pa) and the density (kg/m³); families of fibers
 /// as (direction, modulus in Pa, whether they carry compression) and Prony branches may follow.
 #[derive(FromPyObject)]
 pub enum MaterialArgument {
-    /// Without fibres.
+    /// Without fibers.
     Plain(String, Vec<f64>, f64, f64),
-    /// With fibres.
+    /// With fibers.
     Reinforced(String, Vec<f64>, f64, f64, Fibers),
-    /// With fibres and Prony branches (share of the instantaneous modulus, time in s).
+    /// With fibers and Prony branches (share of the instantaneous modulus, time in s).
     Viscous(String, Vec<f64>, f64, f64, Fibers, Vec<(f64, f64)>),
 }
 

@@ -109,7 +109,7 @@ impl Expr {
         &self.0
     }
 
-    /// Identity of the shared node, for memoising.
+    /// Identity of the shared node, for memoizing.
     pub(crate) fn key(&self) -> *const Node {
         Arc::as_ptr(&self.0)
     }

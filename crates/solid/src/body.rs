@@ -61,7 +61,7 @@ pub struct Mesh {
 
 /// Masses and terms.
 ///
-/// Constraints are solved in chunks of several blocks (voxels) of one colour; blocks of one colour
+/// Constraints are solved in chunks of several blocks (voxels) of one color; blocks of one color
 /// share no vertex. Within a chunk, constraints of different blocks alternate. An edge belongs to
 /// the first block that holds it.
 #[derive(Debug, Clone, PartialEq)]
@@ -179,7 +179,7 @@ impl Body {
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
-        // a neighbour, which no brick asks for.
+        // a neighbor, which no brick asks for.
         let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
             Vec::new()
         } else {
@@ -299,12 +299,12 @@ impl Body {
     }
 
     /// The corners of every block that is a cube along the axes, of any material, in the order of the
-    /// blocks' colours: corner `c` is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+    /// blocks' colors: corner `c` is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
     pub fn voxels(&self) -> &[[u32; 8]] {
         &self.voxels
     }
 
-    /// All hyperelastic voxels, blocks of one colour after the other.
+    /// All hyperelastic voxels, blocks of one color after the other.
     pub fn bricks(&self) -> &[Brick] {
         &self.bricks.bricks
     }
@@ -326,7 +326,7 @@ impl Body {
             .map(move |i| (range(&self.chunk_edges, i), range(&self.chunk_tets, i)))
     }
 
-    /// Where each colour ends in [`Body::chunks`]: chunks of one colour share no vertex.
+    /// Where each color ends in [`Body::chunks`]: chunks of one color share no vertex.
     pub fn colors(&self) -> &[u32] {
         &self.colors
     }
@@ -590,7 +590,7 @@ mod tests {
         let vertices: Vec<Vec3> = (0..8).map(corner).collect();
         let middle = [0, 3, 5, 6];
         let mut tets = vec![middle];
-        // Each of the other corners, with its three neighbours, which are corners of the middle one.
+        // Each of the other corners, with its three neighbors, which are corners of the middle one.
         tets.extend([1, 2, 4, 7].map(|apex: u32| [apex, apex ^ 1, apex ^ 2, apex ^ 4]));
         for tet in tets {
             for (pair, opposite) in TET_EDGES {

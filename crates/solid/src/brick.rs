@@ -18,17 +18,17 @@
 //!   proportion to its present shape.
 //! - `H₁₂ = (p̂₁·e₁ + p̂₂·e₂)/2`: twist.
 //!
-//! The isochoric energy is the mean over the six face centres (exact for fields linear in one
+//! The isochoric energy is the mean over the six face centers (exact for fields linear in one
 //! coordinate), so that bending follows the material at any stretch. The volumetric energy is that of
 //! one number for each voxel, the mean `J` of `det(S ± Ĥ)` over the same points (mean dilatation), plus a
 //! quadratic part for `tr H`, which is small because of `H₃₃`. The mode `p₄` carries `E/9 |p₄|²/2`, a uniaxial
 //! stretch bilinear in two coordinates. Energy per rest volume:
 //!
-//! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibres(S)`
+//! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibers(S)`
 //!
 //! A voxel that the surface cuts knows the center `c` and the spread `σ` of its material along each axis
 //! ([`Filling`]): `S` becomes the stretch at that center, `S + Σ c Ĥ`, and `Ĥ` becomes `σ Ĥ`, which
-//! integrates the energy over the material to second order. Fibres keep the mean stretch.
+//! integrates the energy over the material to second order. Fibers keep the mean stretch.
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].

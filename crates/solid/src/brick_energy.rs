@@ -22,7 +22,7 @@ const OFF: usize = 3;
 /// The columns of `F₀` and the four hourglass vectors.
 pub(crate) type Modes = [Vec3; 7];
 
-/// The generalised coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
+/// The generalized coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
 pub(crate) const SHAPE: usize = 15;
 
 /// Where in a voxel its material is, along each axis, in units of half an edge.
@@ -51,14 +51,14 @@ pub(crate) struct Rotated {
     pub bilinear: Vec3,
 }
 
-/// The stress of a voxel in its rotated frame: the gradient of the energy by the generalised coordinates.
+/// The stress of a voxel in its rotated frame: the gradient of the energy by the generalized coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrickStress {
     pub(crate) stress: Sym,
     pub(crate) hourglass: [Vec3; 3],
 }
 
-/// The strain of a voxel in its rotated frame: the generalised coordinates themselves.
+/// The strain of a voxel in its rotated frame: the generalized coordinates themselves.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BrickStrain {
     pub(crate) stretch: Sym,
@@ -221,18 +221,18 @@ impl Rotated {
         })
     }
 
-    /// The two face centres of an axis.
+    /// The two face centers of an axis.
     #[inline(always)]
     fn ends(&self, h: &Sym) -> [Sym; 2] {
         [1.0, -1.0].map(|sign| std::array::from_fn(|k| self.stretch[k] + sign * h[k]))
     }
 
-    /// The mean change of volume over the six face centres, with derivatives where `second` asks.
+    /// The mean change of volume over the six face centers, with derivatives where `second` asks.
     fn volume(&self, thinning: f64, second: bool) -> Shaped {
         self.mean(thinning, second, |at| determinant_response(at, second))
     }
 
-    /// The mean over the six face centres of a function of the stretch there.
+    /// The mean over the six face centers of a function of the stretch there.
     fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
         if self.filling != Filling::FULL {
             return self.cut_mean(thinning, second, function);
@@ -471,7 +471,7 @@ fn dot6(a: &Sym, b: &Sym) -> f64 {
     (0..6).map(|k| a[k] * b[k]).sum()
 }
 
-/// A function of all generalised coordinates.
+/// A function of all generalized coordinates.
 struct Shaped {
     value: f64,
     gradient: [f64; SHAPE],

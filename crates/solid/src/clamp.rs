@@ -12,7 +12,7 @@ pub struct Clamp {
     pub motion: Option<Motion>,
 }
 
-/// A rigid motion: a turn about an axis through a centre, then a translation, both times a history.
+/// A rigid motion: a turn about an axis through a center, then a translation, both times a history.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// Translation in m.
@@ -21,7 +21,7 @@ pub struct Motion {
     pub axis: Vec3,
     /// Angle in rad.
     pub angle: f64,
-    /// Centre of rotation in m.
+    /// Center of rotation in m.
     pub center: Vec3,
     /// The factor over time on translation and angle.
     pub history: History,

@@ -2,20 +2,20 @@
 
 use crate::Mesh;
 
-/// How many blocks of one colour are solved side by side. They share no vertex, so that a processor
+/// How many blocks of one color are solved side by side. They share no vertex, so that a processor
 /// can overlap their long chains of divisions and roots; eight keep it busy.
 const CHUNK: usize = 8;
 
-/// Blocks of tetrahedra, in chunks of up to [`CHUNK`] blocks of one colour.
+/// Blocks of tetrahedra, in chunks of up to [`CHUNK`] blocks of one color.
 pub(crate) struct ColorOrder {
     /// For each chunk its blocks, for each block its tetrahedra.
     pub chunks: Vec<Vec<Vec<usize>>>,
-    /// Where each colour ends in the list of chunks.
+    /// Where each color ends in the list of chunks.
     pub colors: Vec<u32>,
 }
 
-/// Greedy colouring: a block takes the lowest colour that none of its vertices has seen. Voxels in
-/// C order get the eight colours of their parities where the grid is dense.
+/// Greedy coloring: a block takes the lowest color that none of its vertices has seen. Voxels in
+/// C order get the eight colors of their parities where the grid is dense.
 pub(crate) fn color_order(mesh: &Mesh) -> ColorOrder {
     let count = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
     let mut members = vec![Vec::new(); count];
@@ -27,8 +27,8 @@ pub(crate) fn color_order(mesh: &Mesh) -> ColorOrder {
     for block in members.into_iter().filter(|block| !block.is_empty()) {
         let vertices = || block.iter().flat_map(|&t| mesh.tets[t]).map(|v| v as usize);
         let taken = vertices().fold(0, |taken, v| taken | seen[v]);
-        // A vertex with more than 128 blocks around it cannot be coloured apart; such blocks share
-        // the last colour, which only costs parallelism because chunks are solved in order.
+        // A vertex with more than 128 blocks around it cannot be colored apart; such blocks share
+        // the last color, which only costs parallelism because chunks are solved in order.
         let color = (taken.trailing_ones() as usize).min(127);
         vertices().for_each(|v| seen[v] |= 1 << color);
         if by_color.len() <= color {

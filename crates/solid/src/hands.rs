@@ -10,7 +10,7 @@ pub struct Grab {
     pub vertex: u32,
     /// Stiffness in N/m.
     pub stiffness: f64,
-    /// The point that is pulled towards, in m.
+    /// The point that is pulled toward, in m.
     pub target: Vec3,
     /// Where the spring is held now, in m: on its way to the target.
     pub anchor: Vec3,
@@ -22,7 +22,7 @@ impl Grab {
         scale(self.stiffness, sub(self.anchor, position))
     }
 
-    /// Moves the anchor towards the target, no farther than `travel` (m): a target that jumps must not
+    /// Moves the anchor toward the target, no farther than `travel` (m): a target that jumps must not
     /// turn voxels inside out within one step.
     pub fn follow(&mut self, travel: f64) {
         let way = sub(self.target, self.anchor);
@@ -72,7 +72,7 @@ impl Hands {
         problem.set_history(load, history)
     }
 
-    /// Pulls a vertex of a body at `positions` towards a point (m) by a spring of the given stiffness (N/m),
+    /// Pulls a vertex of a body at `positions` toward a point (m) by a spring of the given stiffness (N/m),
     /// any above zero. A grab of the same number takes a new target and a new stiffness, or a new vertex.
     pub fn grab(
         &mut self,
@@ -130,7 +130,7 @@ impl Hands {
         &self.grabs
     }
 
-    /// Moves all anchors towards their targets, no farther than `travel` (m), and gives the grabs as they
+    /// Moves all anchors toward their targets, no farther than `travel` (m), and gives the grabs as they
     /// are then.
     pub fn follow(&mut self, travel: f64) -> Vec<Grab> {
         let one = |(_, grab): &mut (u32, Grab)| {

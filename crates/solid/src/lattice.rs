@@ -12,7 +12,7 @@ use crate::ProblemError;
 ///
 /// Spread over a voxel `h³`, a family of springs with direction `n` contributes
 /// `C_ijkl = Σ k ℓ² n_i n_j n_k n_l / h³` (affine motion, exact for homogeneous strain because every
-/// vertex of the alternating split is a centre of symmetry). A voxel owns three cube edges
+/// vertex of the alternating split is a center of symmetry). A voxel owns three cube edges
 /// (`k = 4 k_e` after sharing by four) and three face diagonals (shared by two, each of the six
 /// directions on every second face). For moduli this gives, per `E_e`,
 /// `C₁₁ = 1 + √2 + K/E_e`, `C₁₂ = 1/√2 + K/E_e`, `C₄₄ = 1/√2`; for raw compliances

@@ -97,7 +97,7 @@ pub trait Stepper: Send {
     /// back.
     fn set_load(&mut self, load: usize, factor: Option<f64>) -> Result<(), ProblemError>;
 
-    /// Pulls a vertex towards a point (m) by a spring of the given stiffness (N/m), any above zero. A grab
+    /// Pulls a vertex toward a point (m) by a spring of the given stiffness (N/m), any above zero. A grab
     /// of the same number takes a new target and a new stiffness, or a new vertex.
     fn grab(
         &mut self,

@@ -208,7 +208,7 @@ fn displacement_and_speed_are_those_of_vertices() {
     assert_eq!(Field::from_id(9), None);
 }
 
-/// A voxel's stress is that of its own deformation: what lies beyond the neighbours does not count.
+/// A voxel's stress is that of its own deformation: what lies beyond the neighbors does not count.
 #[test]
 fn vertices_average_their_own_voxels_only() {
     let body = rubber();

@@ -148,7 +148,7 @@ proptest! {
         let axis = axis.map(|a| a / length);
         let body = body([2, 2, 2], 5e-3, &[soft()]);
         let moved: Vec<Vec3> = body.rest().iter().map(|p| add(rotate(*p, axis, angle), shift)).collect();
-        // A metre of shift leaves 1e-16 m of rounding on edges of 5 mm.
+        // A meter of shift leaves 1e-16 m of rounding on edges of 5 mm.
         prop_assert!(elastic::energy(&body, &moved) < 1e-20);
     }
 }

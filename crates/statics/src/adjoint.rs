@@ -33,7 +33,7 @@ impl fmt::Display for AdjointError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Singular => "the tangent is singular at this state, so it has no derivative",
-            Self::OutOfMemory(_) => "the factorised tangent does not fit in memory",
+            Self::OutOfMemory(_) => "the factorized tangent does not fit in memory",
             Self::Cancelled => "the solution was cancelled",
         })
     }

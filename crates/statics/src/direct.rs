@@ -1,4 +1,4 @@
-//! The sparse tangent, factorised: numbering of free coordinates, assembly, Cholesky or LU.
+//! The sparse tangent, factorized: numbering of free coordinates, assembly, Cholesky or LU.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -31,7 +31,7 @@ pub(crate) struct DirectSystem {
     size: usize,
     column_starts: Vec<usize>,
     row_indices: Vec<usize>,
-    /// For each vertex its neighbours in rising order, and where their rows start in a column.
+    /// For each vertex its neighbors in rising order, and where their rows start in a column.
     neighbors: Vec<Vec<u32>>,
     offsets: Vec<Vec<u32>>,
     values: Vec<f64>,
@@ -40,7 +40,7 @@ pub(crate) struct DirectSystem {
     symmetric: bool,
 }
 
-/// A factorised tangent.
+/// A factorized tangent.
 pub(crate) enum DirectFactor {
     /// Positive definite: the state is stable.
     Cholesky(Vec<f64>),
@@ -85,7 +85,7 @@ impl DirectSystem {
                 .copied()
                 .filter(|&row| row != HELD)
         };
-        // Neighbours in the order of elimination, so that rows rise within a column.
+        // Neighbors in the order of elimination, so that rows rise within a column.
         let mut place = vec![0u32; count];
         for (index, &vertex) in order.iter().enumerate() {
             place[vertex as usize] = index as u32;
@@ -302,7 +302,7 @@ impl DirectSystem {
         (row != HELD).then_some(row as usize)
     }
 
-    /// Factorises the assembled tangent plus `shift` times its diagonal.
+    /// Factorizes the assembled tangent plus `shift` times its diagonal.
     pub fn factor(&self, shift: f64, positive: bool) -> Result<DirectFactor, FactorError> {
         if !self.values.iter().all(|v| v.is_finite()) {
             return Err(FactorError::Singular);
@@ -342,7 +342,7 @@ impl DirectSystem {
         Ok(DirectFactor::Indefinite(entries))
     }
 
-    /// How many negative eigenvalues the factorised matrix has: as many as negative pivots (Sylvester's
+    /// How many negative eigenvalues the factorized matrix has: as many as negative pivots (Sylvester's
     /// law of inertia). Unknown where it is not symmetric.
     pub fn negative_pivots(&self, factor: &DirectFactor) -> Option<usize> {
         let entries = match factor {

@@ -109,7 +109,7 @@ impl System {
         }
     }
 
-    /// Factorises the assembled tangent plus `shift` times its diagonal, whatever its signs.
+    /// Factorizes the assembled tangent plus `shift` times its diagonal, whatever its signs.
     pub fn factor(&mut self, shift: f64) -> Result<Factor, FactorError> {
         match self {
             Self::Direct(system) => match system.factor(shift, true) {
@@ -121,7 +121,7 @@ impl System {
         }
     }
 
-    /// Factorises the assembled tangent, which is symmetric, plus `shift` times its diagonal, if that is
+    /// Factorizes the assembled tangent, which is symmetric, plus `shift` times its diagonal, if that is
     /// positive definite. An iteration needs no shift: its solutions go downhill anyway.
     pub fn factor_positive(&mut self, shift: f64) -> Result<Factor, FactorError> {
         match self {
@@ -130,7 +130,7 @@ impl System {
         }
     }
 
-    /// How many negative eigenvalues the factorised matrix has; unknown where it is not symmetric, or
+    /// How many negative eigenvalues the factorized matrix has; unknown where it is not symmetric, or
     /// solved iteratively.
     pub fn negative_pivots(&self, factor: &Factor) -> Option<usize> {
         match (self, factor) {

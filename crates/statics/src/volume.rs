@@ -433,7 +433,7 @@ struct Bordered {
     compliance: f64,
 }
 
-/// Solves the bordered system with a factorised tangent.
+/// Solves the bordered system with a factorized tangent.
 fn bordered(
     path: &Path<'_, '_>,
     factor: &Factor,

@@ -110,7 +110,7 @@ proptest! {
         let alone = settled(&problem(edge, bulk, weight, forces), &Settings::default());
         prop_assert_eq!(found.status, alone.status);
         for (a, b) in found.positions.iter().zip(&alone.positions) {
-            // Of a body of 30 mm; forces left over are a millionth of what moves it by a micrometre.
+            // Of a body of 30 mm; forces left over are a millionth of what moves it by a micrometer.
             prop_assert!(norm(sub(*a, *b)) < 1e-9, "{:?} {:?}", a, b);
         }
     }

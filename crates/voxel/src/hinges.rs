@@ -7,7 +7,7 @@ use crate::planes::by_plane;
 /// Two filled cells whose only contact, here, is an edge or a corner.
 ///
 /// The mesh is stitched there, so the cells hang together, but they turn about the edge or the
-/// corner without resistance, and no mould or printer can make such a joint.
+/// corner without resistance, and no mold or printer can make such a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Hinge {
     /// The two cells, in C order.

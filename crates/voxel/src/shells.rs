@@ -58,9 +58,9 @@ fn wedges(
     let mut by_angle: Vec<(f64, bool, u32)> = around
         .iter()
         .map(|&(_, t)| {
-            let towards = third(t);
-            let radial: f64 = dot(towards, zero) - dot(towards, axis) * dot(zero, axis);
-            let angle = f64::atan2(dot(towards, quarter), radial);
+            let toward = third(t);
+            let radial: f64 = dot(toward, zero) - dot(toward, axis) * dot(zero, axis);
+            let angle = f64::atan2(dot(toward, quarter), radial);
             let corners = triangles[t as usize];
             let runs_with = (0..3).any(|c| corners[c] == low && corners[(c + 1) % 3] == high);
             (angle, runs_with, t)

@@ -28,7 +28,7 @@ _DAMPING: Final = (1e-9, 1e-3, 1e6)
 def descend(
     misfit: Misfit, generations: int, population: int, seed: int
 ) -> Iterator[Sequence[Evaluation]]:
-    r"""Minimise the mean length of the error vectors.
+    r"""Minimize the mean length of the error vectors.
 
     A sum of lengths :math:`\sum |r|` is that of the squares :math:`\sum |r|^2/w` with the weights
     :math:`w = |r|` of the step before (Weiszfeld 1937; iteratively reweighted least squares), so
@@ -38,7 +38,7 @@ def descend(
     Parameters
     ----------
     misfit
-        What is minimised, solved by statics.
+        What is minimized, solved by statics.
     generations
         The look around and the most steps after it.
     population

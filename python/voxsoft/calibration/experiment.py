@@ -53,7 +53,7 @@ class Experiment(Shown):
 
     Notes
     -----
-    The clamp face is where the clamped vertices end towards the free part of the body; arcs and
+    The clamp face is where the clamped vertices end toward the free part of the body; arcs and
     positions are counted from there, along and relative to the chosen line.
 
     Examples

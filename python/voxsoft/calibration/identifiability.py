@@ -34,7 +34,7 @@ _INNER_FOUND: Final = 5e-3
 class Profile:
     r"""What the data say about one parameter.
 
-    The error is minimised over everything else, scales included, for values of this parameter
+    The error is minimized over everything else, scales included, for values of this parameter
     away from its best. With an error vector of :math:`d` numbers at each of :math:`n` stations
     and the probability density of an error falling as :math:`b^{-d} e^{-|r|/b}`, the likelihood
     that belongs to a sum of lengths, the noise :math:`b` estimated from the residuals
@@ -61,7 +61,7 @@ class Profile:
 
     Notes
     -----
-    Residuals of a model that does not fit are no independent noise: neighbouring stations err
+    Residuals of a model that does not fit are no independent noise: neighboring stations err
     alike, so that true intervals are wider. The converse is safe: what is not identifiable here
     is not identifiable.
     """
@@ -102,7 +102,7 @@ def profiles(misfit: Misfit, best: Evaluation) -> tuple[Profile, ...]:
     Parameters
     ----------
     misfit
-        The function that was minimised.
+        The function that was minimized.
     best
         Its minimum.
     """
@@ -172,7 +172,7 @@ class _Walk:
         return middle.log
 
     def _at(self, log: float, nearby: NDArray[np.float64]) -> _Point:
-        """Minimise over all other parameters with this one held."""
+        """Minimize over all other parameters with this one held."""
         held = float(np.clip(log / self.spans[self.index], 0.0, 1.0))
         others = np.delete(np.arange(len(self.spans)), self.index)
 

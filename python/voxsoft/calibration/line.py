@@ -24,7 +24,7 @@ class StationLine:
     Attributes
     ----------
     axis, direction
-        The body leaves the clamp along this axis (0 to 2), towards +1 or -1.
+        The body leaves the clamp along this axis (0 to 2), toward +1 or -1.
     face
         Coordinate of the clamp face on that axis, m.
     length

@@ -36,7 +36,7 @@ class Measurement(Shown):
     name
         What to call it, such as the material's name.
     source
-        Where the numbers come from, and under which licence they may be used.
+        Where the numbers come from, and under which license they may be used.
 
     Raises
     ------

@@ -120,7 +120,7 @@ def _one_by_one(task: Callable[[Material], Settled], inputs: Sequence[Material])
 
 
 def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) -> float:
-    """Factor ``s`` that minimises the sum over stations of ``|s simulated - measured|``.
+    """Factor ``s`` that minimizes the sum over stations of ``|s simulated - measured|``.
 
     The sum is convex in ``s``, so that a search along one line finds it.
 
@@ -145,7 +145,7 @@ def best_scale(simulated: NDArray[np.float64], measured: NDArray[np.float64]) ->
 
 
 class Misfit:
-    r"""The function that a calibration minimises, with a memory of what it has seen.
+    r"""The function that a calibration minimizes, with a memory of what it has seen.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ class Misfit:
     Notes
     -----
     With :math:`r` the error vector of a station, the paper's fitness is :math:`e^S` with
-    :math:`S = k \sum |r|` over the stations and :math:`k = -10` per metre. For several
+    :math:`S = k \sum |r|` over the stations and :math:`k = -10` per meter. For several
     experiments :math:`S = k \bar n \, \overline{|r|}`, where the mean error of each
     experiment has the same weight and :math:`\bar n` is the mean number of stations; for one
     experiment the two are the same.

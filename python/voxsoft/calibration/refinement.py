@@ -20,7 +20,7 @@ _LARGEST_ERROR: Final = 1e3
 
 
 def refine(misfit: Misfit, start: Evaluation) -> Evaluation:
-    """Minimise the error from a candidate on, by the simplex method of Nelder and Mead.
+    """Minimize the error from a candidate on, by the simplex method of Nelder and Mead.
 
     The simplex lives on the log scale of the moduli, inside their ranges, and starts afresh at
     what it found until that gains nothing: a valley that ends at a bound flattens the simplex.
@@ -31,7 +31,7 @@ def refine(misfit: Misfit, start: Evaluation) -> Evaluation:
     Parameters
     ----------
     misfit
-        What is minimised.
+        What is minimized.
     start
         Where to start.
 

@@ -99,7 +99,7 @@ def calibrate(
         it.
     free_scale
         Whether each experiment has a factor of its own on the simulated shape, for photographs
-        whose scale is doubtful. Errors stay in the data's own metres.
+        whose scale is doubtful. Errors stay in the data's own meters.
     seed
         The same seed gives the same answer.
     workers

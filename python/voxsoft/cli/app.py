@@ -20,7 +20,7 @@ from voxsoft.cli.study import optimize, sweep
 
 app = typer.Typer(
     name="voxsoft",
-    help="Describe, mesh, simulate, calibrate and optimise soft robots.",
+    help="Describe, mesh, simulate, calibrate and optimize soft robots.",
     epilog="Exit codes: 0 done, 2 wrong call, 3 invalid input, 4 not at rest, 5 the machine failed "
     "(disk, memory), 130 interrupted.",
     no_args_is_help=True,
@@ -47,7 +47,7 @@ def _program(
         ),
     ] = False,
 ) -> None:
-    """Describe, mesh, simulate, calibrate and optimise soft robots."""
+    """Describe, mesh, simulate, calibrate and optimize soft robots."""
 
 
 def main() -> None:

@@ -77,7 +77,7 @@ def fit(
         str | None, typer.Option("--name", help="Name of the card; default: the first file's.")
     ] = None,
     source: Annotated[
-        str, typer.Option("--source", help="Where the data are from: who, when, licence.")
+        str, typer.Option("--source", help="Where the data are from: who, when, license.")
     ] = "",
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder; default: runs/NAME-material.")
@@ -258,5 +258,6 @@ def _summary(card: Card) -> dict[str, Any]:
         "elongation_at_break": card.elongation_at_break,
         "source": card.source,
         "caution": card.caution,
-        "licence": card.licence,
+        "license": card.license,
+        "licence": card.license,  # as earlier versions printed it
     }

@@ -24,7 +24,7 @@ def mesh(
     sets: Sets = None,
     json: Json = False,
 ) -> None:
-    """Voxelise and mesh a design; print quality figures and write the mesh."""
+    """Voxelize and mesh a design; print quality figures and write the mesh."""
     from voxsoft import files
     from voxsoft.design.discretize import mesh_of
 

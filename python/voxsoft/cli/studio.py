@@ -26,7 +26,7 @@ def studio(
         "runs"
     ),
 ) -> None:
-    """Open the studio: see, edit, run, calibrate and optimise designs in the browser.
+    """Open the studio: see, edit, run, calibrate and optimize designs in the browser.
 
     It listens on this machine only, and the address holds a token that no one else knows. Ctrl-C
     ends it; changes that were not saved are there at the next start.

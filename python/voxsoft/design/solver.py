@@ -52,12 +52,12 @@ class Solver(Record):
         Dynamics only. Run to this time exactly, at rest or not: for motion over time.
     control
         Statics only. ``"load"`` (default): all loads grow together; ``"arc-length"``: the
-        same, followed through snaps; ``"volume"``: the pressurised volume grows to
+        same, followed through snaps; ``"volume"``: the pressurized volume grows to
         ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
     steps
         Arc-length and volume control only: the steps; default 20.
     volume_ratio
-        Volume control only: the pressurised volume at its end over that without pressure;
+        Volume control only: the pressurized volume at its end over that without pressure;
         default 1.5.
     first_step
         Load and arc-length control only: the first step of the path, as a part of the full load;

@@ -82,8 +82,8 @@ def check_mesh(
     surface = read_surface(file)
     if unit is None:
         raise UnitError(file.name, *_sizes(surface))
-    metre = parse(f"1 {unit}", "length", where="--unit")
-    size, chosen = _voxel_size(voxel_size, _extents(surface) * metre)
+    meter = parse(f"1 {unit}", "length", where="--unit")
+    size, chosen = _voxel_size(voxel_size, _extents(surface) * meter)
     try:
         mesh = TriangleMesh(path=str(file), unit=unit)
         report = check(voxelize(mesh, size))

@@ -125,13 +125,13 @@ def _body(origin: Path, design: Design) -> MeshFile:
     return MeshFile(mesh, regions)
 
 
-def _write_body(goal: Path, body: MeshFile, deformed: bool, metre: float) -> None:
+def _write_body(goal: Path, body: MeshFile, deformed: bool, meter: float) -> None:
     mesh, suffix = body.mesh, goal.suffix.lower()
     if deformed:
         moved = np.asarray(body.point_data["displacement"], dtype=np.float64)
         mesh = replace(mesh, vertices=mesh.vertices + moved)
     if suffix in _SURFACES:
-        write_mesh(goal, replace(mesh, vertices=mesh.vertices / metre))
+        write_mesh(goal, replace(mesh, vertices=mesh.vertices / meter))
     else:
         points, cells = (body.point_data, body.cell_data) if suffix == ".vtu" else ({}, {})
         write_mesh(goal, mesh, point_data=points, cell_data=cells, regions=body.regions)

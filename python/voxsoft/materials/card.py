@@ -35,7 +35,7 @@ class Card(Record):
         Where the numbers come from: data and method, in plain words.
     caution
         What the numbers are not good for, and what the source is worth.
-    licence
+    license
         Under which terms the numbers may be passed on, where they are not VoxSoft's own.
     elongation_at_break
         Strain at break (change of length over length), if it was measured.
@@ -61,7 +61,7 @@ class Card(Record):
     material: AnyMaterial
     source: str = ""
     caution: str = ""
-    licence: str = ""
+    license: str = ""
     same_as: str = ""
     choice: str = ""
     elongation_at_break: Annotated[float, UnitOf("number", positive=True)] | None = None
@@ -73,12 +73,15 @@ class Card(Record):
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Card:
         """Read a card from parsed TOML, where numbers carry their units as text."""
+        document = {_RENAMED.get(key, key): value for key, value in document.items()}
         try:
             return cls.model_validate(document, context=dict(FILE_CONTEXT))
         except ValidationError as error:
             raise plain_error(error, cls, document) from None
 
 
+# Keys of a card's file that have another name now; the older one is still taken.
+_RENAMED: Final = {"licence": "license"}  # older spelling
 # How the cards that came from tests end; a plain name has no such ending.
 _ENDINGS: Final = ("-tensile", "-bending")
 _PLAIN_NAMES: Final = "plain-names.toml"
@@ -106,7 +109,7 @@ def _renamed(card: Card, name: str, why: str) -> Card:
 
 
 def _card_files(folder: Traversable) -> Iterator[Traversable]:
-    """Find the cards in a folder and in those below it, each of which has a licence of its own."""
+    """Find the cards in a folder and in those below it, each of which has a license of its own."""
     for entry in folder.iterdir():
         if entry.is_dir():
             yield from _card_files(entry)

@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 #: What the Rust core takes: the model, its constants, bulk modulus in Pa, density in kg/m³.
 Core = tuple[str, list[float], float, float]
 
-#: The same with families of fibres and pairs of ``g`` and ``tau`` in s.
+#: The same with families of fibers and pairs of ``g`` and ``tau`` in s.
 ViscousCore = tuple[
     str,
     list[float],
@@ -65,7 +65,7 @@ PoissonRatio = Annotated[float, UnitOf("number"), AfterValidator(_below_half)]
 
 
 class PronyTerm(Record):
-    """One branch of a generalised Maxwell body: the share of the modulus that relaxes, and when.
+    """One branch of a generalized Maxwell body: the share of the modulus that relaxes, and when.
 
     Parameters
     ----------

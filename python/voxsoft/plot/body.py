@@ -334,15 +334,15 @@ def _color_bar(figure: Figure, axes: Axes, colors: _Colors) -> None:
 
 def _scale_bar(axes: Axes, camera: Camera, width: int, height: int) -> None:
     """Draw a bar of 1, 2 or 5 times a power of ten, about a fifth of the picture long."""
-    metre = 1.0 / (camera.pixel * _FINER)
-    aim = 0.2 * width / metre
+    meter = 1.0 / (camera.pixel * _FINER)
+    aim = 0.2 * width / meter
     power = 10.0 ** np.floor(np.log10(aim))
     length = power * max(step for step in (1, 2, 5) if step * power <= aim * (1 + 1e-9))
     scale: Scale = scale_for(length, "length")
     y = height + 0.05 * height + 14
-    axes.plot([0, length * metre], [y, y], color="black", linewidth=2, clip_on=False)
+    axes.plot([0, length * meter], [y, y], color="black", linewidth=2, clip_on=False)
     text = f"{round(length * scale.factor, 6):g} {scale.unit}"
-    axes.text(length * metre / 2, y + 8, text, ha="center", va="top", fontsize=9)
+    axes.text(length * meter / 2, y + 8, text, ha="center", va="top", fontsize=9)
     axes.set_xlim(0, width)
     axes.set_ylim(y + 34, 0)
 

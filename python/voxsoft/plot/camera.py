@@ -12,12 +12,12 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Camera:
-    """Where a body is seen from, and how many pixels a metre is.
+    """Where a body is seen from, and how many pixels a meter is.
 
     Attributes
     ----------
     right, up, toward : ndarray, shape (3,)
-        Unit vectors: along rows, against columns, and towards the eye.
+        Unit vectors: along rows, against columns, and toward the eye.
     left, top
         Coordinates of the upper left corner of the picture along `right` and `up`, m.
     pixel
@@ -44,7 +44,7 @@ class Camera:
         points
             What must be seen, (n, 3), m.
         view
-            Azimuth and elevation of the eye in degrees, from x towards y and from there up.
+            Azimuth and elevation of the eye in degrees, from x toward y and from there up.
         pixels
             Size of the longer side of the picture.
         """

@@ -11,7 +11,7 @@ from voxsoft.plot.raster import Raster
 Floats = NDArray[np.float64]
 
 _AMBIENT = 0.62
-# Along right, up and towards the reader: the light stands above the reader's left shoulder.
+# Along right, up and toward the reader: the light stands above the reader's left shoulder.
 _LIGHT = np.array([-0.4, 0.7, 0.6]) / np.linalg.norm([-0.4, 0.7, 0.6])
 # Depth contrast: how far it reaches (share of the picture's longer side), and how dark it gets.
 _REACH = 0.012

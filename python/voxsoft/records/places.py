@@ -70,7 +70,7 @@ def closest(name: str, known: Iterable[str]) -> str:
     --------
     >>> closest("materal", ["shape", "material"])
     'did you mean "material"?'
-    >>> closest("colour", ["shape", "material"])
+    >>> closest("color", ["shape", "material"])
     'known are material, shape'
     """
     names = sorted(known)

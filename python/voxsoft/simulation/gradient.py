@@ -51,7 +51,7 @@ def gradient(
     .. math:: dJ/dp = \partial J/\partial p + \mu \cdot \partial r/\partial p,
               \qquad K^T \mu = \partial J/\partial x, \quad K = -\partial r/\partial x.
 
-    One factorisation of the tangent :math:`K` serves all metrics and all numbers; nothing is
+    One factorization of the tangent :math:`K` serves all metrics and all numbers; nothing is
     solved again.
 
     Parameters
@@ -116,7 +116,7 @@ def gradient(
 
 
 def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) -> Floats:
-    """Solve ``Kᵀ μ = ∂J/∂x`` for several metrics with one factorisation, (k, n, 3) → (k, n, 3).
+    """Solve ``Kᵀ μ = ∂J/∂x`` for several metrics with one factorization, (k, n, 3) → (k, n, 3).
 
     Parameters
     ----------

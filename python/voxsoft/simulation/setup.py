@@ -76,7 +76,7 @@ class Setup:
 
     @classmethod
     def of(cls, design: Design, *, may_fly: bool | None = None, refine: int | None = None) -> Setup:
-        """Voxelise and mesh a design and check that it can be loaded.
+        """Voxelize and mesh a design and check that it can be loaded.
 
         Parameters
         ----------

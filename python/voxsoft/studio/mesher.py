@@ -66,7 +66,7 @@ class Mesher(threading.Thread):
             self._changed.notify()
 
     def run(self) -> None:
-        """Fulfil wishes until the end."""
+        """Fulfill wishes until the end."""
         while (wish := self._next()) is not None:
             self._count += 1
             announcement = threading.Timer(SLOW, self._slow)

@@ -138,7 +138,7 @@ class StudyResult(Shown):
     def scatter(
         self, objective: str | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return what a scatter of parameters coloured by an objective needs.
+        """Return what a scatter of parameters colored by an objective needs.
 
         Parameters
         ----------

@@ -163,7 +163,7 @@ export class CoreRun {
     this.agree(this.exports.vx_set_load(this.run, load, factor ?? Number.NaN));
   }
 
-  /** Pull a vertex towards a point (m) by a spring (N/m). */
+  /** Pull a vertex toward a point (m) by a spring (N/m). */
   grab(
     number: number,
     vertex: number,

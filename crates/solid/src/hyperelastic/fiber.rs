@@ -1,22 +1,22 @@
-//! Fibre families: stiffness along one direction of the rest state.
+//! Fiber families: stiffness along one direction of the rest state.
 
 use super::symmetric::{Sym, to_matrix};
 use crate::matrix::apply;
 use crate::vector::{Vec3, dot};
 
-/// A family of fibres spread over a material: energy `E_f/8 (|F a|² − 1)²` per rest volume, which for
+/// A family of fibers spread over a material: energy `E_f/8 (|F a|² − 1)²` per rest volume, which for
 /// small strain is `E_f ε²/2` along `a`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fiber {
-    /// Unit vector of the fibres at rest.
+    /// Unit vector of the fibers at rest.
     pub direction: Vec3,
-    /// Modulus in Pa: the stiffness of a fibre times the part of the volume that is fibre.
+    /// Modulus in Pa: the stiffness of a fiber times the part of the volume that is fiber.
     pub modulus: f64,
-    /// Whether fibres also carry compression; thin ones buckle and do not.
+    /// Whether fibers also carry compression; thin ones buckle and do not.
     pub compression: bool,
 }
 
-/// `S a` and `(|S a|² − 1)/2`, zero where a fibre is slack.
+/// `S a` and `(|S a|² − 1)/2`, zero where a fiber is slack.
 fn strain(fiber: &Fiber, stretch: &Sym) -> (Vec3, f64, bool) {
     let along = apply(&to_matrix(stretch), fiber.direction);
     let strain = (dot(along, along) - 1.0) / 2.0;

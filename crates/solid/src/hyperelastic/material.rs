@@ -54,7 +54,7 @@ impl Model {
     }
 }
 
-/// A hyperelastic material, with fibres if it has any.
+/// A hyperelastic material, with fibers if it has any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HyperelasticMaterial {
     model: Model,
@@ -97,19 +97,19 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// The same material with families of fibres.
+    /// The same material with families of fibers.
     pub fn with_fibers(self, fibers: Vec<Fiber>) -> Result<Self, ProblemError> {
         for fiber in &fibers {
             if !(fiber.modulus > 0.0 && fiber.modulus.is_finite()) {
                 return Err(ProblemError::NotPositive {
-                    what: "modulus of fibres (Pa)",
+                    what: "modulus of fibers (Pa)",
                     value: fiber.modulus,
                 });
             }
             let length = crate::vector::norm(fiber.direction);
             if !((length - 1.0).abs() < 1e-9) {
                 return Err(ProblemError::NotUnit {
-                    what: "direction of fibres",
+                    what: "direction of fibers",
                     length,
                 });
             }
@@ -163,7 +163,7 @@ impl HyperelasticMaterial {
         &self.model
     }
 
-    /// The families of fibres.
+    /// The families of fibers.
     pub fn fibers(&self) -> &[Fiber] {
         &self.fibers
     }

@@ -128,7 +128,7 @@ pub fn determinant_response(s: &Sym, second: bool) -> Response {
 
 /// Adds `factor ∂²det S/∂S²`: `dS ↦ derivative of cof S`, linear in `S`.
 ///
-/// From `cof S = S² − S tr S + I (tr²S − S:S)/2`, polarised; in Mandel form the diagonal couples
+/// From `cof S = S² − S tr S + I (tr²S − S:S)/2`, polarized; in Mandel form the diagonal couples
 /// `d²det = S₃₃ …` and every entry is `± s` of one component.
 #[inline(always)]
 fn add_second_determinant(tangent: &mut [Sym; 6], s: &Sym, factor: f64) {

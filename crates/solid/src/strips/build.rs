@@ -77,7 +77,7 @@ impl Strips {
                 };
             }
             first += padded(row.count);
-            // A slab without a constraint still counts, or its neighbours would meet.
+            // A slab without a constraint still counts, or its neighbors would meet.
             let slab = lattice.layer(start) / layers_each;
             slabs.resize(slab + 1, strips.len() - 1..strips.len() - 1);
             slabs[slab].end = strips.len();
@@ -211,7 +211,7 @@ impl<'a> Lattice<'a> {
 
     /// What constraints of one strip have in common: where their vertices are relative to each other, and
     /// in which part of a layer. `None` for one that is not within a cube, or not unstressed there: it
-    /// could reach past the neighbouring layer.
+    /// could reach past the neighboring layer.
     fn kind(&self, index: usize) -> Option<u32> {
         let start = self.start(index);
         let is_tet = index >= self.body.edges().len();

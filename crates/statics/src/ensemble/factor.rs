@@ -8,7 +8,7 @@ use super::layout::{Layout, Row};
 /// A 3×3 block for each lane, row by row.
 type Block<S> = [<S as Simd>::f64s; 9];
 
-/// Factorises in place, and counts negative pivots.
+/// Factorizes in place, and counts negative pivots.
 ///
 /// There are no pivots off the diagonal: near an equilibrium that is stable the tangent is positive definite,
 /// and elsewhere a bad step is only a longer way. Diagonal blocks then hold their own factor: one over

@@ -5,7 +5,7 @@
 //! one after the other with plain loads, whatever the mesh. All lanes take a Newton step together
 //! with strains carried along ([`voxsoft_solid::mixed`]); how far each is on its load path is its own
 //! affair. One that has come to rest makes room for the next candidate, so a slow one holds up no other.
-//! Groups of lanes run side by side on threads. A lane never sees its neighbours: the bits of an answer
+//! Groups of lanes run side by side on threads. A lane never sees its neighbors: the bits of an answer
 //! depend neither on the company, nor on the number of lanes or threads.
 //!
 //! # Why Newton's method and not relaxation

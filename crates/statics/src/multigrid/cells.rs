@@ -3,7 +3,7 @@
 //! Eight cells of a level, or those of them that exist, make a cell of the next, whose corners
 //! interpolate the nodes inside. Walls that do not touch must not share such corners, however close
 //! they are, or the coarse body would be welded where the fine one is open: cells of one cube that do
-//! not hang together make cubes of their own, with nodes of their own, and neighbours share a node only
+//! not hang together make cubes of their own, with nodes of their own, and neighbors share a node only
 //! where they share a node of the finer level (after Nesme, Kry, Jeřábková and Faure 2009,
 //! doi 10.1145/1531326.1531358).
 

@@ -1,23 +1,23 @@
-//! Colours of nodes: neighbours differ, so that all nodes of a colour can be relaxed at once.
+//! Colors of nodes: neighbors differ, so that all nodes of a color can be relaxed at once.
 
 use std::ops::Range;
 
 use super::blocks::BlockMatrix;
 
-/// Where each colour starts in the numbering by colours, and the end.
+/// Where each color starts in the numbering by colors, and the end.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Coloring {
     starts: Vec<usize>,
 }
 
 impl Coloring {
-    /// The nodes of each colour.
+    /// The nodes of each color.
     pub fn ranges(&self) -> impl DoubleEndedIterator<Item = Range<usize>> + '_ {
         self.starts.windows(2).map(|ends| ends[0]..ends[1])
     }
 }
 
-/// Colours the nodes of a pattern one after the other, and numbers them colour by colour; the new place
+/// Colors the nodes of a pattern one after the other, and numbers them color by color; the new place
 /// of each node comes along. On a full lattice these are the eight parities.
 pub(crate) fn color(pattern: &BlockMatrix) -> (Coloring, Vec<u32>) {
     let count = pattern.rows();

@@ -1,4 +1,4 @@
-//! The V-cycle: coloured Gauss–Seidel sweeps on each level, Galerkin products between them.
+//! The V-cycle: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
 //!
 //! Coarse spaces hold the trilinear functions of ever larger cubes, so rigid motions and uniform
 //! strains, the slow part of an error, are theirs exactly; coarse matrices are `Pᵀ A P`, so anything a
@@ -216,7 +216,7 @@ fn inverses_of(matrix: &BlockMatrix) -> Vec<Block> {
     inverses
 }
 
-/// Gauss–Seidel through the colours, from zero.
+/// Gauss–Seidel through the colors, from zero.
 fn forward_from_zero(
     matrix: &BlockMatrix,
     coloring: &Coloring,
@@ -237,7 +237,7 @@ fn forward_from_zero(
     }
 }
 
-/// Gauss–Seidel back through the colours.
+/// Gauss–Seidel back through the colors.
 fn backward(
     matrix: &BlockMatrix,
     coloring: &Coloring,

@@ -240,8 +240,8 @@ def _intervals(
     # Student's t from the special functions: scipy.stats takes half a second to load.
     reach = float(stdtrit(freedom, 0.5 + _CONFIDENCE / 2.0))
     half = reach * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    towards = np.concatenate([family.shears, np.zeros(family.shapes)]) * 2.0 * (1.0 + poisson)
-    young, variance = float(towards @ constants), float(towards @ covariance @ towards)
+    toward = np.concatenate([family.shears, np.zeros(family.shapes)]) * 2.0 * (1.0 + poisson)
+    young, variance = float(toward @ constants), float(toward @ covariance @ toward)
     spread = reach * float(np.sqrt(max(variance, 0.0)))
     return (
         [
