@@ -16,116 +16,47 @@ Examples
 (40, 40, 40)
 """
 
+from voxsoft.shapes import (
+    booleans,
+    expressions,
+    functions,
+    periodic,
+    primitives,
+    repeats,
+    surfaces,
+    transforms,
+    triangles,
+)
 from voxsoft.shapes.base import Scope, Shape
-from voxsoft.shapes.booleans import Difference, Intersection, Union
+from voxsoft.shapes.booleans import *
 from voxsoft.shapes.catalog import KINDS, AnyShape
-from voxsoft.shapes.expressions import (
-    Expression,
-    atan2,
-    cos,
-    exp,
-    log,
-    maximum,
-    minimum,
-    sin,
-    sqrt,
-    tan,
-    x,
-    y,
-    z,
-)
-from voxsoft.shapes.functions import Function
+from voxsoft.shapes.expressions import *
+from voxsoft.shapes.functions import *
 from voxsoft.shapes.grammar import random_shape
-from voxsoft.shapes.periodic import (
-    IWP,
-    Bcc,
-    Cubic,
-    Fcc,
-    Gyroid,
-    Neovius,
-    Octet,
-    SchwarzD,
-    SchwarzP,
-)
-from voxsoft.shapes.primitives import (
-    Box,
-    Capsule,
-    Cone,
-    Cylinder,
-    Ellipsoid,
-    HalfSpace,
-    Prism,
-    Revolve,
-    RoundedBox,
-    Sphere,
-    Torus,
-    Tube,
-)
-from voxsoft.shapes.repeats import Array, PolarArray
+from voxsoft.shapes.periodic import *
+from voxsoft.shapes.primitives import *
+from voxsoft.shapes.repeats import *
 from voxsoft.shapes.sampling import grid_bounds, inside, voxelize
-from voxsoft.shapes.surfaces import Blend, Grade, Offset, Shell
-from voxsoft.shapes.transforms import Bend, Mirror, Rotate, Scale, Taper, Translate, Twist
-from voxsoft.shapes.triangles import TriangleMesh
+from voxsoft.shapes.surfaces import *
+from voxsoft.shapes.transforms import *
+from voxsoft.shapes.triangles import *
 
 __all__ = [
-    "IWP",
     "KINDS",
     "AnyShape",
-    "Array",
-    "Bcc",
-    "Bend",
-    "Blend",
-    "Box",
-    "Capsule",
-    "Cone",
-    "Cubic",
-    "Cylinder",
-    "Difference",
-    "Ellipsoid",
-    "Expression",
-    "Fcc",
-    "Function",
-    "Grade",
-    "Gyroid",
-    "HalfSpace",
-    "Intersection",
-    "Mirror",
-    "Neovius",
-    "Octet",
-    "Offset",
-    "PolarArray",
-    "Prism",
-    "Revolve",
-    "Rotate",
-    "RoundedBox",
-    "Scale",
-    "SchwarzD",
-    "SchwarzP",
     "Scope",
     "Shape",
-    "Shell",
-    "Sphere",
-    "Taper",
-    "Torus",
-    "Translate",
-    "TriangleMesh",
-    "Tube",
-    "Twist",
-    "Union",
-    "atan2",
-    "cos",
-    "exp",
     "grid_bounds",
     "inside",
-    "log",
-    "maximum",
-    "minimum",
     "random_shape",
-    "sin",
-    "sqrt",
-    "tan",
     "voxelize",
-    "x",
-    "y",
-    "z",
 ]
+__all__ += booleans.__all__
+__all__ += expressions.__all__
+__all__ += functions.__all__
+__all__ += periodic.__all__
+__all__ += primitives.__all__
+__all__ += repeats.__all__
+__all__ += surfaces.__all__
+__all__ += transforms.__all__
+__all__ += triangles.__all__

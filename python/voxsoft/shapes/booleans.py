@@ -14,6 +14,12 @@ from voxsoft.units import NonNegativeLength
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape
 
+__all__ = [
+    "Difference",
+    "Intersection",
+    "Union",
+]
+
 
 class _Combination(Shape):
     """Several shapes made one."""

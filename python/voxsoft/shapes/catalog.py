@@ -2,95 +2,60 @@
 
 from __future__ import annotations
 
-import typing
-from typing import Annotated
+from collections.abc import Iterator
+from functools import reduce
+from operator import or_
+from types import ModuleType
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
+from voxsoft.shapes import (
+    booleans,
+    expressions,
+    functions,
+    periodic,
+    primitives,
+    repeats,
+    surfaces,
+    transforms,
+    triangles,
+)
 from voxsoft.shapes.base import Shape
-from voxsoft.shapes.booleans import Difference, Intersection, Union
-from voxsoft.shapes.expressions import Expression
-from voxsoft.shapes.functions import Function
-from voxsoft.shapes.periodic import (
-    IWP,
-    Bcc,
-    Cubic,
-    Fcc,
-    Gyroid,
-    Neovius,
-    Octet,
-    SchwarzD,
-    SchwarzP,
-)
-from voxsoft.shapes.primitives import (
-    Box,
-    Capsule,
-    Cone,
-    Cylinder,
-    Ellipsoid,
-    HalfSpace,
-    Prism,
-    Revolve,
-    RoundedBox,
-    Sphere,
-    Torus,
-    Tube,
-)
-from voxsoft.shapes.repeats import Array, PolarArray
-from voxsoft.shapes.surfaces import Blend, Grade, Offset, Shell
-from voxsoft.shapes.transforms import Bend, Mirror, Rotate, Scale, Taper, Translate, Twist
-from voxsoft.shapes.triangles import TriangleMesh
 
-#: Any shape, told apart by its ``kind``.
-AnyShape = Annotated[
-    Box
-    | RoundedBox
-    | Sphere
-    | Ellipsoid
-    | Cylinder
-    | Tube
-    | Cone
-    | Capsule
-    | Torus
-    | HalfSpace
-    | Prism
-    | Revolve
-    | Gyroid
-    | SchwarzP
-    | SchwarzD
-    | Neovius
-    | IWP
-    | Cubic
-    | Bcc
-    | Fcc
-    | Octet
-    | Expression
-    | Function
-    | TriangleMesh
-    | Union
-    | Intersection
-    | Difference
-    | Offset
-    | Shell
-    | Blend
-    | Grade
-    | Translate
-    | Rotate
-    | Scale
-    | Mirror
-    | Twist
-    | Bend
-    | Taper
-    | Array
-    | PolarArray,
-    Field(discriminator="kind"),
-]
+#: The files of shapes, in the order of lists that people read.
+FILES = (
+    primitives,
+    periodic,
+    expressions,
+    functions,
+    triangles,
+    booleans,
+    surfaces,
+    transforms,
+    repeats,
+)
+
+
+def _shapes_of(file: ModuleType) -> Iterator[type[Shape]]:
+    """Yield the shapes that a file defines, in its order: the models whose kind has a name."""
+    for model in vars(file).values():
+        if isinstance(model, type) and issubclass(model, Shape):
+            kind = model.model_fields.get("kind")
+            if model.__module__ == file.__name__ and kind and not kind.is_required():
+                yield model
+
 
 #: The class of each kind.
 KINDS: dict[str, type[Shape]] = {
-    shape.model_fields["kind"].default: shape
-    for shape in typing.get_args(typing.get_args(AnyShape)[0])
+    shape.model_fields["kind"].default: shape for file in FILES for shape in _shapes_of(file)
 }
+
+if TYPE_CHECKING:
+    AnyShape = Shape
+else:
+    #: Any shape, told apart by its ``kind``.
+    AnyShape = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
 
 # Operands may be any shape, which exists only now.
 for _shape in KINDS.values():

@@ -15,6 +15,22 @@ from voxsoft import _core
 from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Scope, Shape
 
+__all__ = [
+    "Expression",
+    "atan2",
+    "cos",
+    "exp",
+    "log",
+    "maximum",
+    "minimum",
+    "sin",
+    "sqrt",
+    "tan",
+    "x",
+    "y",
+    "z",
+]
+
 
 def _readable(text: str) -> str:
     _core.Shape.expression(text)

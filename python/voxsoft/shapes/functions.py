@@ -14,6 +14,10 @@ from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Scope, Shape
 from voxsoft.units import Point
 
+__all__ = [
+    "Function",
+]
+
 _NotInFiles = WithJsonSchema({"not": {}, "description": "Python only; a file cannot hold code."})
 
 

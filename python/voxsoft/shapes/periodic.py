@@ -16,6 +16,18 @@ from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Scope, Shape
 from voxsoft.units import Dimensionless, PositiveLength
 
+__all__ = [
+    "IWP",
+    "Bcc",
+    "Cubic",
+    "Fcc",
+    "Gyroid",
+    "Neovius",
+    "Octet",
+    "SchwarzD",
+    "SchwarzP",
+]
+
 Graded = float | _core.Shape
 
 

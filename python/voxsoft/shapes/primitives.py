@@ -11,6 +11,21 @@ from voxsoft.errors import ShapeError
 from voxsoft.shapes.base import Axis, Scope, Shape, direction
 from voxsoft.units import Length, NonNegativeLength, Point, PositiveLength
 
+__all__ = [
+    "Box",
+    "Capsule",
+    "Cone",
+    "Cylinder",
+    "Ellipsoid",
+    "HalfSpace",
+    "Prism",
+    "Revolve",
+    "RoundedBox",
+    "Sphere",
+    "Torus",
+    "Tube",
+]
+
 #: Three edges or half axes, each positive.
 Size = tuple[PositiveLength, PositiveLength, PositiveLength]
 #: Corners of a polygon in a plane.

@@ -15,6 +15,11 @@ from voxsoft.units import Angle, Point
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape
 
+__all__ = [
+    "Array",
+    "PolarArray",
+]
+
 #: A number of copies; the core refuses more than this many in all.
 Count = Annotated[int, Field(ge=1, le=4096)]
 

@@ -17,6 +17,13 @@ from voxsoft.units import Dimensionless, Length, PositiveLength
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape
 
+__all__ = [
+    "Blend",
+    "Grade",
+    "Offset",
+    "Shell",
+]
+
 
 class Offset(Shape):
     """The shape grown on all sides, or shrunk by a negative distance.

@@ -14,6 +14,16 @@ from voxsoft.units import Angle, Point, PositiveLength, UnitOf
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape
 
+__all__ = [
+    "Bend",
+    "Mirror",
+    "Rotate",
+    "Scale",
+    "Taper",
+    "Translate",
+    "Twist",
+]
+
 _ORIGIN = (0.0, 0.0, 0.0)
 _Factor = Annotated[float, UnitOf("number", positive=True)]
 

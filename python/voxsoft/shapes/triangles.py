@@ -30,6 +30,10 @@ from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
 from voxsoft.units import format_quantity, parse
 
+__all__ = [
+    "TriangleMesh",
+]
+
 #: Where more than this part of the edges belong to one triangle only, nothing is enclosed.
 _MOST_OPEN = 0.5
 
