@@ -145,7 +145,10 @@ def evaluate(study, trials):
 def test_elites_are_not_evaluated_again():
     study = genetic_study()
     evaluate(study, 6 + 4 + 4)
-    tags = [trial.system_attrs["genetic:individual"] for trial in study.trials]
+    places = study.sampler.trials_by_place(study)
+    tags = [[generation, i] for generation in sorted(places) for i in sorted(places[generation])]
+    numbers = [places[generation][i].number for generation, i in tags]
+    assert numbers == [*range(14)]
     first, later = [[0, i] for i in range(6)], [2, 3, 4, 5]
     assert tags == first + [[1, i] for i in later] + [[2, i] for i in later]
 
@@ -164,7 +167,8 @@ def test_room_counts_what_can_be_asked_before_answers_are_due():
     pending = [study.ask(SPACE) for _ in range(6)]
     assert study.sampler.room(study) == 0
     extra = study.ask(SPACE)
-    assert "genetic:individual" not in study.trials[extra.number].system_attrs
+    placed = study.sampler.trials_by_place(study)[0].values()
+    assert extra.number not in [trial.number for trial in placed]
     for trial in pending:
         study.tell(trial, bowl(**trial.params))
     assert study.sampler.room(study) == 4

@@ -315,12 +315,12 @@ def test_trials_of_others_are_not_touched(make):
 def test_what_an_interrupted_run_left_is_taken_up_first(make, threads):
     study = make()
     with study._storage.open(write=True) as stored:
-        with_parameters = stored.ask(study._distributions)
-        stored.ask()  # stopped before its parameters were written
+        _, parameters = stored.ask(study._distributions)
+        stored.ask({})  # stopped before its parameters were written
     result = study.optimize("random", 4, executor=threads)
     assert [trial.number for trial in result.trials] == [0, 1, 2, 3]
     # Parameters are rounded to 12 significant digits on their way through a design.
-    assert result.trials[0].parameters == pytest.approx(with_parameters.params)
+    assert result.trials[0].parameters == pytest.approx(parameters)
     assert result.trials[1].status == "ok"
 
 

@@ -90,21 +90,19 @@ def _optuna(
     misfit: Misfit, generations: int, population: int, seed: int, *, sampler: str
 ) -> Iterator[Batch]:
     """Ask an Optuna sampler for a population at a time, so that workers change nothing."""
-    import optuna
     from optuna.distributions import FloatDistribution
 
+    from voxsoft.search.optuna_bridge import ask_in_memory
     from voxsoft.search.samplers import sampler_named
 
     space = {name: FloatDistribution(0.0, 1.0) for name in misfit.space.names}
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    study = optuna.create_study(sampler=sampler_named(sampler, space, seed=seed))
+    ask, tell = ask_in_memory(sampler_named(sampler, space, seed=seed), space)
     for _ in range(generations):
-        trials = [study.ask(dict(space)) for _ in range(population)]
-        genes = [[trial.params[name] for name in space] for trial in trials]
+        trials = ask(population)
+        genes = [[parameters[name] for name in space] for _, parameters in trials]
         batch = misfit.many(np.array(genes))
         yield batch
-        for trial, candidate in zip(trials, batch, strict=True):
-            study.tell(trial, _loss(candidate))
+        tell({number: _loss(each) for (number, _), each in zip(trials, batch, strict=True)})
 
 
 def _loss(candidate: Evaluation) -> float:

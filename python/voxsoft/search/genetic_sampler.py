@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from optuna.distributions import BaseDistribution
-from optuna.samplers import BaseSampler, RandomSampler
-from optuna.study import Study, StudyDirection
-from optuna.trial import FrozenTrial, TrialState
+from optuna.samplers import RandomSampler
 
 from voxsoft.errors import StudyError
 from voxsoft.search.genes import value_of_gene
 from voxsoft.search.genetic import Genetic
+from voxsoft.search.optuna_bridge import (
+    FrozenTrial,
+    PlacingSampler,
+    StudyDirection,
+    TrialState,
+)
 
-# Trial attribute [generation, index] that says which individual a trial evaluates.
-_INDIVIDUAL = "genetic:individual"
+if TYPE_CHECKING:
+    from optuna import Study
 
 # Fitness of the worst trial that finished, where the best has 1 and a failed one 0.
 _LEAST_FITNESS = 0.1
 
 
-class GeneticSampler(BaseSampler):
+class GeneticSampler(PlacingSampler):
     """Search with :class:`~voxsoft.search.Genetic` inside any Optuna study of one objective.
 
     Parameters
@@ -65,6 +69,9 @@ class GeneticSampler(BaseSampler):
     True
     """
 
+    #: [generation, index]: which individual a trial evaluates.
+    place_key = "genetic:individual"
+
     def __init__(
         self,
         space: Mapping[str, BaseDistribution],
@@ -75,6 +82,7 @@ class GeneticSampler(BaseSampler):
         seed: int | None = None,
         constraints_func: Callable[[FrozenTrial], Sequence[float]] | None = None,
     ) -> None:
+        super().__init__()
         if not space:
             raise StudyError("space", "is empty", "name at least one parameter")
         self._space = dict(space)
@@ -102,8 +110,7 @@ class GeneticSampler(BaseSampler):
         free = self._unassigned(self._advance(study))
         if not free:
             return {}
-        individual = [self._search.generation, free[0]]
-        study._storage.set_trial_system_attr(trial._trial_id, _INDIVIDUAL, individual)
+        self.give_place(study, trial, [self._search.generation, free[0]])
         genes = self._search.ask()[free[0]]
         return {
             name: value_of_gene(distribution, float(gene))
@@ -128,7 +135,7 @@ class GeneticSampler(BaseSampler):
                 f"the genetic algorithm takes one objective, and there are {len(study.directions)}",
                 'use "nsga-ii" or "nsga-iii"',
             )
-        generations = _by_generation(study)
+        generations = self.trials_by_place(study)
         while True:
             trials = generations.get(self._search.generation, {})
             if any(i not in trials or not trials[i].state.is_finished() for i in self._new()):
@@ -158,15 +165,6 @@ class GeneticSampler(BaseSampler):
 
     def _unassigned(self, trials: Mapping[int, FrozenTrial]) -> list[int]:
         return [index for index in self._new() if index not in trials]
-
-
-def _by_generation(study: Study) -> dict[int, dict[int, FrozenTrial]]:
-    generations: dict[int, dict[int, FrozenTrial]] = {}
-    for trial in study.get_trials(deepcopy=False):
-        if _INDIVIDUAL in trial.system_attrs:
-            generation, index = trial.system_attrs[_INDIVIDUAL]
-            generations.setdefault(generation, {})[index] = trial
-    return generations
 
 
 def _scaled(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable, Mapping
-from typing import Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from optuna.distributions import BaseDistribution, FloatDistribution
-from optuna.samplers import BaseSampler, RandomSampler
-from optuna.study import Study
-from optuna.trial import FrozenTrial
+from optuna.samplers import RandomSampler
 
 from voxsoft.errors import StudyError
 from voxsoft.search.genes import value_of_gene
+from voxsoft.search.optuna_bridge import FrozenTrial, PlacingSampler
+
+if TYPE_CHECKING:
+    from optuna import Study
 
 Floats = NDArray[np.float64]
 
-# Trial attribute [start, index] that says which point of which descent a trial evaluates.
-_POINT: Final = "gradient:point"
 # A descent ends when a step gains less than this part of the first value.
 _GAIN: Final = 1e-7
 _STEPS: Final = 200
@@ -45,7 +45,7 @@ class Answer(NamedTuple):
     limit_slopes: Floats
 
 
-class GradientSampler(BaseSampler):
+class GradientSampler(PlacingSampler):
     """Descend along gradients inside an Optuna study of one objective, start after start.
 
     Parameters
@@ -70,6 +70,9 @@ class GradientSampler(BaseSampler):
     asked for before their descent can go on belong to further starts.
     """
 
+    #: [start, index]: which point of which descent a trial evaluates.
+    place_key = "gradient:point"
+
     def __init__(
         self,
         space: Mapping[str, BaseDistribution],
@@ -77,6 +80,7 @@ class GradientSampler(BaseSampler):
         *,
         seed: int | None = None,
     ) -> None:
+        super().__init__()
         for name, distribution in space.items():
             if not isinstance(distribution, FloatDistribution) or distribution.step is not None:
                 raise StudyError(
@@ -99,14 +103,13 @@ class GradientSampler(BaseSampler):
         self, study: Study, trial: FrozenTrial, search_space: dict[str, BaseDistribution]
     ) -> dict[str, Any]:
         """Return the next point of the first descent that waits for one."""
-        told = _by_start(study)
+        told = self.trials_by_place(study)
         for start in itertools.count():
             trials = told.get(start, {})
             wanted = self._next(start, trials)
             if wanted is None or wanted.index in trials:
                 continue  # It has arrived, or its next point is being evaluated.
-            storage, point = study._storage, [start, wanted.index]
-            storage.set_trial_system_attr(trial._trial_id, _POINT, point)
+            self.give_place(study, trial, [start, wanted.index])
             return {
                 name: value_of_gene(distribution, float(gene))
                 for (name, distribution), gene in zip(
@@ -225,12 +228,3 @@ class _Descent:
             self._scale, self._worst = abs(told.value) or 1.0, told.value
         self._worst = max(self._worst, told.value)
         return told
-
-
-def _by_start(study: Study) -> dict[int, dict[int, FrozenTrial]]:
-    found: dict[int, dict[int, FrozenTrial]] = {}
-    for trial in study.get_trials(deepcopy=False):
-        if _POINT in trial.system_attrs:
-            start, index = trial.system_attrs[_POINT]
-            found.setdefault(start, {})[index] = trial
-    return found

@@ -10,12 +10,12 @@ from typing import Final
 import optuna
 from optuna.distributions import BaseDistribution, CategoricalDistribution
 from optuna.samplers import BaseSampler
-from optuna.trial import FrozenTrial
 
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.records import closest
 from voxsoft.search.genetic_sampler import GeneticSampler
 from voxsoft.search.gradient_sampler import Answer, GradientSampler
+from voxsoft.search.optuna_bridge import FrozenTrial
 from voxsoft.units import round_significant
 
 Constraints = Callable[[FrozenTrial], Sequence[float]]

@@ -17,9 +17,8 @@ import time
 from pathlib import Path
 from typing import Any, Final, Self
 
-from optuna.storages.journal import BaseJournalBackend
-
 from voxsoft.errors import StorageError, StudyError
+from voxsoft.search.optuna_bridge import BaseJournalBackend
 
 # A killed process loses nothing that was written. A power failure can lose what the operating
 # system has not yet put on the disk: at most this many seconds of it.

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import itertools
-import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import optuna
 from optuna.distributions import BaseDistribution
 from optuna.samplers import BaseSampler
-from optuna.trial import FrozenTrial, TrialState, create_trial
 
 from voxsoft.search.genetic_sampler import GeneticSampler
 from voxsoft.search.gradient_sampler import GradientSampler
+from voxsoft.search.optuna_bridge import FrozenTrial, StoredStudy, TrialState
 from voxsoft.search.samplers import Answers, grid_values, sampler_named
 from voxsoft.study.trial import OUTCOME_KEY, rounded
 
@@ -37,7 +35,7 @@ class Proposal:
 Proposals = Iterator[Iterable[Proposal]]
 
 
-def grid_proposals(study: optuna.Study, space: Distributions) -> Proposals:
+def grid_proposals(study: StoredStudy, space: Distributions) -> Proposals:
     """Propose every point of a grid that the study does not hold, in one batch.
 
     The last parameter of the space varies fastest. Trials that an earlier run left unfinished
@@ -45,7 +43,7 @@ def grid_proposals(study: optuna.Study, space: Distributions) -> Proposals:
     """
     yield unfinished(study, space)
     values = grid_values(space)
-    there = {_key(trial.params) for trial in study.get_trials(deepcopy=False)}
+    there = {_key(trial.params) for trial in study.trials()}
     points = (
         dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())
     )
@@ -54,7 +52,7 @@ def grid_proposals(study: optuna.Study, space: Distributions) -> Proposals:
 
 
 def sampled_proposals(
-    study: optuna.Study,
+    study: StoredStudy,
     space: Distributions,
     budget: int,
     batch: int | None,
@@ -77,15 +75,16 @@ def sampled_proposals(
     sampler
         From the number of the next trial to the sampler that suggests it.
     """
-    study.sampler = sampler(0)
+    study.use(sampler(0))
     yield unfinished(study, space)
-    while (held := len(study.get_trials(deepcopy=False))) < budget:
-        study.sampler = sampler(held)
+    while (held := len(study.trials())) < budget:
+        suggesting = sampler(held)
         size = batch or DEFAULT_BATCH
         room = size - held % size
-        if batch is None and isinstance(study.sampler, GeneticSampler):
-            room = study.sampler.room(study)
-        if batch is None and isinstance(study.sampler, GradientSampler):
+        if batch is None and isinstance(suggesting, GeneticSampler):
+            study.use(suggesting)
+            room = study.room(suggesting.room)
+        if batch is None and isinstance(suggesting, GradientSampler):
             room = 1
         numbers = range(held, min(held + room, budget))
         yield [_ask(study, space, sampler(number)) for number in numbers]
@@ -115,39 +114,31 @@ def seeded_samplers(
     return sampler
 
 
-def unfinished(study: optuna.Study, space: Distributions) -> list[Proposal]:
+def unfinished(study: StoredStudy, space: Distributions) -> list[Proposal]:
     """Take up the trials that an earlier run began and did not finish."""
     return [
         _completed(study, space, trial)
-        for trial in study.get_trials(deepcopy=False, states=(TrialState.RUNNING,))
+        for trial in study.trials(TrialState.RUNNING)
         if OUTCOME_KEY not in trial.user_attrs
     ]
 
 
-def _completed(study: optuna.Study, space: Distributions, trial: FrozenTrial) -> Proposal:
+def _completed(study: StoredStudy, space: Distributions, trial: FrozenTrial) -> Proposal:
     """Give a trial the parameters it lacks, if the earlier run stopped while it was set up."""
     if set(trial.params) >= set(space):
         return Proposal(trial.number, rounded(trial.params))
-    return _proposal(optuna.Trial(study, trial._trial_id), space)
+    return Proposal(trial.number, rounded(study.complete(trial.number, space)))
 
 
-def _create(study: optuna.Study, space: Distributions, point: Mapping[str, Any]) -> Proposal:
+def _create(study: StoredStudy, space: Distributions, point: Mapping[str, Any]) -> Proposal:
     """Put a given point into the storage, with a single write."""
-    template = create_trial(state=TrialState.RUNNING, params=dict(point), distributions=dict(space))
-    trial_id = study._storage.create_new_trial(study._study_id, template)
-    return Proposal(study._storage.get_trial(trial_id).number, dict(point))
+    return Proposal(study.add(space, point), dict(point))
 
 
-def _ask(study: optuna.Study, space: Distributions, sampler: BaseSampler) -> Proposal:
-    study.sampler = sampler
-    return _proposal(study.ask(), space)
-
-
-def _proposal(trial: optuna.Trial, space: Distributions) -> Proposal:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", optuna.exceptions.ExperimentalWarning)
-        parameters = {name: trial._suggest(name, domain) for name, domain in space.items()}
-    return Proposal(trial.number, rounded(parameters))
+def _ask(study: StoredStudy, space: Distributions, sampler: BaseSampler) -> Proposal:
+    study.use(sampler)
+    number, parameters = study.ask(space)
+    return Proposal(number, rounded(parameters))
 
 
 def _key(parameters: Mapping[str, Any]) -> frozenset[tuple[str, Any]]:

@@ -9,12 +9,10 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import Any, Final
 
-import optuna
-from optuna.trial import TrialState
-
 from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import StudyError, VoxSoftError
+from voxsoft.search.optuna_bridge import StoredStudy, TrialState
 from voxsoft.study.event import ProgressCallback, TrialEvent
 from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, Outcome
@@ -59,7 +57,7 @@ class StudyRun:
         While it is closed no trial begins; those that have are stored as they end.
     """
 
-    study: optuna.Study
+    study: StoredStudy
     build: Build
     evaluate: Evaluate
     objectives: Mapping[str, Objective]
@@ -77,7 +75,7 @@ class StudyRun:
 
     def __post_init__(self) -> None:
         """Take over what earlier runs stored."""
-        for stored in self.study.get_trials(deepcopy=False):
+        for stored in self.study.trials():
             if OUTCOME_KEY not in stored.user_attrs:
                 continue
             record = stored.user_attrs[OUTCOME_KEY]
@@ -195,13 +193,9 @@ class StudyRun:
 
     def _store(self, number: int, outcome: Outcome, design_hash: str, same_as: int | None) -> None:
         record = record_of(outcome, design_hash, same_as)
-        trial_id = self.study._storage.get_trial_id_from_study_id_trial_number(
-            self.study._study_id, number
-        )
-        self.study._storage.set_trial_user_attr(trial_id, OUTCOME_KEY, record)
+        self.study.write(number, OUTCOME_KEY, record)
         self._tell(number, outcome)
-        stored = self.study._storage.get_trial(trial_id)
-        trial = read_trial(stored, self.objectives, self.constraints)
+        trial = read_trial(self.study.trial(number), self.objectives, self.constraints)
         self._learn(trial, outcome)
         if self.progress is not None:
             total = max(self.total, self._done)

@@ -8,12 +8,12 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from optuna.trial import FrozenTrial
 
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.design.variation import with_number
 from voxsoft.errors import DisconnectedError, NoCavityError, StudyError, VoxSoftError
 from voxsoft.search.gradient_sampler import Answer
+from voxsoft.search.optuna_bridge import FrozenTrial
 from voxsoft.simulation import gradient, simulate
 from voxsoft.study.outcome import Outcome, outcome_of_result
 from voxsoft.study.trial import OUTCOME_KEY

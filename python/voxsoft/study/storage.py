@@ -6,16 +6,19 @@ import contextlib
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Final, Literal
-
-import optuna
-from optuna.storages import BaseStorage, JournalStorage
+from typing import Any, Final
 
 from voxsoft.errors import StorageError, StudyError
+from voxsoft.search.optuna_bridge import (
+    BaseStorage,
+    Direction,
+    StorageInternalError,
+    StoredStudy,
+    journal_storage,
+    study_names,
+)
 from voxsoft.study.definition import require_same
 from voxsoft.study.journal import StudyJournal
-
-Direction = Literal["maximize", "minimize"]
 
 JOURNAL_NAME: Final = "study.journal"
 DEFINITION_NAME: Final = "study.json"
@@ -59,26 +62,17 @@ class TrialStorage:
         return str(self._place) if isinstance(self._place, Path) else f'study "{self._name}"'
 
     @contextlib.contextmanager
-    def open(self, *, write: bool) -> Iterator[optuna.Study]:
+    def open(self, *, write: bool) -> Iterator[StoredStudy]:
         """Open the study; for writing, no other process may write it until the end.
 
         A study in a database is not locked: let one process at a time run it.
         """
         if isinstance(self._place, Path):
             with StudyJournal(self._place / JOURNAL_NAME, write=write) as journal:
-                yield self._study(JournalStorage(journal))
+                yield StoredStudy(self._name, journal_storage(journal))
         else:
             with _database_errors(self.where):
-                yield self._study(self._place)
-
-    def _study(self, storage: str | BaseStorage) -> optuna.Study:
-        with _quiet():
-            return optuna.load_study(
-                study_name=self._name,
-                storage=storage,
-                # Any but Optuna's default, which would warn where it does not fit.
-                sampler=optuna.samplers.RandomSampler(),
-            )
+                yield StoredStudy(self._name, self._place)
 
     def _define(self, definition: Mapping[str, Any]) -> None:
         stored = self._stored_definition()
@@ -88,28 +82,22 @@ class TrialStorage:
         if isinstance(self._place, Path):
             self._write_definition(self._place, definition)
             with StudyJournal(self._place / JOURNAL_NAME, write=True) as journal:
-                self._create(JournalStorage(journal), definition)
+                self._create(journal_storage(journal), definition)
         else:
             with _database_errors(self.where):
                 self._create(self._place, definition)
 
     def _create(self, storage: str | BaseStorage, definition: Mapping[str, Any]) -> None:
-        with _quiet():
-            study = optuna.create_study(
-                study_name=self._name,
-                storage=storage,
-                directions=self._directions,
-                load_if_exists=True,
-            )
-        study.set_user_attr(_DEFINITION_KEY, dict(definition))
+        attributes = {_DEFINITION_KEY: dict(definition)}
+        StoredStudy.create(self._name, storage, self._directions, attributes)
 
     def _stored_definition(self) -> dict[str, Any] | None:
         if isinstance(self._place, Path) and not (self._place / JOURNAL_NAME).exists():
             return None
         try:
             with self.open(write=False) as study:
-                stored = study.user_attrs.get(_DEFINITION_KEY)
-                trials = len(study.get_trials(deepcopy=False))
+                stored = study.attributes.get(_DEFINITION_KEY)
+                trials = len(study.trials())
         except KeyError:  # no study of this name yet
             self._refuse_a_folder_of_another_name()
             return None
@@ -124,7 +112,7 @@ class TrialStorage:
         if not isinstance(self._place, Path):
             return
         with StudyJournal(self._place / JOURNAL_NAME, write=False) as journal:
-            names = [study.study_name for study in JournalStorage(journal).get_all_studies()]
+            names = study_names(journal_storage(journal))
         if names:
             what = f'holds the study "{names[0]}"; this one is "{self._name}"'
             raise StudyError(self.where, what, "give each study a folder of its own")
@@ -149,21 +137,10 @@ def _database_errors(where: str) -> Iterator[None]:
 
     try:
         yield
-    except (optuna.exceptions.StorageInternalError, SQLAlchemyError) as error:
+    except (StorageInternalError, SQLAlchemyError) as error:
         cause = str(error.__cause__ or error).splitlines()[0]
         hint = "check the address of the storage; finished trials are kept"
         raise StorageError(where, f"the storage failed: {cause}", hint) from error
     except ImportError as error:
         hint = "install the driver of that database with pip"
         raise StudyError(where, f"the storage needs a package: {error}", hint) from error
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep Optuna from announcing that it made a study."""
-    before = optuna.logging.get_verbosity()
-    optuna.logging.set_verbosity(optuna.logging.WARNING)
-    try:
-        yield
-    finally:
-        optuna.logging.set_verbosity(before)

@@ -10,14 +10,13 @@ from math import prod
 from pathlib import Path
 from typing import Any, TypeVar
 
-import optuna
+from optuna.distributions import BaseDistribution
 from optuna.samplers import BaseSampler
-from optuna.storages import BaseStorage
-from optuna.trial import FrozenTrial
 
 from voxsoft._folders import folder_name
 from voxsoft.design import Constraint, Design, Objective, families, require_design
 from voxsoft.errors import StudyError
+from voxsoft.search.optuna_bridge import BaseStorage, FrozenTrial, StoredStudy
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.study.definition import definition
 from voxsoft.study.event import ProgressCallback
@@ -288,12 +287,12 @@ class Study:
         return prod(len(values) for values in grid_values(self._distributions).values())
 
     @property
-    def _distributions(self) -> dict[str, optuna.distributions.BaseDistribution]:
+    def _distributions(self) -> dict[str, BaseDistribution]:
         return {name: domain.distribution for name, domain in self.space.items()}
 
     def _run(
         self,
-        proposals: Callable[[optuna.Study], Proposals],
+        proposals: Callable[[StoredStudy], Proposals],
         total: int,
         executor: Executor | None,
         scheduler: str | None,
@@ -340,13 +339,13 @@ class Study:
     def _violations(self, trial: FrozenTrial) -> tuple[float, ...]:
         return violations(trial.user_attrs[OUTCOME_KEY]["metrics"], self.constraints)
 
-    def _result(self, study: optuna.Study) -> StudyResult:
+    def _result(self, study: StoredStudy) -> StudyResult:
         return StudyResult(
             self.name,
             self.folder,
             tuple(
                 read_trial(stored, self.objectives, self.constraints)
-                for stored in study.get_trials(deepcopy=False)
+                for stored in study.trials()
                 if OUTCOME_KEY in stored.user_attrs
             ),
             self.objectives,
@@ -360,7 +359,7 @@ class Study:
         parameters = self.family.parameters if isinstance(self.family, Design) else {}
         return {name: parameters[name].kind for name in self.space if name in parameters}
 
-    def _how_to_resume(self, study: optuna.Study, total: int) -> str:
+    def _how_to_resume(self, study: StoredStudy, total: int) -> str:
         done = len(self._result(study).trials)
         return (
             f"stopped after {done} of {max(total, done)} trials, which are kept in "

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from optuna.trial import FrozenTrial
-
 from voxsoft.design import Constraint
+from voxsoft.search.optuna_bridge import FrozenTrial
 from voxsoft.simulation import Status
 from voxsoft.study.indexed_cavities import IndexedCavities
 from voxsoft.study.outcome import Outcome

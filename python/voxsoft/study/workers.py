@@ -9,6 +9,8 @@ import threading
 from collections.abc import Callable
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor
 from contextlib import suppress
+from multiprocessing.context import BaseContext
+from multiprocessing.process import BaseProcess
 from typing import Any, Final, Protocol, TypeVar
 
 from voxsoft._memory import memory_limit
@@ -118,14 +120,15 @@ class LocalProcesses:
         if not now:
             self._pool.shutdown(cancel_futures=True)
             return
-        # Python 3.14 has kill_workers() for this; earlier ones keep the same tables.
-        manager: Any = self._pool._executor_manager_thread  # a thread, unlike what typeshed says
-        for process in list((self._pool._processes or {}).values()):
+        for process in self._context.processes:
             process.kill()
-        self._pool.shutdown(wait=False, cancel_futures=True)
-        if manager is not None:
-            # It closes its pipe; the end of the program, which writes to it, must not come between.
-            manager.join(_MANAGER_PATIENCE)
+        # The thread that minds the pool closes its pipe; the end of the program, which writes to
+        # it, must not come between.
+        ending = threading.Thread(
+            target=self._pool.shutdown, kwargs={"cancel_futures": True}, daemon=True
+        )
+        ending.start()
+        ending.join(_MANAGER_PATIENCE)
 
     def _start(self) -> None:
         methods = multiprocessing.get_all_start_methods()
@@ -133,9 +136,11 @@ class LocalProcesses:
         if context.get_start_method() == "forkserver":
             # Imported once by the server; every worker starts as a copy of it.
             context.set_forkserver_preload(["voxsoft.study.outcome"])
+        self._context = _RememberingContext(context)
+        as_context: Any = self._context
         self._pool = ProcessPoolExecutor(
             self.slots,
-            mp_context=context,
+            mp_context=as_context,
             initializer=_prepare_worker,
             initargs=(
                 max(1, _usable_cores() // self.slots),
@@ -151,6 +156,24 @@ class LocalProcesses:
                 'in a script, start the study below `if __name__ == "__main__":`, because the '
                 "workers import the script; or pass executor=ThreadPoolExecutor()",
             ) from None
+
+
+class _RememberingContext:
+    """A way to start processes that knows those it started: a pool does not tell its own."""
+
+    def __init__(self, context: BaseContext) -> None:
+        self._context = context
+        self.processes: list[BaseProcess] = []
+
+    def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - whatever a context has
+        return getattr(self._context, name)
+
+    def Process(self, *arguments: Any, **options: Any) -> BaseProcess:  # noqa: ANN401
+        """Make a process, as the pool calls it."""
+        start: Any = self._context
+        process: BaseProcess = start.Process(*arguments, **options)
+        self.processes.append(process)
+        return process
 
 
 class ForeignExecutor:
