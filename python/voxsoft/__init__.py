@@ -68,6 +68,7 @@ if TYPE_CHECKING:
         load_card,
     )
     from voxsoft.mesh import Mesh
+    from voxsoft.metrics.own import metric
     from voxsoft.shapes import *
     from voxsoft.simulation import Result, check, gradient, simulate, simulate_many
     from voxsoft.study import Study
@@ -114,6 +115,7 @@ _HOMES = {
         "load_card",
     ),
     "voxsoft.mesh": ("Mesh",),
+    "voxsoft.metrics": ("metric",),
     "voxsoft.shapes": (
         "IWP",
         "AnyShape",

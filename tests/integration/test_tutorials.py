@@ -19,6 +19,8 @@ from pathlib import Path
 
 import pytest
 
+from voxsoft.metrics import registry
+
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [DOCS / "start.md", *sorted(DOCS.glob("tutorials/*.md")), *sorted(DOCS.glob("how-to/*.md"))]
@@ -133,7 +135,10 @@ def run_script(page):
 def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     monkeypatch.chdir(tmp_path)
+    before = dict(registry._ALL)
     run_page(page)
+    registry._ALL.clear()  # of what the page added
+    registry._ALL.update(before)
 
 
 @pytest.mark.slow

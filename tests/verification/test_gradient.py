@@ -11,6 +11,7 @@ from voxsoft.design import Design
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS
+from voxsoft.metrics.registry import BUILT_IN
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loaded_state import LoadedState
 
@@ -239,7 +240,7 @@ def test_mass_and_a_number_that_is_zero():
     check(bar, {"end": targets["end"]}, ["weight"])
 
 
-@pytest.mark.parametrize("name", sorted(name for name in METRICS if METRICS[name].slope))
+@pytest.mark.parametrize("name", sorted(name for name in BUILT_IN if METRICS[name].slope))
 def test_slopes_of_metrics_are_their_derivatives(name):
     """At any positions, not only in equilibrium, along a random direction."""
     pressed = families.cylinder(radius="15 mm", height="20 mm").with_values(

@@ -39,8 +39,8 @@ class Objective(Record):
         The name of a chamber of the design, or the index of a cavity; 0 is the largest. Default:
         ``"all"``.
     percentile
-        For ``max_stress`` and ``max_stretch``: what so many percent of the volume stay at or
-        below, above 0 and at most 100; default: 100, the largest of all voxels.
+        Of a metric that takes the largest of all voxels: what so many percent of the volume stay
+        at or below, above 0 and at most 100; default: 100.
 
     Examples
     --------

@@ -1,10 +1,12 @@
 """Metrics: the numbers that objectives and constraints of a design may ask of its state.
 
-:data:`METRICS` lists them all. To add one, write a :class:`Metric` with its value, and its slope
-where it has one, in a file of its own, and name it in ``registry.py``.
+:data:`METRICS` lists them all. :func:`metric` adds one of a user's. One of VoxSoft's own is a
+:class:`Metric` with its value, and its slope where it has one, in a file of its own, and its name
+in ``registry.py``.
 """
 
-from voxsoft.metrics.metric import Metric, Option, Place, SlopeState, State, Target
+from voxsoft.metrics.definition import Metric, Option, Place, SlopeState, State, Target
+from voxsoft.metrics.own import metric
 from voxsoft.metrics.registry import METRICS, metric_named
 
 __all__ = [
@@ -15,5 +17,6 @@ __all__ = [
     "SlopeState",
     "State",
     "Target",
+    "metric",
     "metric_named",
 ]

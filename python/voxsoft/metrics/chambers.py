@@ -9,7 +9,7 @@ import numpy as np
 
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.mesh import MeshCavity
-from voxsoft.metrics.metric import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 
 
 def _chosen(state: State, target: Target) -> Sequence[MeshCavity]:

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from voxsoft.geometry import mean_displacement
-from voxsoft.metrics.metric import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 from voxsoft.metrics.probes import place_of_target
 from voxsoft.metrics.vectors import component, direction
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from voxsoft.errors import DesignError
-from voxsoft.metrics.metric import Place, State, Target
+from voxsoft.metrics.definition import Place, State, Target
 from voxsoft.records import closest
 
 

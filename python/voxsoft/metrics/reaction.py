@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from voxsoft.metrics.metric import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 from voxsoft.metrics.vectors import component, direction
 
 

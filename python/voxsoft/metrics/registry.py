@@ -8,8 +8,8 @@ from typing import Final
 
 from voxsoft.errors import DesignError
 from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
+from voxsoft.metrics.definition import Metric
 from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
-from voxsoft.metrics.metric import Metric
 from voxsoft.metrics.penetration import PENETRATION
 from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
@@ -18,27 +18,46 @@ from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
-#: Every metric by the name that objectives and constraints call it.
-METRICS: Final[Mapping[str, Metric]] = MappingProxyType(
-    {
-        metric.name: metric
-        for metric in (
-            DISPLACEMENT,
-            ROTATION,
-            MASS,
-            VOLUME,
-            CAVITY_VOLUME,
-            CAVITY_VOLUME_CHANGE,
-            ELASTIC_ENERGY,
-            REACTION,
-            MAX_DISPLACEMENT,
-            MAX_STRETCH,
-            MAX_STRESS,
-            MIN_VOLUME_RATIO,
-            PENETRATION,
-        )
-    }
-)
+_ALL: Final[dict[str, Metric]] = {
+    metric.name: metric
+    for metric in (
+        DISPLACEMENT,
+        ROTATION,
+        MASS,
+        VOLUME,
+        CAVITY_VOLUME,
+        CAVITY_VOLUME_CHANGE,
+        ELASTIC_ENERGY,
+        REACTION,
+        MAX_DISPLACEMENT,
+        MAX_STRETCH,
+        MAX_STRESS,
+        MIN_VOLUME_RATIO,
+        PENETRATION,
+    )
+}
+
+#: The names that every VoxSoft knows.
+BUILT_IN: Final = frozenset(_ALL)
+
+#: Every metric by the name that objectives and constraints call it; :func:`voxsoft.metric` adds to
+#: them.
+METRICS: Final[Mapping[str, Metric]] = MappingProxyType(_ALL)
+
+
+def register(metric: Metric) -> None:
+    """Add a metric of a user's.
+
+    Raises
+    ------
+    DesignError
+        Another metric has its name.
+    """
+    taken = _ALL.get(metric.name)
+    if taken is not None and taken.home != metric.home:
+        by = f"the metric of {taken.home}" if taken.home else "a metric of VoxSoft"
+        raise DesignError(f"metric {metric.name}", f"is the name of {by}", "give it another name")
+    _ALL[metric.name] = metric
 
 
 def metric_named(name: str) -> Metric:

@@ -8,7 +8,7 @@ import numpy as np
 
 from voxsoft.errors import SimulationError
 from voxsoft.geometry import mean_rotation
-from voxsoft.metrics.metric import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 from voxsoft.metrics.probes import place_of_target
 
 

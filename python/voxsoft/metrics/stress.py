@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from voxsoft.metrics.metric import Metric, State, Target
+from voxsoft.metrics.definition import Metric, State, Target
 
 
 def _stress(state: State, target: Target) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from voxsoft.errors import SimulationError
-from voxsoft.metrics.metric import Floats, Target
+from voxsoft.metrics.definition import Floats, Target
 
 
 def component(vector: Floats, target: Target) -> float:

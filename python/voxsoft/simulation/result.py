@@ -169,17 +169,16 @@ class Result(Shown):
         Parameters
         ----------
         name
-            A key of :data:`voxsoft.metrics.METRICS`.
+            A key of :data:`voxsoft.metrics.METRICS`, which says what each needs and takes.
         probe
-            Where, for ``displacement`` and ``rotation``; may be left out if there is one probe.
+            Where, for a metric that needs it; may be left out if there is one probe.
         axis
             The component of a vector; default: its magnitude.
         cavity
-            The chamber for ``cavity_volume`` and ``cavity_volume_change``, by its name or the index
-            of the cavity; default: all of them.
+            The chamber, by its name or the index of the cavity; default: all of them.
         percentile
-            For ``max_stress`` and ``max_stretch``: what so many percent of the volume stay at or
-            below, which one sharp corner does not decide; default: 100, the largest of all.
+            What so many percent of the volume stay at or below, which one sharp corner does not
+            decide; default: 100, the largest of all.
 
         Raises
         ------

@@ -12,6 +12,8 @@ from typing import Any, Final
 from voxsoft._core import __version__
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import StudyError
+from voxsoft.metrics import METRICS
+from voxsoft.metrics.own import own_metrics
 from voxsoft.study.space import Space
 
 SCHEMA: Final = "voxsoft-study/1"
@@ -27,7 +29,8 @@ def definition(
 ) -> dict[str, Any]:
     """Write everything that decides the results of a study as plain data.
 
-    A function is written as its name and a hash of its source text, where it has one.
+    A function, also that of a metric of the user's, is written as its name and a hash of its
+    source text, where it has one.
     """
     written = {
         "schema": SCHEMA,
@@ -41,6 +44,9 @@ def definition(
         "evaluate": _function(evaluate),
         "seed": seed,
     }
+    own = own_metrics([*objectives.values(), *constraints.values()])
+    if own:
+        written["metrics"] = {each.name: _function(METRICS[each.name].value) for each in own}
     plain: dict[str, Any] = json.loads(json.dumps(written))
     return plain
 

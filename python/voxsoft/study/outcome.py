@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from voxsoft.design import Design
 from voxsoft.errors import DisconnectedError, NoCavityError, VoxSoftError
+from voxsoft.metrics.own import OwnMetric, missing_metrics
 from voxsoft.simulation import Result, Status, simulate
 from voxsoft.study.indexed_cavities import IndexedCavities
 
@@ -74,6 +75,24 @@ def evaluate_design(design: Design) -> Outcome:
     except VoxSoftError as error:
         outcome = Outcome("failed", str(error))
     return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def evaluate_with_metrics(
+    wanted: tuple[OwnMetric, ...], evaluate: Evaluate, design: Design
+) -> Outcome:
+    """Evaluate a design where metrics of the user's are known: in a worker that knows them not yet.
+
+    Parameters
+    ----------
+    wanted
+        Metrics that the study asks for and VoxSoft does not have.
+    evaluate, design
+        What is done, and with what.
+    """
+    missing = missing_metrics(wanted)
+    if missing:
+        return Outcome("failed", f"the worker does not know the metric {', '.join(missing)}")
+    return evaluate(design)
 
 
 def outcome_of_result(result: Result, metrics: Mapping[str, float]) -> Outcome:

@@ -16,12 +16,13 @@ from optuna.samplers import BaseSampler
 from voxsoft._folders import folder_name
 from voxsoft.design import Constraint, Design, Objective, families, require_design
 from voxsoft.errors import StudyError
+from voxsoft.metrics.own import own_metrics
 from voxsoft.search.optuna_bridge import BaseStorage, FrozenTrial, StoredStudy
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.study.definition import definition
 from voxsoft.study.event import ProgressCallback
 from voxsoft.study.gate import Gate
-from voxsoft.study.outcome import Evaluate, evaluate_design
+from voxsoft.study.outcome import Evaluate, evaluate_design, evaluate_with_metrics
 from voxsoft.study.proposals import (
     Proposals,
     grid_proposals,
@@ -34,7 +35,7 @@ from voxsoft.study.slopes import answers_of, evaluate_slopes, require_slopes
 from voxsoft.study.space import Domain, read_space, space_of
 from voxsoft.study.storage import TrialStorage
 from voxsoft.study.trial import OUTCOME_KEY, read_trial, violations
-from voxsoft.study.workers import make_workers
+from voxsoft.study.workers import make_workers, require_metrics
 
 Family = Design | Callable[..., Design]
 
@@ -304,11 +305,16 @@ class Study:
         with self._storage.open(write=True) as study:
             evaluators = make_workers(executor, scheduler, workers, gate)
             finished = False
+            evaluate = evaluate or self._evaluate
+            own = own_metrics([*self.objectives.values(), *self.constraints.values()])
+            if own:
+                evaluate = partial(evaluate_with_metrics, own, evaluate)
             try:
+                require_metrics(evaluators, own)
                 StudyRun(
                     study,
                     self._build,
-                    evaluate or self._evaluate,
+                    evaluate,
                     self.objectives,
                     self.constraints,
                     evaluators,

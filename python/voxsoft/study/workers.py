@@ -15,6 +15,7 @@ from typing import Any, Final, Protocol, TypeVar
 
 from voxsoft._memory import memory_limit
 from voxsoft.errors import MissingPackageError, StudyError
+from voxsoft.metrics.own import OwnMetric, missing_metrics
 from voxsoft.study.gate import Gate, SharedGate, keep_gate, through_gate
 
 #: Seconds to wait for a Dask scheduler.
@@ -238,6 +239,26 @@ class DaskCluster:
     def close(self, *, now: bool) -> None:
         """Leave the cluster running."""
         self._client.close()
+
+
+def require_metrics(workers: Workers, wanted: tuple[OwnMetric, ...]) -> None:
+    """Check that workers know metrics that the user added, before any trial begins.
+
+    Raises
+    ------
+    StudyError
+        They do not: the metrics were typed into a session, or stand in a module that the workers
+        cannot import.
+    """
+    missing = workers.submit(missing_metrics, wanted).result() if wanted else ()
+    if missing:
+        homes = sorted({module for name, module in wanted if name in missing})
+        raise StudyError(
+            "workers",
+            f"do not know the metric {', '.join(missing)} of {', '.join(homes)}",
+            "register it at the top of a script or of a module that the workers can import, or "
+            "pass executor=ThreadPoolExecutor()",
+        )
 
 
 def _usable_cores() -> int:

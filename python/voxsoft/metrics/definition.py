@@ -116,6 +116,8 @@ class Metric:
     needs, takes
         Keys of the target without which it has no place, and those that it can do without. Others
         are refused.
+    home
+        Module and name of the function of a metric that a user added; empty for VoxSoft's own.
 
     Examples
     --------
@@ -130,6 +132,7 @@ class Metric:
     slope: Callable[[SlopeState, Target], Floats] | None
     needs: frozenset[Option] = frozenset()
     takes: frozenset[Option] = frozenset()
+    home: str = ""
 
     def refusals(self, target: Target) -> Iterator[Problem]:
         """Find the keys of a target that this metric would not use."""
