@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from voxsoft._shown import Shown
 from voxsoft.calibration.line import LineName, StationLine
 from voxsoft.calibration.measurement import Measurement
-from voxsoft.design import Design, Gravity, Probe
+from voxsoft.design import Design, Probe
 from voxsoft.errors import MeasurementError
 from voxsoft.geometry import mean_displacement
 from voxsoft.materials import Material
 from voxsoft.records import closest
 from voxsoft.simulation import Place, Setup
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import place_of, voxel_size
 from voxsoft.units import format_quantity
 
@@ -117,9 +118,8 @@ class Experiment(Shown):
     @cached_property
     def gravity(self) -> tuple[float, float, float]:
         """Direction of gravity; zero without it."""
-        loads = (load for load in self.design.loads if isinstance(load, Gravity))
-        load = next(loads, None)
-        return load.direction if load else (0.0, 0.0, 0.0)
+        ways = (load.direction for load in readings(self.design) if load.quantity == "acceleration")
+        return next(ways, (0.0, 0.0, 0.0))
 
     @cached_property
     def places(self) -> tuple[Place, ...]:

@@ -16,11 +16,12 @@ from typing import Final, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Clamp, Force, Gravity, Pressure, Traction
+from voxsoft.design import Clamp
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
+from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation import Setup
-from voxsoft.simulation.places import vertices_in
+from voxsoft.simulation.loads import LoadReceiver
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -226,32 +227,13 @@ class BrickModel:
         return replace(self, fixed=fixed, values=values, clamp_nodes=tuple(nodes))
 
     def _with_loads(self, setup: Setup, grid: _Lattice, spread: _Spread) -> Self:
-        forces, gravity = self.forces.copy(), self.gravity.copy()
-        pressures: list[FacePressure] = []
-        design, mesh = setup.design, setup.mesh
-        for index, load in enumerate(design.loads):
-            factor = 1.0 if load.history is None else load.history.factor[-1]
-            if isinstance(load, Gravity):
-                down = np.asarray(load.direction) / np.linalg.norm(load.direction)
-                gravity += factor * load.value * down
-            elif isinstance(load, Pressure):
-                for cavity in setup.pressurized(load, f"loads[{index}]"):
-                    faces = grid.split_faces(cavity.triangles, self.split)
-                    pressures.append(FacePressure(faces, factor * load.value))
-            elif isinstance(load, Force):
-                vertices = vertices_in(load.region, mesh, design.shapes, f"loads[{index}]")
-                forces += factor * spread.share(vertices, np.asarray(load.value))
-            elif isinstance(load, Traction):
-                vertices = vertices_in(load.region, mesh, design.shapes, f"loads[{index}]")
-                inside = np.zeros(len(mesh.vertices), dtype=bool)
-                inside[vertices] = True
-                loaded = mesh.triangles[inside[mesh.triangles].all(axis=1)]
-                faces = grid.split_faces(loaded, self.split)
-                if isinstance(load.value, float):
-                    pressures.append(FacePressure(faces, factor * load.value))
-                else:
-                    forces += factor * self._traction(faces, np.asarray(load.value))
-        return replace(self, forces=forces, gravity=gravity, pressures=tuple(pressures))
+        taken = _BrickLoads(setup.mesh, self, grid, spread)
+        for load in setup.loads:
+            taken.factor = load.reading.final_factor
+            for action in load.actions:
+                action.give_to(taken)
+        pressures = tuple(taken.pressures)
+        return replace(self, forces=taken.dead, gravity=taken.gravity, pressures=pressures)
 
     def face_nodes(self, faces: Ints) -> Ints:
         """Nodes of faces (f, 4, 8 or 9): corners, then middles of edges, then center."""
@@ -266,12 +248,6 @@ class BrickModel:
             20: np.repeat([-1 / 12, 1 / 3], [4, 4]),
             27: np.repeat([1 / 36, 4 / 36, 16 / 36], [4, 4, 1]),
         }[self.bricks.shape[1]]
-
-    def _traction(self, faces: Ints, traction: Floats) -> Floats:
-        nodes = self.face_nodes(faces)
-        area = np.zeros(len(self.nodes))
-        np.add.at(area, nodes, np.tile(self.edge**2 * self.face_shares, (len(nodes), 1)))
-        return np.outer(area, traction)
 
 
 def _face_nodes() -> Ints:
@@ -390,6 +366,40 @@ class _Spread:
         forces = np.zeros((self._count, 3))
         forces[nodes] = np.outer(shares, total)
         return forces
+
+
+class _BrickLoads(LoadReceiver):
+    """Loads on bricks, forces shared by what the nodes' shape functions say."""
+
+    def __init__(self, mesh: Mesh, bricks: BrickModel, grid: _Lattice, spread: _Spread) -> None:
+        super().__init__(mesh)
+        self._bricks, self._grid, self._spread = bricks, grid, spread
+        self.factor = 1.0
+        self.gravity = bricks.gravity.copy()
+        self.dead = bricks.forces.copy()
+        self.pressures: list[FacePressure] = []
+
+    def acceleration(self, acceleration: Floats) -> None:
+        self.gravity += self.factor * acceleration
+
+    def pressure(
+        self, triangles: NDArray[np.int32], value: float, cavity: MeshCavity | None
+    ) -> None:
+        faces = self._grid.split_faces(triangles, self._bricks.split)
+        self.pressures.append(FacePressure(faces, self.factor * value))
+
+    def forces(self, vertices: NDArray[np.uint32], forces: Floats) -> None:
+        np.add.at(self.dead, self._bricks.vertex_nodes[vertices], self.factor * forces)
+
+    def shared_force(self, vertices: NDArray[np.uint32], total: Floats) -> None:
+        self.dead += self.factor * self._spread.share(vertices, total)
+
+    def traction(self, triangles: NDArray[np.int32], stress: Floats) -> None:
+        bricks = self._bricks
+        nodes = bricks.face_nodes(self._grid.split_faces(triangles, bricks.split))
+        area = np.zeros(len(bricks.nodes))
+        np.add.at(area, nodes, np.tile(bricks.edge**2 * bricks.face_shares, (len(nodes), 1)))
+        self.dead += self.factor * np.outer(area, stress)
 
 
 def _split_cells(cells: Ints, split: int) -> Ints:

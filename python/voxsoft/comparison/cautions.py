@@ -8,11 +8,12 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Design, Pressure
+from voxsoft.design import Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
 from voxsoft.design.cut_cells import built_parts
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import voxel_size
 
 #: A face of a voxel that turns away from the surface it stands for by more than this is a step of
@@ -37,8 +38,8 @@ def cautions_of(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
         What is compared, and its mesh.
     """
     pressed: set[int] = set()
-    for number, load in enumerate(design.loads):
-        if isinstance(load, Pressure):
+    for number, load in enumerate(readings(design)):
+        if load.cavity is not None:
             pressed.update(chosen_cavities(load.cavity, mesh, f"loads[{number}].cavity"))
     for index in sorted(pressed):
         cavity = mesh.cavities[index]

@@ -132,6 +132,26 @@ class Traction(Record):
 AnyLoad = Annotated[Gravity | Pressure | Force | Traction, Field(discriminator="kind")]
 
 
+def scaled(load: AnyLoad, factor: float) -> AnyLoad:
+    """Return a load that is so many times as large.
+
+    Parameters
+    ----------
+    load
+        Any load.
+    factor
+        What its value is multiplied by.
+
+    Examples
+    --------
+    >>> scaled(Pressure(value="4 kPa"), 0.5).value
+    2000.0
+    """
+    value = load.value
+    many = tuple(factor * each for each in value) if isinstance(value, tuple) else factor * value
+    return load.replace(value=many)
+
+
 class Floor(Record):
     """A horizontal plane without friction that nothing sinks through.
 

@@ -9,12 +9,13 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Chamber, Design, Pressure
+from voxsoft.design import Chamber, Design
 from voxsoft.errors import DesignError, NoCavityError
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.metrics import Target
 from voxsoft.shapes import Shape
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import inside_region, voxel_size
 from voxsoft.units import format_quantity
 
@@ -128,9 +129,7 @@ def indices_used(design: Design) -> list[tuple[str, int]]:
         "constraints": design.constraints,
     }
     found: list[tuple[str, str | int | None]] = [
-        (f"loads[{number}].cavity", load.cavity)
-        for number, load in enumerate(design.loads)
-        if isinstance(load, Pressure)
+        (f"loads[{number}].cavity", load.cavity) for number, load in enumerate(readings(design))
     ]
     for table, entries in targets.items():
         found += [(f"{table}.{name}.cavity", each.cavity) for name, each in entries.items()]

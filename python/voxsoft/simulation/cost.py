@@ -13,9 +13,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Design, Force, Gravity, Pressure, Traction
+from voxsoft.design import Design
 from voxsoft.materials import Hyperelastic, Material, Rigid
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.ways import DYNAMICS, STATICS, Way, way_of
 
 #: Seconds of one constraint and step of relaxation or dynamics of a lattice, and of one
@@ -181,19 +182,17 @@ def _motion(design: Design, mesh: Mesh, wall: float | None, mass: float) -> floa
     sizes = np.ptp(mesh.vertices, axis=0)
     thick, wide, long = np.sort(sizes)
     force, strain = np.zeros(3), 0.0
-    for load in design.loads:
-        final = abs(load.history.factor[-1]) if load.history else 1.0
-        if isinstance(load, Gravity):
-            down = np.asarray(load.direction)
-            force += final * load.value * mass * np.abs(down) / np.linalg.norm(down)
-        elif isinstance(load, Force):
-            force += final * np.abs(load.value)
-        elif isinstance(load, Traction):
-            force += final * np.linalg.norm(load.value) * thick * wide
-        elif isinstance(load, Pressure):
+    for load in readings(design):
+        size = abs(load.final_factor) * load.size
+        if load.cavity is not None:
             inside = max((_width(mesh, c.triangles) for c in mesh.cavities), default=thick)
             slender = 0.5 * inside / (wall or 0.5 * inside)
-            strain += final * abs(load.value) / young * slender * max(slender, 1.0)
+            strain += abs(size) / young * slender * max(slender, 1.0)
+        elif load.quantity == "pressure":
+            force += abs(size) * thick * wide
+        else:
+            along = np.abs(load.direction) / (np.linalg.norm(load.direction) or 1.0)
+            force += size * (mass if load.quantity == "acceleration" else 1.0) * along
     axial = force[int(np.argmax(sizes))]
     across = float(np.linalg.norm(force) ** 2 - axial**2) ** 0.5
     moved = across * long**2 / (6.0 * young * wide * thick**3 / 12.0)

@@ -7,9 +7,10 @@ from typing import Any, Final
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
-from voxsoft.design import Pressure, Solver
+from voxsoft.design import Solver
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_percent
 
@@ -52,7 +53,9 @@ def find_equilibrium(
         Volume control without a pressure, or not enough memory.
     """
     control = solver.control or "load"
-    if control == "volume" and not any(isinstance(load, Pressure) for load in setup.design.loads):
+    if control == "volume" and not any(
+        reading.cavity is not None for reading in readings(setup.design)
+    ):
         raise SimulationError(
             "solver.control",
             '"volume" needs a volume to control, and the design has no pressure load',

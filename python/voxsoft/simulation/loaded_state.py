@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Design, Traction
+from voxsoft.design import Design
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.loads.actions import SurfacePressure
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.setup import Setup
@@ -93,7 +94,7 @@ class LoadedState:
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
-        for index, load in enumerate(self.design.loads):
-            if isinstance(load, Traction) and isinstance(load.value, float):
-                pressure = load.value * (load.history.factor[-1] if load.history else 1.0)
-                yield self.setup.loaded_triangles(load, f"loads[{index}]"), pressure
+        for load in self.setup.loads:
+            for action in load.actions:
+                if isinstance(action, SurfacePressure) and action.cavity is None:
+                    yield action.triangles, action.value * load.reading.final_factor

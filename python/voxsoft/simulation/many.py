@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft import _core
 from voxsoft._shown import Shown
 from voxsoft.design import Design, Solver, require_design
+from voxsoft.design.load import scaled
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.geometry import mean_displacement
 from voxsoft.materials import Lattice, Material, material_of
@@ -287,8 +288,7 @@ def _alone(
         parts = [part.replace(material=material) for part in design.parts]
         changes["parts"] = tuple(parts)
     if factor != 1.0:
-        scaled = [load.replace(value=_times(factor, load.value)) for load in design.loads]
-        changes["loads"] = tuple(scaled)
+        changes["loads"] = tuple(scaled(load, factor) for load in design.loads)
     try:
         result = simulate(Setup(design.replace(**changes), setup.mesh), **settings)
     except SimulationError as error:  # a tangent too large for the memory: the others still count
@@ -300,7 +300,3 @@ def _alone(
 def settled_of(setup: Setup, result: Result) -> Settled:
     """One of many from a result of its own."""
     return Settled(result.status, result.message, result.positions, result.residual, "alone", setup)
-
-
-def _times(factor: float, value: float | tuple[float, ...]) -> float | tuple[float, ...]:
-    return factor * value if isinstance(value, float) else tuple(factor * v for v in value)

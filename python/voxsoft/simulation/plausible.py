@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from voxsoft.design import Design, Gravity, Pressure, Traction
+from voxsoft.design import Design
 from voxsoft.materials import Rigid
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.loads import readings
 from voxsoft.units import format_quantity
 
 # Bounds lie where no soft robot is known to be, ten times or more from what is usual, and within a
@@ -74,16 +75,16 @@ def _of_size(mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
 
 def _of_loads(design: Design) -> Iterator[Diagnostic]:
     # A file states the unit; what was typed in Python may have been meant in kPa.
-    for index, load in enumerate(design.loads if design.is_typed("loads") else ()):
+    for index, load in enumerate(readings(design) if design.is_typed("loads") else ()):
         where = f"loads[{index}].value"
-        if isinstance(load, (Pressure, Traction)):
-            largest = float(np.abs(load.value).max())
+        if load.quantity == "pressure":
+            largest = float(np.abs(load.components).max())
             if 0.0 < largest < _LOWEST_PRESSURE:
                 what = f"{format_quantity(largest, 'pressure')} is less than 5 mm of water"
                 hint = f'pressures in Python are in Pa: write {largest:g}*kPa or "{largest:g} kPa"'
                 yield _warning(where, what, hint)
-        elif isinstance(load, Gravity) and abs(load.value) > _STRONGEST:
-            what = f"{format_quantity(load.value, 'acceleration')} is {load.value / 9.81:,.0f} g"
+        elif load.quantity == "acceleration" and abs(load.size) > _STRONGEST:
+            what = f"{format_quantity(load.size, 'acceleration')} is {load.size / 9.81:,.0f} g"
             yield _warning(where, what, "accelerations are in m/s^2: 9.81 on earth")
 
 

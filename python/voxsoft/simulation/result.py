@@ -20,6 +20,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Place, Target, metric_named
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.warnings import warnings_at
@@ -294,9 +295,8 @@ def moved_in_words(name: str, moved: NDArray[np.float64]) -> str:
 def _pressures(design: Design, mesh: Mesh) -> list[float]:
     """The final pressure in Pa in each cavity."""
     pressures = [0.0] * len(mesh.cavities)
-    for number, load in enumerate(design.loads):
-        if load.kind == "pressure":
-            final = load.history.factor[-1] if load.history else 1.0
+    for number, load in enumerate(readings(design)):
+        if load.cavity is not None:
             for index in chosen_cavities(load.cavity, mesh, f"loads[{number}].cavity"):
-                pressures[index] += final * load.value
+                pressures[index] += load.final_factor * load.size
     return pressures

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -12,18 +11,8 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import shortage
-from voxsoft.design import (
-    Clamp,
-    Design,
-    Force,
-    Gravity,
-    Pressure,
-    Probe,
-    Region,
-    Traction,
-)
+from voxsoft.design import Clamp, Design, Probe, Region
 from voxsoft.design import History as LoadHistory
-from voxsoft.design.chamber import chosen_cavities
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
 from voxsoft.materials import Material
@@ -31,11 +20,10 @@ from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
+from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
-
-Triangles = NDArray[np.int32]
 
 #: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
 #: (lattice) and 810 (rubber), half as much again for what is not a block.
@@ -161,61 +149,28 @@ class Setup:
             )
         for clamp, vertices in zip(self.design.clamps, self.clamped, strict=True):
             parts.clamp(vertices, [axis in clamp.axes for axis in "xyz"], **_motion(clamp))
-        for index, load in enumerate(self.design.loads):
-            where, history = f"loads[{index}]", _times_and_factors(load.history)
-            if isinstance(load, Gravity):
-                down = np.asarray(load.direction) / np.linalg.norm(load.direction)
-                parts.gravity((load.value * down).tolist(), history)
-            elif isinstance(load, Pressure):
-                for cavity in self.pressurized(load, where):
-                    voids = (cavity.void_tets.astype(np.uint32), cavity.void_parts)
-                    triangles = cavity.triangles.astype(np.uint32)
-                    parts.pressure(triangles, load.value, history, voids)
-            elif isinstance(load, Force):
-                vertices = self.vertices_in(load.region, where)
-                share = np.tile(np.asarray(load.value) / len(vertices), (len(vertices), 1))
-                parts.forces(vertices, share, history)
-            else:
-                self._add_traction(parts, load, where, history)
+        for load in self.loads:
+            receiver = _CoreLoads(self.mesh, parts, _times_and_factors(load.reading.history))
+            for action in load.actions:
+                action.give_to(receiver)
         if self.design.floor is not None:
             parts.floor(self.design.floor.z)
         return parts
 
-    def pressurized(self, load: Pressure, where: str) -> Sequence[MeshCavity]:
-        """The cavities that a pressure is in; `where` is the place an error names."""
-        chosen = chosen_cavities(load.cavity, self.mesh, f"{where}.cavity")
-        return [self.mesh.cavities[index] for index in chosen]
-
-    def _add_traction(
-        self, parts: _core.ProblemParts, load: Traction, where: str, history: _CoreHistory
-    ) -> None:
-        triangles = self.loaded_triangles(load, where)
-        if isinstance(load.value, float):
-            parts.pressure(triangles.astype(np.uint32), load.value, history)
-            return
-        a, b, c = self.mesh.vertices[triangles].transpose(1, 0, 2)
-        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
-        forces = np.zeros_like(self.mesh.vertices)
-        for corner in range(3):
-            np.add.at(forces, triangles[:, corner], np.outer(areas / 3.0, load.value))
-        loaded = np.unique(triangles).astype(np.uint32)
-        parts.forces(loaded, forces[loaded], history)
-
-    def loaded_triangles(self, load: Traction, where: str) -> Triangles:
-        """Triangles of the surface that a traction acts on, (t, 3).
+    @cached_property
+    def loads(self) -> tuple[ResolvedLoad, ...]:
+        """What each load of the design does.
 
         Raises
         ------
         DesignError
-            There are none.
+            One catches nothing.
         """
-        region = self.vertices_in(load.region, where)
-        inside = np.zeros(len(self.mesh.vertices), dtype=bool)
-        inside[region] = True
-        triangles = self.mesh.triangles[inside[self.mesh.triangles].all(axis=1)]
-        if len(triangles) == 0:
-            raise DesignError(where, "the region holds no triangle of the surface")
-        return triangles
+        return tuple(self.load(index) for index in range(len(self.design.loads)))
+
+    def load(self, index: int) -> ResolvedLoad:
+        """What one load of the design does; errors as for :attr:`loads`."""
+        return resolve(self.design.loads[index], self, f"loads[{index}]")
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:
@@ -231,8 +186,8 @@ class Setup:
 
     def _check_cavities(self) -> None:
         count = len(self.mesh.cavities)
-        for index, load in enumerate(self.design.loads):
-            if not isinstance(load, Pressure):
+        for index, reading in enumerate(readings(self.design)):
+            if reading.cavity is None:
                 continue
             where = f"loads[{index}]"
             if count == 0:
@@ -242,7 +197,7 @@ class Setup:
                     "make walls and caps at least one voxel thick, or the voxels smaller; "
                     "the check of the design shows where a chamber leaks",
                 )
-            self.pressurized(load, where)
+            self.load(index)
 
     def _check_support(self) -> None:
         """Every piece must be held, unless it may lie on a floor."""
@@ -325,6 +280,28 @@ def core_problem(mesh: Mesh, materials: list[Any], parts: _core.ProblemParts) ->
 
 
 _CoreHistory = tuple[list[float], list[float]] | None
+
+
+class _CoreLoads(LoadReceiver):
+    """Loads of the core's problem."""
+
+    def __init__(self, mesh: Mesh, parts: _core.ProblemParts, history: _CoreHistory) -> None:
+        super().__init__(mesh)
+        self._parts, self._history = parts, history
+
+    def acceleration(self, acceleration: NDArray[np.float64]) -> None:
+        self._parts.gravity(acceleration.tolist(), self._history)
+
+    def pressure(
+        self, triangles: NDArray[np.int32], value: float, cavity: MeshCavity | None
+    ) -> None:
+        voids = None
+        if cavity is not None:
+            voids = (cavity.void_tets.astype(np.uint32), cavity.void_parts)
+        self._parts.pressure(triangles.astype(np.uint32), value, self._history, voids)
+
+    def forces(self, vertices: NDArray[np.uint32], forces: NDArray[np.float64]) -> None:
+        self._parts.forces(vertices, forces, self._history)
 
 
 def _times_and_factors(history: LoadHistory | None) -> _CoreHistory:

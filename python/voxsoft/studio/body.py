@@ -14,14 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft._memory import gigabytes, memory_limit
-from voxsoft.design import Design, Force, Gravity, Pressure, Traction
+from voxsoft.design import Design
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.discretize import voxels_of
+from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
+from voxsoft.simulation.loads import read
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
@@ -124,8 +126,7 @@ class StudioBody:
             return self.setup
         design = self.setup.design
         loads = tuple(
-            load.replace(value=_scaled(load.value, factor))
-            for load, factor in zip(design.loads, factors, strict=True)
+            scaled(load, factor) for load, factor in zip(design.loads, factors, strict=True)
         )
         return Setup(design.replace(loads=loads), self.mesh)
 
@@ -275,27 +276,15 @@ def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
 
 
 def _load(setup: Setup, index: int) -> events.BodyLoad:
-    load = setup.design.loads[index]
-    factor = load.history.factor[-1] if load.history else 1.0
+    load = read(setup.design.loads[index])
     at, direction = _place(setup, index)
-    if isinstance(load, Gravity):
-        value, kind, label = load.value, "acceleration", "gravity"
-    elif isinstance(load, Pressure):
-        where = "all cavities" if load.cavity == "all" else _named(load.cavity)
-        value, kind, label = load.value, "pressure", f"pressure in {where}"
-    elif isinstance(load, Force):
-        value, kind, label = float(np.linalg.norm(load.value)), "force", "force"
-    elif isinstance(load.value, float):
-        value, kind, label = load.value, "pressure", "pressure on a surface"
-    else:
-        value, kind, label = float(np.linalg.norm(load.value)), "pressure", "traction"
-    value *= factor
+    value, kind = load.size * load.final_factor, load.quantity
     unit = format_quantity(value, kind).partition(" ")[2] if value else ""
     unit = unit or {"acceleration": "m/s^2", "force": "N", "pressure": "kPa"}[kind]
     return events.BodyLoad(
         index=index,
         kind=load.kind,
-        label=label,
+        label=load.label,
         value=value,
         quantity=kind,
         unit=unit,
@@ -307,55 +296,17 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
     )
 
 
-def _named(choice: str | int) -> str:
-    return f"cavity {choice}" if isinstance(choice, int) else f"chamber {choice}"
-
-
-def _scaled(value: Any, factor: float) -> Any:  # noqa: ANN401 - a number, or three
-    if isinstance(value, tuple):
-        return tuple(factor * component for component in value)
-    return factor * value
-
-
 def _factor(unit: str, kind: str) -> float:
     return parse(f"1 {unit}", kind)
 
 
 def _place(setup: Setup, index: int) -> tuple[Triple, Triple]:
     """Where a load is drawn, and which way it points."""
-    load, rest = setup.design.loads[index], setup.mesh.vertices
-    where = f"loads[{index}]"
     try:
-        if isinstance(load, Gravity):
-            direction = _unit(np.asarray(load.direction))
-            return _point(_entry(rest, np.asarray(direction))), direction
-        if isinstance(load, Pressure):
-            cavity = setup.pressurized(load, where)[0]
-            return _point(rest[np.unique(cavity.triangles)].mean(axis=0)), (0.0, 0.0, 0.0)
-        if isinstance(load, Traction):
-            triangles = setup.loaded_triangles(load, where)
-            a, b, c = rest[triangles].transpose(1, 0, 2)
-            normal = np.cross(b - a, c - a).sum(axis=0)
-            vector = -normal if isinstance(load.value, float) else np.asarray(load.value)
-            return _point(rest[np.unique(triangles)].mean(axis=0)), _unit(vector)
-        vertices = setup.vertices_in(load.region, where)
-        return _point(rest[vertices].mean(axis=0)), _unit(np.asarray(load.value))
-    except (VoxSoftError, IndexError):  # said among the findings
-        return _point(rest.mean(axis=0)), (0.0, 0.0, 0.0)
-
-
-def _entry(rest: NDArray[np.float64], direction: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Where a line along a direction through the middle of a body comes into its bounds.
-
-    An arrow that ends there stands outside of the body: in its middle the head would be hidden.
-    """
-    middle: NDArray[np.float64] = rest.mean(axis=0)
-    behind = np.where(direction > 0.0, middle - rest.min(axis=0), rest.max(axis=0) - middle)
-    moves = np.abs(direction) > 1e-9  # along other axes the line never leaves the bounds
-    if not moves.any():
-        return middle
-    middle -= direction * float(np.min(behind[moves] / np.abs(direction[moves])))
-    return middle
+        load = setup.load(index)
+    except VoxSoftError:  # said among the findings
+        return _point(setup.mesh.vertices.mean(axis=0)), (0.0, 0.0, 0.0)
+    return _point(load.at), _point(load.direction)
 
 
 def _parts(design: Design) -> list[events.BodyPart]:
@@ -372,11 +323,6 @@ def _leak(leak: Any, voxels: Voxels) -> events.Leak:  # noqa: ANN401 - a Leak of
     cell = np.asarray(leak.openings[0], dtype=np.float64)
     point = np.asarray(voxels.origin) + (cell + 0.5) * voxels.voxel_size
     return events.Leak(volume=float(leak.volume), point=_point(point))
-
-
-def _unit(vector: NDArray[np.float64]) -> Triple:
-    length = float(np.linalg.norm(vector))
-    return _point(vector / length) if length else (0.0, 0.0, 0.0)
 
 
 def _point(values: NDArray[np.float64]) -> Triple:

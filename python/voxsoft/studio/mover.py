@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design import Pressure
 from voxsoft.errors import SimulationError
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
@@ -232,11 +231,7 @@ class Mover:
 
 def inner_loads(body: StudioBody, index: int) -> range:
     """The core's loads that one load of the design became: one for each cavity."""
-    setup = body.setup
-    counts = [
-        len(setup.pressurized(load, f"loads[{number}]")) if isinstance(load, Pressure) else 1
-        for number, load in enumerate(setup.design.loads)
-    ]
+    counts = [len(load.actions) for load in body.setup.loads]
     first = sum(counts[:index])
     return range(first, first + counts[index])
 

@@ -1,0 +1,19 @@
+"""What each kind of load does to a body: the one place where loads are told apart."""
+
+from voxsoft.simulation.loads.actions import Action, LoadReceiver
+from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
+from voxsoft.simulation.loads.kinds import KINDS
+from voxsoft.simulation.loads.resolve import ResolvedLoad, read, readings, resolve
+
+__all__ = [
+    "KINDS",
+    "Action",
+    "LoadKind",
+    "LoadReading",
+    "LoadReceiver",
+    "LoadedBody",
+    "ResolvedLoad",
+    "read",
+    "readings",
+    "resolve",
+]

@@ -1,0 +1,164 @@
+"""What loads do to a mesh, and who takes it: the core, outside codes, pictures.
+
+Every load is made of these actions. All that a receiver must know are three of them, accelerations,
+pressures and forces on vertices; it may know better how forces on regions and surfaces are shared.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.mesh import Mesh, MeshCavity
+
+Floats = NDArray[np.float64]
+Vertices = NDArray[np.uint32]
+Triangles = NDArray[np.int32]
+
+_NOWHERE = (0.0, 0.0, 0.0)
+
+
+class LoadReceiver(ABC):
+    """Takes the actions of loads on a mesh; all values are those at a load factor of 1."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+
+    @abstractmethod
+    def acceleration(self, acceleration: Floats) -> None:
+        """Take an acceleration of the whole body, (3,), m/s²."""
+
+    @abstractmethod
+    def pressure(self, triangles: Triangles, value: float, cavity: MeshCavity | None) -> None:
+        """Take a pressure in Pa that follows triangles (t, 3), those of a cavity if given."""
+
+    @abstractmethod
+    def forces(self, vertices: Vertices, forces: Floats) -> None:
+        """Take dead forces on vertices, (v, 3), N."""
+
+    def shared_force(self, vertices: Vertices, total: Floats) -> None:
+        """Take a dead force, (3,), N, that vertices share evenly."""
+        self.forces(vertices, np.tile(total / len(vertices), (len(vertices), 1)))
+
+    def traction(self, triangles: Triangles, stress: Floats) -> None:
+        """Take a dead force for each undeformed area of triangles, (3,), Pa."""
+        a, b, c = self.mesh.vertices[triangles].transpose(1, 0, 2)
+        areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2.0
+        forces = np.zeros_like(self.mesh.vertices)
+        for corner in range(3):
+            np.add.at(forces, triangles[:, corner], np.outer(areas / 3.0, stress))
+        loaded = np.unique(triangles).astype(np.uint32)
+        self.forces(loaded, forces[loaded])
+
+
+class Action(ABC):
+    """One thing that a load does; the core counts each as a load of its own."""
+
+    @abstractmethod
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+
+    @abstractmethod
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Where this is drawn on vertices (n, 3), m, and which way it points, zero for no way."""
+
+
+@dataclass(frozen=True, eq=False)
+class Acceleration(Action):
+    """An acceleration of the whole body in m/s² along a direction of length 1, (3,)."""
+
+    value: float
+    direction: Floats
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+        receiver.acceleration(self.value * self.direction)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Where a line along it through the middle of the body comes into its bounds.
+
+        An arrow that ends there stands outside of the body: in its middle the head would be hidden.
+        """
+        direction = self.direction
+        middle: Floats = rest.mean(axis=0)
+        behind = np.where(direction > 0.0, middle - rest.min(axis=0), rest.max(axis=0) - middle)
+        moves = np.abs(direction) > 1e-9  # along other axes the line never leaves the bounds
+        if moves.any():
+            middle -= direction * float(np.min(behind[moves] / np.abs(direction[moves])))
+        return middle, direction
+
+
+@dataclass(frozen=True, eq=False)
+class SurfacePressure(Action):
+    """A pressure in Pa that follows triangles, (t, 3): those of a cavity, if one is given."""
+
+    triangles: Triangles = field(repr=False)
+    value: float
+    cavity: MeshCavity | None = None
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+        receiver.pressure(self.triangles, self.value, self.cavity)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """From the middle of the surface, into it; a cavity has no one way."""
+        a, b, c = rest[self.triangles].transpose(1, 0, 2)
+        inward = -np.cross(b - a, c - a).sum(axis=0)
+        direction = _unit(inward) if self.cavity is None else np.array(_NOWHERE)
+        return rest[np.unique(self.triangles)].mean(axis=0), direction
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceTraction(Action):
+    """A dead force for each undeformed area of triangles, (3,), Pa."""
+
+    triangles: Triangles = field(repr=False)
+    value: Floats
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+        receiver.traction(self.triangles, self.value)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """From the middle of the surface."""
+        return rest[np.unique(self.triangles)].mean(axis=0), _unit(self.value)
+
+
+@dataclass(frozen=True, eq=False)
+class SharedForce(Action):
+    """A dead force, (3,), N, that vertices share evenly."""
+
+    vertices: Vertices = field(repr=False)
+    value: Floats
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+        receiver.shared_force(self.vertices, self.value)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """From the middle of the vertices."""
+        return rest[self.vertices].mean(axis=0), _unit(self.value)
+
+
+@dataclass(frozen=True, eq=False)
+class VertexForces(Action):
+    """Dead forces, (v, 3), N, one on each of some vertices."""
+
+    vertices: Vertices = field(repr=False)
+    value: Floats = field(repr=False)
+
+    def give_to(self, receiver: LoadReceiver) -> None:
+        """Hand this to who applies it."""
+        receiver.forces(self.vertices, self.value)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """From the middle of the vertices, along the sum."""
+        return rest[self.vertices].mean(axis=0), _unit(self.value.sum(axis=0))
+
+
+def _unit(vector: Floats) -> Floats:
+    length = float(np.linalg.norm(vector))
+    return vector / length if length else np.array(_NOWHERE)

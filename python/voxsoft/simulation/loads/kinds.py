@@ -1,0 +1,116 @@
+"""What each kind of load is and does: the registry of all kinds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any, Final
+
+import numpy as np
+
+from voxsoft.design import Force, Gravity, Pressure, Traction
+from voxsoft.design.chamber import chosen_cavities
+from voxsoft.errors import DesignError
+from voxsoft.simulation.loads.actions import (
+    Acceleration,
+    Action,
+    SharedForce,
+    SurfacePressure,
+    SurfaceTraction,
+    Triangles,
+)
+from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
+
+
+class GravityKind(LoadKind[Gravity]):
+    """What gravity does."""
+
+    def read(self, load: Gravity) -> LoadReading:
+        """Say what it is."""
+        return LoadReading(
+            load.kind, "gravity", "acceleration", (load.value,), load.direction, load.history
+        )
+
+    def actions(self, load: Gravity, body: LoadedBody, where: str) -> list[Acceleration]:
+        """Say what it does."""
+        down = np.asarray(load.direction) / np.linalg.norm(load.direction)
+        return [Acceleration(load.value, down)]
+
+
+class PressureKind(LoadKind[Pressure]):
+    """What a pressure does: one action for each cavity."""
+
+    def read(self, load: Pressure) -> LoadReading:
+        """Say what it is."""
+        return LoadReading(
+            load.kind,
+            f"pressure in {_named(load.cavity)}",
+            "pressure",
+            (load.value,),
+            (0.0, 0.0, 0.0),
+            load.history,
+            load.cavity,
+        )
+
+    def actions(self, load: Pressure, body: LoadedBody, where: str) -> list[SurfacePressure]:
+        """Say what it does."""
+        cavities = body.mesh.cavities
+        chosen = chosen_cavities(load.cavity, body.mesh, f"{where}.cavity")
+        return [SurfacePressure(cavities[i].triangles, load.value, cavities[i]) for i in chosen]
+
+
+def _named(choice: str | int) -> str:
+    if choice == "all":
+        return "all cavities"
+    return f"cavity {choice}" if isinstance(choice, int) else f"chamber {choice}"
+
+
+class ForceKind(LoadKind[Force]):
+    """What a force does."""
+
+    def read(self, load: Force) -> LoadReading:
+        """Say what it is."""
+        return LoadReading(load.kind, "force", "force", load.value, load.value, load.history)
+
+    def actions(self, load: Force, body: LoadedBody, where: str) -> list[SharedForce]:
+        """Say what it does."""
+        return [SharedForce(body.vertices_in(load.region, where), np.asarray(load.value))]
+
+
+class TractionKind(LoadKind[Traction]):
+    """What a traction does: one number is a pressure, three are a dead load."""
+
+    def read(self, load: Traction) -> LoadReading:
+        """Say what it is."""
+        if isinstance(load.value, float):
+            label, components, direction = "pressure on a surface", (load.value,), (0.0, 0.0, 0.0)
+            return LoadReading(load.kind, label, "pressure", components, direction, load.history)
+        return LoadReading(load.kind, "traction", "pressure", load.value, load.value, load.history)
+
+    def actions(self, load: Traction, body: LoadedBody, where: str) -> list[Action]:
+        """Say what it does."""
+        triangles = _triangles(load, body, where)
+        if isinstance(load.value, float):
+            return [SurfacePressure(triangles, load.value)]
+        return [SurfaceTraction(triangles, np.asarray(load.value))]
+
+
+def _triangles(load: Traction, body: LoadedBody, where: str) -> Triangles:
+    """Triangles of the surface with all three vertices in the region, (t, 3)."""
+    inside = np.zeros(len(body.mesh.vertices), dtype=bool)
+    inside[body.vertices_in(load.region, where)] = True
+    triangles = body.mesh.triangles[inside[body.mesh.triangles].all(axis=1)]
+    if len(triangles) == 0:
+        raise DesignError(where, "the region holds no triangle of the surface")
+    return triangles
+
+
+#: What each model of a load means.
+KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
+    {
+        Gravity: GravityKind(),
+        Pressure: PressureKind(),
+        Force: ForceKind(),
+        Traction: TractionKind(),
+    }
+)
