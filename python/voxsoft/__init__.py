@@ -70,7 +70,15 @@ if TYPE_CHECKING:
     from voxsoft.mesh import Mesh
     from voxsoft.metrics.own import metric
     from voxsoft.shapes import *
-    from voxsoft.simulation import Result, check, gradient, simulate, simulate_many
+    from voxsoft.simulation import (
+        Observation,
+        Result,
+        Simulator,
+        check,
+        gradient,
+        simulate,
+        simulate_many,
+    )
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
@@ -176,7 +184,15 @@ _HOMES = {
         "y",
         "z",
     ),
-    "voxsoft.simulation": ("Result", "check", "gradient", "simulate", "simulate_many"),
+    "voxsoft.simulation": (
+        "Observation",
+        "Result",
+        "Simulator",
+        "check",
+        "gradient",
+        "simulate",
+        "simulate_many",
+    ),
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),
 }

@@ -5,18 +5,22 @@ from voxsoft.simulation.check import CheckReport, check
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.many import Ensemble, Settled, simulate_many
+from voxsoft.simulation.observation import ChamberState, Observation
 from voxsoft.simulation.penetration import Overlap, Penetration, find_penetration
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
+from voxsoft.simulation.simulator import Simulator
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.ways import check_solver
 
 __all__ = [
+    "ChamberState",
     "CheckReport",
     "Diagnostic",
     "Ensemble",
     "History",
+    "Observation",
     "Overlap",
     "Penetration",
     "Place",
@@ -24,6 +28,7 @@ __all__ = [
     "Result",
     "Settled",
     "Setup",
+    "Simulator",
     "Status",
     "balance",
     "check",

@@ -1,0 +1,122 @@
+"""What is seen of a body in motion at one moment."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.simulation.commands import LoadCommands, Value
+from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.result import Result, Status
+from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.state import result_at
+
+Floats = NDArray[np.float64]
+#: ``inverted``: voxels are inside out, so that stress and volume mean nothing there.
+MotionStatus = Literal["moving", "at-rest", "inverted", "diverged"]
+
+
+@dataclass(frozen=True)
+class ChamberState:
+    """A chamber at one moment.
+
+    Attributes
+    ----------
+    name
+        As the design names it; empty if it does not.
+    volume
+        In m³.
+    pressure
+        Gauge, in Pa.
+    """
+
+    name: str
+    volume: float
+    pressure: float
+
+
+@dataclass(frozen=True, repr=False)
+class Observation:
+    """A body at one moment of a :class:`~voxsoft.Simulator`; it stays as the body moves on.
+
+    Attributes
+    ----------
+    time
+        Since the reset, s: the steps taken, times their length.
+    steps
+        Steps taken since the reset.
+    status
+        ``moving``; ``at-rest`` under loads that stay; ``inverted``: voxels are inside out; or
+        ``diverged``: no sound state was found from here on, and positions are the last sound ones.
+    message
+        The status in a sentence.
+    positions, velocities
+        Of the vertices, (n, 3), m and m/s; read-only copies.
+    probes
+        Displacement of each probe by name, (3,), m.
+    chambers
+        All cavities, the largest first.
+    loads
+        By name, in SI units, as they act.
+    residual
+        Largest force that is not balanced, relative to the load: below the tolerance at rest.
+    elastic_energy, kinetic_energy
+        In J.
+    """
+
+    time: float
+    steps: int
+    status: MotionStatus
+    message: str
+    positions: Floats
+    velocities: Floats
+    probes: Mapping[str, Floats]
+    chambers: tuple[ChamberState, ...]
+    loads: Mapping[str, Value]
+    residual: float
+    elastic_energy: float
+    kinetic_energy: float
+    _setup: Setup = field(compare=False)
+    _commands: LoadCommands = field(compare=False)
+    _values: Mapping[int, Value] = field(compare=False)
+
+    def __repr__(self) -> str:
+        return f"<Observation at {self.time:g} s: {self.status}>"
+
+    @cached_property
+    def result(self) -> Result:
+        """The state under its loads, for whatever takes a result; made on demand."""
+        statuses: dict[MotionStatus, Status] = {"at-rest": "ok", "diverged": "diverged"}
+        design = self._commands.under(self._setup.design, self._values)
+        return result_at(
+            Setup(design, self._setup.mesh),
+            self.positions,
+            status=statuses.get(self.status, "not-at-rest"),
+            message=self.message,
+            time=self.time,
+        )
+
+    @property
+    def metrics(self) -> Mapping[str, float]:
+        """As :attr:`Result.metrics`: what the design asks for, and all that needs no choice."""
+        return self.result.metrics
+
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """What is doubtful about this state: overlaps, collapsed voxels and more; on demand."""
+        return self.result.warnings
+
+    def metric(self, name: str, **options: Any) -> float:  # noqa: ANN401 - as Result.metric
+        """Return one metric in SI units; options are those of :meth:`Result.metric`.
+
+        Raises
+        ------
+        DesignError
+            An unknown metric, probe or cavity.
+        """
+        return self.result.metric(name, **options)
