@@ -1,7 +1,8 @@
 """VoxSoft: describe, mesh, simulate, calibrate and optimize soft robots.
 
-What a user types, in one place; names are loaded when first used, so that ``import voxsoft`` stays
-light.
+What a user types every day, in one place; the rest is in ``vs.shapes``, ``vs.materials``,
+``vs.metrics`` and so on. Names and modules are loaded when first used, so that ``import voxsoft``
+stays light.
 
 Examples
 --------
@@ -28,8 +29,26 @@ from typing import TYPE_CHECKING
 from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
-    from voxsoft.calibration import Calibration, Experiment, Measurement, calibrate
-    from voxsoft.comparison import Comparison, compare
+    from voxsoft import (
+        calibration,
+        comparison,
+        design,
+        errors,
+        fields,
+        files,
+        materials,
+        mesh,
+        metrics,
+        plot,
+        search,
+        shapes,
+        simulation,
+        study,
+        units,
+        voxels,
+    )
+    from voxsoft.calibration import Experiment, Measurement, calibrate
+    from voxsoft.comparison import compare
     from voxsoft.design import (
         Chamber,
         Clamp,
@@ -55,8 +74,6 @@ if TYPE_CHECKING:
     from voxsoft.errors import VoxSoftError
     from voxsoft.files import load, save
     from voxsoft.materials import (
-        Card,
-        CompliantLattice,
         Fiber,
         Gent,
         Lattice,
@@ -69,22 +86,37 @@ if TYPE_CHECKING:
     )
     from voxsoft.mesh import Mesh
     from voxsoft.metrics.own import metric
-    from voxsoft.shapes import *
-    from voxsoft.simulation import (
-        Observation,
-        Result,
-        Simulator,
-        check,
-        gradient,
-        simulate,
-        simulate_many,
+    from voxsoft.shapes import (
+        Box,
+        Capsule,
+        Cone,
+        Cylinder,
+        Difference,
+        Ellipsoid,
+        Function,
+        Gyroid,
+        HalfSpace,
+        Intersection,
+        Prism,
+        Rotate,
+        RoundedBox,
+        Sphere,
+        Torus,
+        Translate,
+        TriangleMesh,
+        Tube,
+        Union,
+        voxelize,
     )
+    from voxsoft.simulation import Result, Simulator, simulate, simulate_many
+    from voxsoft.simulation.check import check
+    from voxsoft.simulation.gradient import gradient
     from voxsoft.study import Study
     from voxsoft.voxels import Voxels
 
 _HOMES = {
-    "voxsoft.calibration": ("Calibration", "Experiment", "Measurement", "calibrate"),
-    "voxsoft.comparison": ("Comparison", "compare"),
+    "voxsoft.calibration": ("Experiment", "Measurement", "calibrate"),
+    "voxsoft.comparison": ("compare",),
     "voxsoft.design": (
         "Chamber",
         "Clamp",
@@ -110,8 +142,6 @@ _HOMES = {
     "voxsoft.errors": ("VoxSoftError",),
     "voxsoft.files": ("load", "save"),
     "voxsoft.materials": (
-        "Card",
-        "CompliantLattice",
         "Fiber",
         "Gent",
         "Lattice",
@@ -125,67 +155,28 @@ _HOMES = {
     "voxsoft.mesh": ("Mesh",),
     "voxsoft.metrics": ("metric",),
     "voxsoft.shapes": (
-        "IWP",
-        "AnyShape",
-        "Array",
-        "Bcc",
-        "Bend",
-        "Blend",
         "Box",
         "Capsule",
         "Cone",
-        "Cubic",
         "Cylinder",
         "Difference",
         "Ellipsoid",
-        "Expression",
-        "Fcc",
         "Function",
-        "Grade",
         "Gyroid",
         "HalfSpace",
         "Intersection",
-        "Mirror",
-        "Neovius",
-        "Octet",
-        "Offset",
-        "PolarArray",
         "Prism",
-        "Revolve",
         "Rotate",
         "RoundedBox",
-        "Scale",
-        "SchwarzD",
-        "SchwarzP",
-        "Shape",
-        "Shell",
         "Sphere",
-        "Taper",
         "Torus",
         "Translate",
         "TriangleMesh",
         "Tube",
-        "Twist",
         "Union",
-        "atan2",
-        "cos",
-        "exp",
-        "grid_bounds",
-        "inside",
-        "log",
-        "maximum",
-        "minimum",
-        "random_shape",
-        "sin",
-        "sqrt",
-        "tan",
         "voxelize",
-        "x",
-        "y",
-        "z",
     ),
     "voxsoft.simulation": (
-        "Observation",
         "Result",
         "Simulator",
         "check",
@@ -196,10 +187,33 @@ _HOMES = {
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),
 }
+#: Modules that ``vs`` has as attributes.
+_MODULES = (
+    "calibration",
+    "comparison",
+    "design",
+    "errors",
+    "fields",
+    "files",
+    "materials",
+    "mesh",
+    "metrics",
+    "plot",
+    "search",
+    "shapes",
+    "simulation",
+    "study",
+    "units",
+    "voxels",
+)
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
-_get, __dir__ = lazy_names(__name__, _HOME_OF)
+_get, _names = lazy_names(__name__, _HOME_OF, _MODULES)
 
 __all__ = sorted(_HOME_OF)
+
+
+def __dir__() -> list[str]:
+    return _names()
 
 
 def __getattr__(name: str) -> object:

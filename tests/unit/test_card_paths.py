@@ -11,7 +11,7 @@ from voxsoft.errors import DesignError, FileError, MaterialError
 from voxsoft.files.cards import save_card
 from voxsoft.files.run_folder import write_run
 
-MINE = vs.Card(name="mine", material=vs.NeoHookean(young="55 kPa", density="1100 kg/m^3"))
+MINE = vs.materials.Card(name="mine", material=vs.NeoHookean(young="55 kPa", density="1100 kg/m^3"))
 
 
 @pytest.fixture

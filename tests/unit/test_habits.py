@@ -214,7 +214,7 @@ def test_plain_arguments_take_units_too():
     assert empty.fill_sphere(("4 mm",) * 3, "3 mm") == empty.fill_sphere((0.004,) * 3, 0.003)
     with pytest.raises(VoxSoftError, match="expected a length"):
         vs.Voxels.from_array(cells, "5 kPa")
-    raw = vs.CompliantLattice(edge_compliance="0.2 m/N", volume_compliance="0.05 m^3/Pa")
+    raw = vs.materials.CompliantLattice(edge_compliance="0.2 m/N", volume_compliance="0.05 m^3/Pa")
     assert raw.to_moduli("5 mm", "20 kPa") == raw.to_moduli(0.005, 20e3)
     assert vs.Ogden.from_classic(["10 kPa"], [2.0]) == vs.Ogden.from_classic([10e3], [2.0])
     assert vs.History(time=("0 s", "1 s"), factor=(0, 1)).at("250 ms") == 0.25

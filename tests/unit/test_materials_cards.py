@@ -94,6 +94,6 @@ def test_derived_cards_keep_their_license_beside_them():
 def test_the_older_spelling_of_a_card_is_read():
     material = {"model": "neo-hookean", "young": "70 kPa"}
     document = {"schema": "voxsoft-material/1", "name": "soft", "material": material}
-    found = vs.Card.from_document({**document, "licence": "MIT"})  # older
-    assert found == vs.Card.from_document({**document, "license": "MIT"})
+    found = vs.materials.Card.from_document({**document, "licence": "MIT"})  # older
+    assert found == vs.materials.Card.from_document({**document, "license": "MIT"})
     assert found.license == "MIT"

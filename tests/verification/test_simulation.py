@@ -145,7 +145,9 @@ def test_a_stiff_part_bends_less_and_the_first_part_wins():
 
 def test_table_1_collapses_the_beam_with_true_masses():
     """EcoFlex 00-20 of Table I reads as a Young's modulus of 3.8 kPa; beam theory reads 33 kPa."""
-    raw = vs.CompliantLattice(edge_compliance="0.29939 m/N", volume_compliance="0.05 m^3/Pa")
+    raw = vs.materials.CompliantLattice(
+        edge_compliance="0.29939 m/N", volume_compliance="0.05 m^3/Pa"
+    )
     assert raw.young(voxel_size=5 * mm) == pytest.approx(40 / 7 / (0.29939 * 5 * mm))
     size, clamps = (90 * mm, 10 * mm, 10 * mm), [vs.Clamp(region=vs.Region(x=(0, 0)))]
     probes = {"tip": vs.Probe(x=(90 * mm, 90 * mm))}
