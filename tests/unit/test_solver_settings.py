@@ -12,8 +12,9 @@ from voxsoft.calibration import Experiment, Measurement
 from voxsoft.design import Solver, families
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup
+from voxsoft.simulation.choice import METHODS, USERS, kind_of, method_of, unused_settings
+from voxsoft.simulation.dynamics import DynamicsToRest
 from voxsoft.simulation.equilibrium import sentence
-from voxsoft.simulation.ways import USERS, Way, unused_settings, way_of
 from voxsoft.units import kPa, mm
 
 LATTICE = "parts.0.material=ecoflex-00-30-lattice"
@@ -22,6 +23,8 @@ REFERENCE = Path(__file__).parents[2] / "docs/reference/design-file.md"
 VALUES = [
     ("method", "statics"),
     ("method", "xpbd"),
+    ("method", "relaxation"),
+    ("method", "dynamics"),
     ("refine", 2),
     ("tolerance", 1e-3),
     ("control", "load"),
@@ -73,6 +76,8 @@ def used(result, name, value):
             return bool(np.all((gaps > 0.99 * value) & (gaps < 2 * value))) and len(times) >= 1
         case "control":
             return result.solver["way"] == value
+        case "method" if value in ("relaxation", "dynamics"):
+            return result.solver["way"] == value
         case "damping" if value == "auto":
             return "damping" in result.solver
         case _:
@@ -121,6 +126,8 @@ REFUSALS = [
     ({"max_time": 1.0, "end_time": 2.0}, "of dynamics run to rest, and an end_time"),
     ({"tolerance": 1e-3, "end_time": 2.0}, "of runs to rest, and an end_time"),
     ({"method": "xpbd", "control": "load"}, 'of statics, and the method is "xpbd"'),
+    ({"method": "relaxation", "damping": 5.0}, 'of dynamics, and the method is "relaxation"'),
+    ({"method": "dynamics", "steps": 3}, 'volume control, and the method is "dynamics"'),
     ({"method": "statics", "damping": "auto"}, 'dynamics, and the method is "statics"'),
     ({"record_interval": 0.1}, "of dynamics, and this design is solved by the quickest"),
 ]
@@ -145,7 +152,31 @@ def test_check_finds_what_a_run_refuses():
 @pytest.mark.parametrize("settings", [{"damping": "critical"}, {"max_time": 1.0}])
 def test_settings_of_dynamics_mean_dynamics(settings):
     for material in MATERIALS:
-        assert way_of(box(material), Solver(**settings)) is Way.SETTLING
+        assert kind_of(box(material), Solver(**settings)) is DynamicsToRest
+
+
+def flat(kind):
+    """Flat settings that mean a kind of method, each of its fields with a value."""
+    values = {name: value for name, value in VALUES if name in kind.model_fields}
+    values["control"] = getattr(kind.model_fields.get("control"), "default", None)
+    if kind.title == "the quickest way to rest":
+        return {"tolerance": values["tolerance"]}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+@pytest.mark.parametrize("kind", METHODS, ids=lambda kind: kind.__name__)
+def test_every_method_is_meant_by_flat_settings_and_takes_them(kind):
+    settings = flat(kind)
+    found = method_of(box("lattice"), Solver(**settings))
+    assert type(found) is kind
+    assert found == kind(**settings)
+    assert not list(unused_settings(box("lattice"), Solver(**settings)))
+
+
+def test_a_method_refuses_settings_of_others():
+    with pytest.raises(SimulationError, match="volume_ratio: is not known here"):
+        METHODS[0](volume_ratio=2.0)
+    assert len({kind.title for kind in METHODS}) == len(METHODS)
 
 
 def test_a_record_between_two_steps_is_refused():

@@ -20,7 +20,7 @@ from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
 from voxsoft.calibration.space import Bounds, Space
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.materials import Hyperelastic, Material
-from voxsoft.simulation.ways import check_settings_of
+from voxsoft.simulation.choice import check_settings_of
 
 #: What of an experiment's solver counts, and why nothing else does.
 _USED: Final = frozenset({"refine"})

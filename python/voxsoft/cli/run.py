@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from voxsoft.simulation import Diagnostic, Result
 
 
-_METHODS = "auto, statics or xpbd; default: as the design says, else auto."
+_METHODS = "auto, statics, relaxation, dynamics or xpbd; default: as the design says, else auto."
 
 
 def run(

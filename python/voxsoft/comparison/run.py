@@ -18,7 +18,7 @@ from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
-from voxsoft.simulation.ways import given_settings
+from voxsoft.simulation.choice import given_settings
 from voxsoft.units import format_quantity, si_value
 
 #: An outside code: the first that is installed, one by name, or none.

@@ -14,19 +14,32 @@ def _named_or_rate(value: object) -> str:
     return "named" if value in ("auto", "critical") else "rate"
 
 
+Count = Annotated[int, Field(ge=1, le=100_000)]
+Damping = Annotated[
+    Annotated[Literal["auto", "critical"], Tag("named")] | Annotated[NonNegativeRate, Tag("rate")],
+    Discriminator(_named_or_rate),
+]
+Ratio = Annotated[float, Field(gt=0)]
+Share = Annotated[float, Field(gt=0, le=1)]
+Tolerance = Annotated[float, Field(gt=0, lt=1)]
+
+
 class Solver(Record):
     """How to solve; whatever is left out is chosen from the design and reported.
 
-    A setting that the design and the other settings leave without use is refused when the design
+    These flat settings choose one of the methods of :mod:`voxsoft.simulation.choice`, each a type
+    with its own settings: load, arc-length and volume control of statics, relaxation, dynamics to
+    rest or to an end time. A setting that the method has no field for is refused when the design
     is checked or solved.
 
     Parameters
     ----------
     method
-        ``"xpbd"``: dynamics, run to rest; ``"statics"``: the equilibrium by Newton's method;
-        ``"auto"`` (default): statics if every part is hyperelastic or there are layers, and
-        nothing asks for motion over time, else xpbd; slender bodies that its relaxation would
-        take long for are solved by statics too.
+        ``"statics"``: the equilibrium by Newton's method; ``"relaxation"``: to rest, without a
+        time; ``"dynamics"``: motion over time, to rest or to an end time; ``"xpbd"``: dynamics if
+        another setting asks for it, else relaxation; ``"auto"`` (default): statics if every part is
+        hyperelastic or there are layers, and nothing asks for motion over time, else xpbd; slender
+        bodies that its relaxation would take long for are solved by statics too.
     refine
         Solve on every voxel cut into this many along each axis: the same body, smaller
         elements. Default 1.
@@ -69,24 +82,22 @@ class Solver(Record):
     5.0
     """
 
-    method: Literal["auto", "xpbd", "statics"] = "auto"
+    method: Literal["auto", "statics", "relaxation", "dynamics", "xpbd"] = "auto"
     refine: int = Field(1, ge=1, le=16)
     time_step: PositiveTime | None = None
-    substeps: int | None = Field(None, ge=1, le=100_000)
-    iterations: int | None = Field(None, ge=1, le=100_000)
-    damping: (
-        Annotated[
-            Annotated[Literal["auto", "critical"], Tag("named")]
-            | Annotated[NonNegativeRate, Tag("rate")],
-            Discriminator(_named_or_rate),
-        ]
-        | None
-    ) = None
+    substeps: Count | None = None
+    iterations: Count | None = None
+    damping: Damping | None = None
     retardation: NonNegativeTime | None = None
-    tolerance: float | None = Field(None, gt=0, lt=1)
+    tolerance: Tolerance | None = None
     max_time: PositiveTime | None = None
     end_time: PositiveTime | None = None
     control: Literal["load", "arc-length", "volume"] | None = None
-    steps: int | None = Field(None, ge=1, le=100_000)
-    volume_ratio: float | None = Field(None, gt=0)
-    first_step: float | None = Field(None, gt=0, le=1)
+    steps: Count | None = None
+    volume_ratio: Ratio | None = None
+    first_step: Share | None = None
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether a run ends at a time, at rest or not."""
+        return self.end_time is not None

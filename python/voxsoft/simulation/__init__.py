@@ -2,6 +2,7 @@
 
 from voxsoft.metrics import Place
 from voxsoft.simulation.check import CheckReport, check
+from voxsoft.simulation.choice import check_solver
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.many import Ensemble, Settled, simulate_many
@@ -12,7 +13,6 @@ from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
 from voxsoft.simulation.simulator import Simulator
 from voxsoft.simulation.targets import check_targets
-from voxsoft.simulation.ways import check_solver
 
 __all__ = [
     "ChamberState",

@@ -18,6 +18,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.chambers import ambiguous_indices
+from voxsoft.simulation.choice import unused_settings
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.layers import chambers
@@ -25,7 +26,6 @@ from voxsoft.simulation.plausible import implausible_numbers
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
-from voxsoft.simulation.ways import unused_settings
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
 from voxsoft.voxels.regions import Cell

@@ -16,8 +16,11 @@ from numpy.typing import NDArray
 from voxsoft.design import Design
 from voxsoft.materials import Hyperelastic, Material, Rigid
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.choice import method_of
+from voxsoft.simulation.dynamics import DEFAULT_TIME_STEP, Dynamics, DynamicsToEnd
+from voxsoft.simulation.equilibrium import ArcLengthControl, Statics, VolumeControl
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.ways import DYNAMICS, STATICS, Way, way_of
+from voxsoft.simulation.rest import QuickestRest
 
 #: Seconds of one constraint and step of relaxation or dynamics of a lattice, and of one
 #: tetrahedron of rubber.
@@ -96,28 +99,29 @@ def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost
     mass
         Of the body, in kg.
     """
-    solver, way = design.solver, way_of(design, design.solver)
+    refine, method = design.solver.refine, method_of(design, design.solver)
     materials = [design.material_of(part) for part in design.parts]
     soft = [each for each in materials if not isinstance(each, Rigid)] or materials
     rubber = any(isinstance(each, Hyperelastic) for each in materials) or bool(design.layers)
-    cells, size = solver.refine**3, design.voxel_size / solver.refine
+    cells, size = refine**3, design.voxel_size / refine
     iteration = _ITERATION * (cells * len(mesh.vertices)) ** _GROWTH
     iteration *= 1.0 if rubber else _OF_A_LATTICE
     iterations = newton_iterations(design, mesh, wall, mass)
-    if way in STATICS:
+    if isinstance(method, Statics):
         return iterations.times(iteration)
     constraints = cells * (len(mesh.edges) + len(mesh.tets))
     step = _RUBBER_STEP * cells * len(mesh.tets) if rubber else _LATTICE_STEP * constraints
     sizes = np.sort(np.ptp(mesh.vertices, axis=0))
     speed = max(_speed(each, size) for each in soft)
     slow = min(np.sqrt(_young(each, size) / each.density) for each in soft)
-    if way in DYNAMICS:
+    if isinstance(method, Dynamics):
         # A body that is damped well is at rest after about one swing of its lowest mode.
         swing = float(sizes[-1] ** 2 / (0.16 * sizes[0] * slow))
-        seconds = step * (solver.end_time or swing) / _substep(design, size, speed)
-        return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if solver.end_time else None)
+        end = method.end_time if isinstance(method, DynamicsToEnd) else None
+        seconds = step * (end or swing) / _substep(method, size, speed)
+        return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if end else None)
     seconds = step * _steps_to_rest(sizes / size, speed / slow)
-    if way is Way.QUICKEST:
+    if isinstance(method, QuickestRest):
         seconds = min(seconds, iteration * iterations.seconds)
     return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD)
 
@@ -134,10 +138,9 @@ def _speed(material: Material, size: float) -> float:
     return float(np.sqrt(stiffness / material.density))
 
 
-def _substep(design: Design, size: float, speed: float) -> float:
-    solver = design.solver
-    if solver.substeps is not None:
-        return (solver.time_step or 0.01) / solver.substeps
+def _substep(method: Dynamics, size: float, speed: float) -> float:
+    if method.substeps is not None:
+        return (method.time_step or DEFAULT_TIME_STEP) / method.substeps
     return size / (_SUBSTEPS * speed)
 
 
@@ -160,11 +163,13 @@ def newton_iterations(design: Design, mesh: Mesh, wall: float | None, mass: floa
     design, mesh, wall, mass
         As for :func:`cost_of`.
     """
-    way, steps = way_of(design, design.solver), design.solver.steps or 20
+    method = method_of(design, design.solver)
     motion = _motion(design, mesh, wall, mass)
     expected = _FEWEST + _MORE * motion / (1.0 + motion)
-    if way is Way.VOLUME or way is Way.ARC_LENGTH:
-        expected = _OF_A_STEP * (steps if way is Way.VOLUME else min(steps, _STEPS_OF_AN_ARC))
+    if isinstance(method, VolumeControl):
+        expected = _OF_A_STEP * method.steps
+    elif isinstance(method, ArcLengthControl):
+        expected = _OF_A_STEP * min(method.steps, _STEPS_OF_AN_ARC)
     elif motion <= _FAR:
         return Cost(expected, expected / _SPREAD, expected * _SPREAD)
     return Cost(expected, min(expected / _SPREAD, _FEWEST / 2.0), None)

@@ -1,24 +1,25 @@
-"""The statics solver: settings, and what to say of its answer."""
+"""The statics solver: its controls with their settings, and what to say of its answer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, Final
+from collections.abc import Mapping
+from typing import Any, ClassVar, Final, Literal
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
-from voxsoft.design import Solver
+from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.loads import readings
+from voxsoft.simulation.method import Answer, Method, Progress, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_percent
 
-DEFAULT_STATICS_TOLERANCE = 1e-8
-DEFAULT_STEPS = 20
+DEFAULT_STATICS_TOLERANCE: Final = 1e-8
+DEFAULT_STEPS: Final = 20
 #: The first step of arc-length control.
-DEFAULT_ARC = 0.2
-DEFAULT_VOLUME_RATIO = 1.5
+DEFAULT_ARC: Final = 0.2
+DEFAULT_VOLUME_RATIO: Final = 1.5
 
 
 #: What to try instead of a control that found no equilibrium, and of one that met a limit.
@@ -34,12 +35,61 @@ _PAST_A_LIMIT: Final[Mapping[str, str]] = {
 }
 
 
+class Statics(Method):
+    """The equilibrium by Newton's method on the sparse tangent."""
+
+    family: ClassVar[str] = "statics"
+
+    tolerance: Tolerance = DEFAULT_STATICS_TOLERANCE
+    control: str
+
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Find the equilibrium under the final loads."""
+        return find_equilibrium(setup, self, watch.progress)
+
+
+class LoadControl(Statics):
+    """All loads grow together."""
+
+    title: ClassVar[str] = "load control"
+
+    control: Literal["load"] = "load"
+    first_step: Share = 1.0
+
+
+class ArcLengthControl(Statics):
+    """All loads grow together, and the path is followed through snaps."""
+
+    title: ClassVar[str] = "arc-length control"
+
+    control: Literal["arc-length"] = "arc-length"
+    first_step: Share = DEFAULT_ARC
+    steps: Count = DEFAULT_STEPS
+
+
+class VolumeControl(Statics):
+    """The pressurized volume grows to `volume_ratio`, and the pressure is what it takes."""
+
+    title: ClassVar[str] = "volume control"
+
+    control: Literal["volume"] = "volume"
+    volume_ratio: Ratio = DEFAULT_VOLUME_RATIO
+    steps: Count = DEFAULT_STEPS
+
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Find the equilibrium at the final volume."""
+        if all(reading.cavity is None for reading in readings(setup.design)):
+            raise SimulationError(
+                "solver.control",
+                '"volume" needs a volume to control, and the design has no pressure load',
+                'add a pressure, or use "arc-length"',
+            )
+        return super().solve(setup, watch)
+
+
 def find_equilibrium(
-    setup: Setup,
-    solver: Solver,
-    progress: Callable[[int, float, float], None] | None,
-    problem: _core.Problem | None = None,
-) -> tuple[dict[str, Any], dict[str, Any]]:
+    setup: Setup, statics: Statics, progress: Progress, problem: _core.Problem | None = None
+) -> Answer:
     """Solve a setup by statics, or a variant of its problem.
 
     Returns
@@ -50,32 +100,19 @@ def find_equilibrium(
     Raises
     ------
     SimulationError
-        Volume control without a pressure, or not enough memory.
+        Not enough memory.
     """
-    control = solver.control or "load"
-    if control == "volume" and not any(
-        reading.cavity is not None for reading in readings(setup.design)
-    ):
-        raise SimulationError(
-            "solver.control",
-            '"volume" needs a volume to control, and the design has no pressure load',
-            'add a pressure, or use "arc-length"',
-        )
-    asked: dict[str, Any] = {
-        "tolerance": solver.tolerance or DEFAULT_STATICS_TOLERANCE,
-        "first_step": solver.first_step or (DEFAULT_ARC if control == "arc-length" else 1.0),
-        "control": control,
-        "steps": solver.steps or DEFAULT_STEPS,
-        "ratio": solver.volume_ratio or DEFAULT_VOLUME_RATIO,
-    }
+    settings = statics.model_dump(exclude={"control"})
+    asked = {"ratio" if key == "volume_ratio" else key: each for key, each in settings.items()}
     report = _core.equilibrium(
         problem or setup.problem,
         **asked,
+        control=statics.control,
         memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,
     )
-    report["way"] = control
+    report["way"] = statics.control
     if report["status"] == "not-converged" and report["factor"] == 0.0 and moves_freely(setup):
         # Singular up to rounding is all that the factor shows of it.
         report["status"] = "mechanism"
@@ -85,14 +122,7 @@ def find_equilibrium(
             too_large_a_tangent(len(setup.mesh.vertices), report["needed_bytes"]),
             'use larger voxels, or method = "xpbd"',
         )
-    used = {"method": "statics", "way": control, "tolerance": asked["tolerance"]}
-    if control == "volume":
-        used["volume_ratio"] = asked["ratio"]
-    else:
-        used["first_step"] = asked["first_step"]
-    if control != "load":
-        used["steps"] = asked["steps"]
-    return used, report
+    return {"method": "statics", "way": statics.control, **settings}, report
 
 
 def too_large_a_tangent(vertices: int, needed: int) -> str:

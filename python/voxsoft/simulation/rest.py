@@ -8,12 +8,12 @@ forces after `TRIAL_STEPS` foretells how long it would take.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, ClassVar, Final, Literal
 
-from voxsoft.design import Solver
+from voxsoft.design.solver import Tolerance
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.equilibrium import find_equilibrium
+from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium
+from voxsoft.simulation.method import Answer, Method, Progress, Watch
 from voxsoft.simulation.setup import Setup
 
 #: With 1e-4 the rises of 2 of the paper's 45 closed cylinders, small beside the bulge of their
@@ -30,52 +30,70 @@ TRIAL_STEPS: Final = 200
 #: robots and beams.
 SLOW_RESIDUAL: Final = 0.6
 
-Progress = Callable[[int, float, float], None] | None
-#: Settings as used, and the core's report.
-Answer = tuple[dict[str, Any], dict[str, Any]]
+
+class Relaxation(Method):
+    """Dynamic relaxation to rest; it knows no time, and damps as suits it step by step."""
+
+    title: ClassVar[str] = "relaxation"
+    family: ClassVar[str] = "relaxation"
+
+    tolerance: Tolerance = DEFAULT_TOLERANCE
+    damping: Literal["auto"] = "auto"
+
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Bring a setup to rest."""
+        return self.go_on(setup, watch.progress, None)
+
+    def go_on(self, setup: Setup, progress: Progress, report: dict[str, Any] | None) -> Answer:
+        """Bring a setup to rest from where a report ended."""
+        taken = report["steps"] if report else 0
+        later = setup.problem.relax(
+            tolerance=self.tolerance,
+            max_steps=DEFAULT_MAX_STEPS - taken,
+            start=report["positions"] if report else None,
+            progress=_counted_from(taken, progress),
+        )
+        later["steps"] += taken
+        return _used(self.tolerance), later
 
 
-def relax_fully(
-    setup: Setup, solver: Solver, progress: Progress, report: dict[str, Any] | None = None
-) -> Answer:
-    """Bring a setup to rest by relaxation, or go on where `report` ended."""
-    tolerance = solver.tolerance or DEFAULT_TOLERANCE
-    taken = report["steps"] if report else 0
-    later = setup.problem.relax(
-        tolerance=tolerance,
-        max_steps=DEFAULT_MAX_STEPS - taken,
-        start=report["positions"] if report else None,
-        progress=_counted_from(taken, progress),
-    )
-    later["steps"] += taken
-    return _used(tolerance), later
-
-
-def quickest_rest(setup: Setup, solver: Solver, progress: Progress) -> Answer:
-    """Bring a setup to rest by relaxation, or by statics where that would take long.
+class QuickestRest(Method):
+    """Relaxation, or statics under load control where that would take long.
 
     The choice depends on the body and the load alone, never on the clock: the same design gives the
     same bits. Prescribed motions, which relaxation brings up slowly, are left to it. Where statics
     finds no stable equilibrium relaxation goes on from where it was.
     """
-    if any(clamp.motion is not None for clamp in setup.design.clamps):
-        return relax_fully(setup, solver, progress)
-    tolerance = solver.tolerance or DEFAULT_TOLERANCE
-    trial = setup.problem.relax(
-        tolerance=tolerance,
-        max_steps=DEFAULT_MAX_STEPS,
-        trial=(TRIAL_STEPS, SLOW_RESIDUAL),
-        progress=progress,
-    )
-    if trial["status"] != "slow":
-        return _used(tolerance), trial
-    try:
-        used, report = find_equilibrium(setup, solver, _counted_from(trial["steps"], progress))
-    except SimulationError:  # its tangent does not fit in memory
-        return relax_fully(setup, solver, progress, trial)
-    if report["status"] == "at-rest" and report["stable"]:
-        return {**used, "trial_steps": trial["steps"]}, report
-    return relax_fully(setup, solver, progress, trial)
+
+    title: ClassVar[str] = "the quickest way to rest"
+    family: ClassVar[str] = "relaxation or statics"
+
+    #: None for what is usual to either.
+    tolerance: Tolerance | None = None
+
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Bring a setup to rest."""
+        progress = watch.progress
+        given = {} if self.tolerance is None else {"tolerance": self.tolerance}
+        relaxation = Relaxation(**given)
+        if any(clamp.motion is not None for clamp in setup.design.clamps):
+            return relaxation.solve(setup, watch)
+        trial = setup.problem.relax(
+            tolerance=relaxation.tolerance,
+            max_steps=DEFAULT_MAX_STEPS,
+            trial=(TRIAL_STEPS, SLOW_RESIDUAL),
+            progress=progress,
+        )
+        if trial["status"] != "slow":
+            return _used(relaxation.tolerance), trial
+        counted = _counted_from(trial["steps"], progress)
+        try:
+            used, report = find_equilibrium(setup, LoadControl(**given), counted)
+        except SimulationError:  # its tangent does not fit in memory
+            return relaxation.go_on(setup, progress, trial)
+        if report["status"] == "at-rest" and report["stable"]:
+            return {**used, "trial_steps": trial["steps"]}, report
+        return relaxation.go_on(setup, progress, trial)
 
 
 def _used(tolerance: float) -> dict[str, Any]:

@@ -11,22 +11,16 @@ import numpy as np
 from voxsoft import _core
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.equilibrium import find_equilibrium, sentence
+from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
+from voxsoft.simulation.method import Watch
 from voxsoft.simulation.places import voxel_size
-from voxsoft.simulation.rest import quickest_rest, relax_fully
 from voxsoft.simulation.result import History, Result, Status
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.ways import DYNAMICS, STATICS, Way, check_solver, way_of
-from voxsoft.units import format_percent, format_quantity, si_value
+from voxsoft.units import format_percent, si_value
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
-
-#: Of runs over time, the residual at rest.
-DEFAULT_DYNAMIC_TOLERANCE = 1e-4
-DEFAULT_MAX_TIME = 60.0
-DEFAULT_TIME_STEP = 0.01
-DEFAULT_RECORD_INTERVAL = 0.02
 
 
 def simulate(
@@ -90,21 +84,14 @@ def simulate(
         record_interval = si_value(record_interval, "time", "record_interval", positive=True)
     solver = _settings(given.solver, settings)
     check_solver(given, solver, {"record_interval": record_interval, "frames": frames})
+    method = method_of(given, solver)
     if isinstance(design, Setup):
         setup = design
         _check_refinement(setup, settings)
     else:
-        setup = Setup.of(design, may_fly=solver.end_time is not None, refine=solver.refine)
+        setup = Setup.of(design, may_fly=not method.to_rest, refine=solver.refine)
     started = time.perf_counter()
-    way = way_of(given, solver)
-    if way in STATICS:
-        used, report = find_equilibrium(setup, solver, progress)
-    elif way in DYNAMICS:
-        used, report = _dynamics(setup, setup.problem, solver, record_interval, frames, progress)
-    elif way is Way.QUICKEST:
-        used, report = quickest_rest(setup, solver, progress)
-    else:
-        used, report = relax_fully(setup, solver, progress)
+    used, report = method.solve(setup, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
     return result_of(setup, used, report, time.perf_counter() - started)
 
@@ -142,7 +129,7 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
         Largest relative residual.
     """
     started = time.perf_counter()
-    used, report = find_equilibrium(setup, Solver(tolerance=tolerance), None, problem)
+    used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
     return result_of(setup, used, report, time.perf_counter() - started)
 
 
@@ -164,61 +151,6 @@ def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:
             f"is {asked}, and the voxels of this setup are cut into {done} along each axis",
             f"make it by Setup.of(design, refine={asked}), or simulate the design",
         )
-
-
-def _dynamics(
-    setup: Setup,
-    problem: _core.Problem,
-    solver: Solver,
-    record_interval: float | None,
-    frames: bool,
-    progress: ProgressCallback | None,
-) -> tuple[dict[str, Any], dict[str, Any]]:
-    damping = _damping_rate(solver)
-    interval = record_interval or max(DEFAULT_RECORD_INTERVAL, solver.time_step or 0.0)
-    asked: dict[str, Any] = {
-        "time_step": _time_step(solver, interval),
-        "substeps": solver.substeps,
-        "iterations": solver.iterations or 1,
-        "damping": damping,
-        "retardation": solver.retardation or 0.0,
-        "end_time": solver.end_time,
-        "max_time": solver.max_time or DEFAULT_MAX_TIME,
-        "tolerance": solver.tolerance or DEFAULT_DYNAMIC_TOLERANCE,
-    }
-    unused = {"end_time"} if solver.end_time is None else {"max_time", "tolerance"}
-    told = {name: value for name, value in asked.items() if name not in unused}
-    report = problem.simulate(
-        **asked,
-        record_interval=interval,
-        sensors=[(place.vertices, place.weights) for place in setup.places.values()],
-        frames=frames,
-        progress=progress,
-    )
-    used = {"method": "xpbd", "way": "dynamics", **told, "substep": report["substep"]}
-    return used | {"damping": "critical" if damping is None else damping}, report
-
-
-def _time_step(solver: Solver, interval: float) -> float:
-    """The length of a step in s: probes are recorded after whole steps."""
-    if solver.time_step is None:
-        return min(DEFAULT_TIME_STEP, interval)
-    if interval < solver.time_step:
-        raise SimulationError(
-            "record_interval",
-            f"is shorter than the time_step of {format_quantity(solver.time_step, 'time')}",
-            "record after whole steps, or shorten the step",
-        )
-    return solver.time_step
-
-
-def _damping_rate(solver: Solver) -> float | None:
-    """The rate in 1/s; None for critical: right on the way to rest, wrong over time."""
-    if isinstance(solver.damping, float):
-        return solver.damping
-    if solver.damping == "critical" or solver.end_time is None:
-        return None
-    return 0.0
 
 
 _STATUSES: dict[str, Status] = {

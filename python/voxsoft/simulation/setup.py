@@ -100,7 +100,7 @@ class Setup:
         check_targets(self.design)
         check_chambers(self.design, self.mesh)
         self._check_cavities()
-        timed = self.design.solver.end_time is not None
+        timed = self.design.solver.is_timed
         if not (timed if may_fly is None else may_fly):
             self._check_support()
         _ = self.places

@@ -9,8 +9,8 @@ from typing import Protocol
 
 from voxsoft.errors import VoxSoftError
 from voxsoft.simulation import Result, simulate
+from voxsoft.simulation.choice import settings_at_rest
 from voxsoft.simulation.rest import DEFAULT_TOLERANCE
-from voxsoft.simulation.ways import settings_at_rest
 from voxsoft.studio.body import StudioBody
 from voxsoft.units import format_percent
 

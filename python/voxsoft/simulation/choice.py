@@ -1,73 +1,69 @@
-"""Which way to the answer a design's settings mean, and which of them that way uses.
+"""Which method a design's settings mean, and which of them that method uses.
 
 The flat keys of :class:`~voxsoft.design.Solver` are read here and nowhere else: a setting that only
-some ways know chooses one of them, and one that the chosen way does not use is refused.
+some methods have a field for chooses one of them, and one that the chosen method has none for is
+refused.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, Final
 
 from voxsoft.design import Design, Solver
 from voxsoft.errors import Problem, SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
+from voxsoft.simulation.dynamics import Dynamics, DynamicsToEnd, DynamicsToRest
+from voxsoft.simulation.equilibrium import (
+    ArcLengthControl,
+    LoadControl,
+    Statics,
+    VolumeControl,
+)
+from voxsoft.simulation.method import Method
+from voxsoft.simulation.rest import QuickestRest, Relaxation
 
+#: Every method.
+METHODS: Final[tuple[type[Method], ...]] = (
+    LoadControl,
+    ArcLengthControl,
+    VolumeControl,
+    Relaxation,
+    QuickestRest,
+    DynamicsToRest,
+    DynamicsToEnd,
+)
+Kinds = frozenset[type[Method]]
 
-class Way(StrEnum):
-    """A way to the answer, named as an error calls it."""
-
-    LOAD = "load control"
-    ARC_LENGTH = "arc-length control"
-    VOLUME = "volume control"
-    #: Timeless relaxation.
-    RELAXATION = "relaxation"
-    #: Relaxation, or statics under load control where that is quicker.
-    QUICKEST = "the quickest way to rest"
-    #: Dynamics until the body is at rest.
-    SETTLING = "dynamics run to rest"
-    #: Dynamics to an end time.
-    MOTION = "dynamics to an end time"
-
-
-STATICS: Final = frozenset({Way.LOAD, Way.ARC_LENGTH, Way.VOLUME})
-DYNAMICS: Final = frozenset({Way.SETTLING, Way.MOTION})
-_RELAXATION: Final = frozenset({Way.RELAXATION})
-_ALL: Final = frozenset(Way)
-_TO_REST: Final = _ALL - {Way.MOTION}
-_CONTROLS: Final[Mapping[str, Way]] = {
-    "load": Way.LOAD,
-    "arc-length": Way.ARC_LENGTH,
-    "volume": Way.VOLUME,
+#: Of the mesh, or of the choice itself.
+_OF_ALL: Final = frozenset({"method", "refine"})
+_CONTROLS: Final[Mapping[str, type[Statics]]] = {
+    "load": LoadControl,
+    "arc-length": ArcLengthControl,
+    "volume": VolumeControl,
 }
 
-#: Every setting of a solver, with the ways that use it.
-USERS: Final[Mapping[str, frozenset[Way]]] = MappingProxyType(
-    {
-        "method": _ALL,
-        "refine": _ALL,
-        "tolerance": _TO_REST,
-        "control": STATICS,
-        "first_step": frozenset({Way.LOAD, Way.ARC_LENGTH}),
-        "steps": frozenset({Way.ARC_LENGTH, Way.VOLUME}),
-        "volume_ratio": frozenset({Way.VOLUME}),
-        "time_step": DYNAMICS,
-        "substeps": DYNAMICS,
-        "iterations": DYNAMICS,
-        # "auto" is known to relaxation, too; a rate and "critical" ask for dynamics.
-        "damping": DYNAMICS | _RELAXATION,
-        "retardation": DYNAMICS,
-        "max_time": frozenset({Way.SETTLING}),
-        "end_time": frozenset({Way.MOTION}),
-        # Of `simulate` itself: statics records its path, and relaxation knows no time.
-        "record_interval": DYNAMICS,
-        "frames": DYNAMICS,
-    }
+
+STATICS: Final[Kinds] = frozenset({LoadControl, ArcLengthControl, VolumeControl})
+DYNAMICS: Final[Kinds] = frozenset({DynamicsToRest, DynamicsToEnd})
+_RELAXATION: Final[Kinds] = frozenset({Relaxation})
+_ALL: Final = frozenset(METHODS)
+_TO_REST: Final = frozenset(kind for kind in METHODS if kind.to_rest)
+
+
+def _users(name: str) -> Kinds:
+    if name in _OF_ALL:
+        return _ALL
+    return frozenset(kind for kind in METHODS if name in {*kind.model_fields, *kind.extra})
+
+
+#: Every setting of a solver and of `simulate` itself, with the methods that use it.
+USERS: Final[Mapping[str, Kinds]] = MappingProxyType(
+    {name: _users(name) for name in (*Solver.model_fields, *sorted(Dynamics.extra))}
 )
 
-#: What to write to be solved in a way that uses a setting.
+#: What to write to be solved by a method that uses a setting.
 _ASKING: Final[Mapping[str, str]] = {
     "tolerance": "leave end_time out",
     "control": 'write method = "statics"',
@@ -81,8 +77,8 @@ _ASKING: Final[Mapping[str, str]] = {
 _ASKING_FOR_DYNAMICS: Final = 'write method = "xpbd"'
 
 
-def way_of(design: Design, solver: Solver) -> Way:
-    """Return the way that settings mean for a design.
+def kind_of(design: Design, solver: Solver) -> type[Method]:
+    """Return the kind of method that settings mean for a design.
 
     Parameters
     ----------
@@ -94,28 +90,56 @@ def way_of(design: Design, solver: Solver) -> Way:
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> way_of(families.beam(), Solver(end_time="1 s"))
-    <Way.MOTION: 'dynamics to an end time'>
+    >>> kind_of(families.beam(), Solver(end_time="1 s")).title
+    'dynamics to an end time'
     """
     given = set(given_settings(solver))
-    timed = Way.SETTLING if solver.end_time is None else Way.MOTION
+    timed = DynamicsToEnd if solver.is_timed else DynamicsToRest
     controlled = _CONTROLS[solver.control or "load"]
     dynamic = bool(given & _deciding(DYNAMICS)) or solver.damping not in (None, "auto")
-    if solver.method == "statics":
-        return controlled
-    if solver.method == "xpbd":
-        return timed if dynamic else Way.RELAXATION
+    match solver.method:
+        case "statics":
+            return controlled
+        case "relaxation":
+            return Relaxation
+        case "dynamics":
+            return timed
+        case "xpbd":
+            return timed if dynamic else Relaxation
+        case "auto":
+            pass
     if given & _deciding(STATICS):
         return controlled
     if dynamic:
         return timed
     materials = [design.material_of(part) for part in design.parts]
     if design.layers or any(isinstance(material, Rigid) for material in materials):
-        return Way.LOAD
+        return LoadControl
     # What only lies on a floor may slide: its place is not unique, which Newton's method needs.
     if solver.damping is not None or not design.clamps:
-        return Way.RELAXATION
-    return Way.LOAD if all(isinstance(m, Hyperelastic) for m in materials) else Way.QUICKEST
+        return Relaxation
+    return LoadControl if all(isinstance(m, Hyperelastic) for m in materials) else QuickestRest
+
+
+def method_of(design: Design, solver: Solver) -> Method:
+    """Return the method that settings mean for a design, with those that it uses.
+
+    Parameters
+    ----------
+    design, solver
+        As for :func:`kind_of`; :func:`check_solver` refuses settings that are not used.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> method_of(families.beam(), Solver(control="volume", steps=30))
+    VolumeControl(steps=30)
+    >>> method_of(families.beam(), Solver(end_time="1 s", damping="5 1/s"))
+    DynamicsToEnd(damping=5.0, end_time=1.0)
+    """
+    kind = kind_of(design, solver)
+    given = given_settings(solver)
+    return kind(**{name: given[name] for name in kind.model_fields if name in given})
 
 
 def unused_settings(
@@ -130,15 +154,17 @@ def unused_settings(
     extra
         Other keys of :data:`USERS`, where they are given.
     """
-    way = way_of(design, solver)
+    kind = kind_of(design, solver)
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
-        if way in users:
+        if name == "damping" and solver.damping != "auto":
+            users &= DYNAMICS  # relaxation knows "auto" alone
+        if kind in users:
             continue
         where = name if extra and name in extra else f"solver.{name}"
         instead = _ASKING.get(name, _ASKING_FOR_DYNAMICS)
-        what = f"is a setting of {_together(users)}, and {_because(name, way, solver)}"
+        what = f"is a setting of {_together(users)}, and {_because(name, kind, solver)}"
         yield Problem(where, what, f"{instead}, or leave {name} out")
 
 
@@ -155,7 +181,7 @@ def check_solver(
     Raises
     ------
     SimulationError
-        Naming each setting, the ways that use it, and what to write.
+        Naming each setting, the methods that use it, and what to write.
 
     Examples
     --------
@@ -178,41 +204,40 @@ def given_settings(solver: Solver) -> dict[str, object]:
     return {name: value for name, value in values.items() if value != getattr(plain, name)}
 
 
-def _deciding(ways: frozenset[Way]) -> set[str]:
-    """The settings of a solver that mean one of some ways."""
-    return {name for name, users in USERS.items() if users <= ways} & set(Solver.model_fields)
+def _deciding(kinds: Kinds) -> set[str]:
+    """The settings of a solver that mean one of some kinds."""
+    return {name for name, users in USERS.items() if users <= kinds} & set(Solver.model_fields)
 
 
-def _together(ways: frozenset[Way]) -> str:
-    """Some ways in words.
+def _together(kinds: Kinds) -> str:
+    """Some kinds in words.
 
     Examples
     --------
-    >>> _together(frozenset({Way.VOLUME, Way.ARC_LENGTH}))
+    >>> _together(frozenset({VolumeControl, ArcLengthControl}))
     'arc-length control and volume control'
     """
-    if ways == _TO_REST:
+    if kinds == _TO_REST:
         return "runs to rest"
-    groups = (("relaxation", _RELAXATION), ("statics", STATICS), ("dynamics", DYNAMICS))
     words = []
-    for name, group in groups:
-        part = [str(way) for way in Way if way in ways & group]
-        words += [name] if len(part) == len(group) else part
+    for group in (_RELAXATION, STATICS, DYNAMICS):
+        part = [kind for kind in METHODS if kind in kinds & group]
+        words += [part[0].family] if len(part) == len(group) else [kind.title for kind in part]
     return " and ".join(words)
 
 
-def _because(name: str, way: Way, solver: Solver) -> str:
-    """Why settings mean a way that does not use one of them."""
-    if way is Way.MOTION and USERS[name] & _TO_REST and not USERS[name] <= STATICS:
+def _because(name: str, kind: type[Method], solver: Solver) -> str:
+    """Why settings mean a kind that does not use one of them."""
+    if not kind.to_rest and USERS[name] & _TO_REST and not USERS[name] <= STATICS:
         return "an end_time asks for motion up to it"
-    if way in STATICS and USERS[name] & STATICS:
+    if kind in STATICS and USERS[name] & STATICS:
         return f'the control is "{solver.control or "load"}"'
     if solver.method != "auto":
         return f'the method is "{solver.method}"'
     asking = [name for name in given_settings(solver) if name in _deciding(STATICS)]
     if asking:
         return f"{' and '.join(asking)} ask{'s' if len(asking) == 1 else ''} for statics"
-    return f"this design is solved by {'statics' if way in STATICS else way}"
+    return f"this design is solved by {'statics' if kind in STATICS else kind.title}"
 
 
 def settings_at_rest() -> dict[str, Any]:
