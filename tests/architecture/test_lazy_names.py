@@ -7,7 +7,10 @@ from pathlib import Path
 
 import pytest
 
-PACKAGES = ["voxsoft", "voxsoft.files", "voxsoft.study"]
+PACKAGES = [
+    "voxsoft",
+    *(f"voxsoft.{each}" for each in ("comparison", "files", "jobs", "plot", "study")),
+]
 
 
 @pytest.mark.parametrize("name", PACKAGES)

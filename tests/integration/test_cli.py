@@ -124,7 +124,8 @@ def test_run_writes_a_folder_and_prints_si():
     assert summary["metrics"]["rise"] == top[2] > 0.001
     assert summary["cavities"][0]["pressure"] == 4000.0
     names = {path.name for path in Path("r").iterdir()}
-    assert names == {"design.toml", "summary.json", "result.vtu", "body.png"}
+    results = {"design.toml", "summary.json", "result.vtu", "body.png", "thumbnail.png"}
+    assert names == results | {"job.toml", "inputs"}
     moved = meshio.read("r/result.vtu").point_data["displacement"]
     assert moved[:, 2].max() >= top[2]
 

@@ -116,7 +116,8 @@ def test_reports_and_sweeps_stay_there_too(name):
         for call in (["compare", str(file), *quick], ["sweep", str(file)]):
             outcome = CliRunner().invoke(app, call)
             assert outcome.exit_code == 0, outcome.output
-        assert_named(name, home, ("runs",))
+        # The report of the comparison, the folder of its job, and that of the sweep.
+        assert_named(name, home, ("runs",), count=3)
 
 
 def design_called(name, home):
@@ -127,9 +128,9 @@ def design_called(name, home):
     return file
 
 
-def assert_named(name, home, folders):
+def assert_named(name, home, folders, count=2):
     assert {child.name for child in home.iterdir()} == {"design.toml", *folders}
     made = [child.name for folder in folders for child in (home / folder).iterdir()]
-    assert len(made) == 2
+    assert len(made) == count
     starts = folder_name(name), folder_name(name, "study")
     assert all(each.startswith(starts) for each in made)

@@ -7,8 +7,8 @@ import pytest
 
 from voxsoft.design import families
 from voxsoft.errors import DesignError, FileError
+from voxsoft.files.toml_edits import with_value
 from voxsoft.studio.document import MOST_DOCUMENTS, DesignDocument
-from voxsoft.studio.edits import with_value
 from voxsoft.studio.opening import template_document
 from voxsoft.studio.positions import span_of
 

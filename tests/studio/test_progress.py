@@ -3,21 +3,19 @@
 import multiprocessing
 import threading
 import time
+from pathlib import Path
 
 import pytest
 
-from voxsoft.studio.commands import CalibrateSpec, MeasuredData, StudySpec
 from voxsoft.studio.progress import Progress
-from voxsoft.studio.task import Task
 
 
 class Told:
     """What a job said."""
 
-    def __init__(self, spec):
+    def __init__(self, kind):
         self.said = []
-        task = Task(id="a", name="a", design="", base="", spec=spec)
-        self.progress = Progress(task, "runs/a", self.said.append)
+        self.progress = Progress(kind, Path("runs/a"), self.said.append)
 
     @property
     def last(self):
@@ -32,12 +30,12 @@ class Told:
 
 @pytest.fixture
 def study():
-    return Told(StudySpec())
+    return Told("study")
 
 
 @pytest.fixture
 def calibration():
-    return Told(CalibrateSpec(data=[MeasuredData(name="tip.csv")]))
+    return Told("calibrate")
 
 
 def test_a_study_tells_how_many_designs_are_being_finished(study):
@@ -83,7 +81,7 @@ def test_other_work_is_held_where_it_next_says_how_far_it_is(calibration):
 def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("voxsoft.studio.progress.time.monotonic", lambda: now[0])
-    told = Told(CalibrateSpec(data=[MeasuredData(name="tip.csv")]))
+    told = Told("calibrate")
     progress = told.progress
     progress.pause()
     now[0] += 2  # what was begun is being finished

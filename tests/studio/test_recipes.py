@@ -9,25 +9,28 @@ import lattice_families as families
 import pytest
 
 from voxsoft.errors import FileError
-from voxsoft.studio.commands import CalibrateSpec, MeasuredData, RunSpec, SpaceRange, StudySpec
+from voxsoft.jobs import DesignSource, MeasuredTable, RunSpec
+from voxsoft.jobs.copies import with_copies
+from voxsoft.jobs.folder import write_job
+from voxsoft.studio import commands
+from voxsoft.studio.asked import spec_of
 from voxsoft.studio.recipes import recipe_of
-from voxsoft.studio.task import Table, Task
 
 CLI = "from voxsoft.cli.app import app; app()"
 TABLE = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75\n"
 OWN_RANGES = {
-    "radius": SpaceRange(low=0.01, high=0.02, step=0.005),
-    "height": SpaceRange(low=0.02, high=0.03, step=0.005),
-    "wall": SpaceRange(low=0.005, high=0.015, step=0.005),
+    "radius": commands.SpaceRange(low=0.01, high=0.02, step=0.005),
+    "height": commands.SpaceRange(low=0.02, high=0.03, step=0.005),
+    "wall": [0.005, 0.01],
 }
 
 
-def task_in(folder, spec, family="paper-cylinder", tables=()):
-    folder.mkdir(parents=True)
-    text = families.family_text(family)
-    task = Task(folder.name, folder.name, text, str(folder), spec, list(tables))
-    task.write(folder)
-    return task
+def begun(folder, asked, family="paper-cylinder", tables=()):
+    """Write the job that a tab asks for, as the studio does before it starts it."""
+    design = DesignSource(text=families.family_text(family), folder=str(folder))
+    spec = spec_of(asked, design, [MeasuredTable(name=n, text=t) for n, t in tables])
+    write_job(with_copies(spec, folder), folder)
+    return folder
 
 
 def do(folder):
@@ -38,10 +41,10 @@ def do(folder):
         assert process.wait() == 0
 
 
-def again(recipe, folder, *more):
+def again(recipe, folder):
     """Do the job again by its command, and give what it answers."""
     voxsoft = [sys.executable, "-c", CLI, *shlex.split(recipe.command)[1:]]
-    command = [*voxsoft, "--out", str(folder), "--json", *more]
+    command = [*voxsoft, "--out", str(folder), "--json"]
     return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
 
 
@@ -55,63 +58,59 @@ def script(recipe, folder):
     return run.stdout
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("sampler", ["tpe", "grid"])
+@pytest.mark.parametrize("sampler", ["tpe", pytest.param("grid", marks=pytest.mark.slow)])
 def test_a_study_is_done_again_with_the_same_best(tmp_path, sampler):
-    spec = StudySpec(sampler=sampler, budget=6, seed=7, workers=2, space=OWN_RANGES)
-    folder = tmp_path / "runs" / "arm"
-    task_in(folder, spec)
+    asked = commands.StudySpec(sampler=sampler, budget=6, seed=7, workers=2, space=OWN_RANGES)
+    folder = begun(tmp_path / "runs" / "arm", asked)
     do(folder)
     best = json.loads((folder / "summary.json").read_text())["best"]
     recipe = recipe_of(folder)
     assert recipe.seed == 7
     assert recipe.version
     assert str(best["parameters"]) in script(recipe, tmp_path)
-    assert again(recipe, tmp_path / "out")["best"]["parameters"] == best["parameters"]
+    told = again(recipe, tmp_path / "out")
+    assert told["same"]
+    assert told["best"]["parameters"] == best["parameters"]
 
 
 @pytest.mark.slow
 def test_a_calibration_is_done_again_with_the_same_constants(tmp_path):
-    spec = CalibrateSpec(
-        data=[MeasuredData(name="tip.csv")], method="cma-es", generations=2, population=4
+    asked = commands.CalibrateSpec(
+        data=[commands.MeasuredData(name="tip.csv")],
+        method="cma-es",
+        generations=2,
+        population=4,
+        bounds={"edge": (5e3, 80e3)},
+        refine=False,
     )
-    folder = tmp_path / "runs" / "fit"
-    task_in(folder, spec, "paper-beam", [Table("tip.csv", TABLE)])
+    folder = begun(tmp_path / "runs" / "fit", asked, "paper-beam", [("tip.csv", TABLE)])
     do(folder)
     told = json.loads((folder / "summary.json").read_text())
     recipe = recipe_of(folder)
     assert str(told["parameters"]) in script(recipe, tmp_path)
-    assert again(recipe, tmp_path / "out")["parameters"] == told["parameters"]
+    assert again(recipe, tmp_path / "out")["same"]
 
 
-@pytest.mark.slow
 def test_a_run_is_done_again_with_the_same_rise(tmp_path):
-    folder = tmp_path / "runs" / "one"
-    task_in(folder, RunSpec(solver={"method": "xpbd"}))
+    folder = begun(tmp_path / "runs" / "one", commands.RunSpec(solver={"method": "xpbd"}))
     do(folder)
     told = json.loads((folder / "summary.json").read_text())["metrics"]["rise"]
     recipe = recipe_of(folder)
     assert f"'rise': {told}" in script(recipe, tmp_path)
-    assert again(recipe, tmp_path / "out")["metrics"]["rise"] == told
+    found = again(recipe, tmp_path / "out")
+    assert found["same"]
+    assert found["metrics"]["rise"] == told
     assert recipe.seed is None
 
 
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"space": {"radius": SpaceRange(low=0.01, high=0.02)}},
-        {"space": {"radius": [0.01, 0.02]}},
-        {"objectives": {"rise": {"maximize": "volume"}}},
-        {"batch": 3},
-    ],
-)
-def test_what_the_command_line_cannot_say_is_left_to_python(tmp_path, changes):
-    task_in(tmp_path / "arm", StudySpec(**changes))
-    recipe = recipe_of(tmp_path / "arm")
-    assert recipe.command == ""
-    compile(recipe.python, "again.py", "exec")
+def test_the_design_of_a_state_that_was_kept_is_what_can_be_solved_again(tmp_path):
+    design = DesignSource(text=families.family_text("paper-cylinder"))
+    write_job(with_copies(RunSpec(design=design, kept=True), tmp_path), tmp_path)
+    recipe = recipe_of(tmp_path)
+    assert shlex.split(recipe.command) == ["voxsoft", "run", f"{tmp_path}/inputs/design.toml"]
+    assert again(recipe, tmp_path / "out")["status"] == "ok"
 
 
-def test_a_folder_that_the_studio_did_not_write_is_said(tmp_path):
+def test_a_folder_without_a_job_is_said(tmp_path):
     with pytest.raises(FileError, match="holds no job"):
         recipe_of(tmp_path)

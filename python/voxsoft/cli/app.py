@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from voxsoft.cli.again import again
 from voxsoft.cli.calibrate import calibrate
 from voxsoft.cli.check import check
 from voxsoft.cli.compare import compare
@@ -22,12 +23,12 @@ app = typer.Typer(
     name="voxsoft",
     help="Describe, mesh, simulate, calibrate and optimize soft robots.",
     epilog="Exit codes: 0 done, 2 wrong call, 3 invalid input, 4 not at rest, 5 the machine failed "
-    "(disk, memory), 130 interrupted.",
+    "(disk, memory), 6 repeated with other results, 130 interrupted.",
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_show_locals=False,
 )
-for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, export, studio):
+for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, again, export, studio):
     app.command()(command)
 app.add_typer(material)
 

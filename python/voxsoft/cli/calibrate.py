@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -14,7 +13,7 @@ from voxsoft.cli.options import DesignFile, Json, Seed, Sets, Workers
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
-    from voxsoft.calibration import Calibration, CalibrationEvent
+    from voxsoft.calibration import Calibration
 
 
 def calibrate(
@@ -52,41 +51,31 @@ def calibrate(
 ) -> None:
     """Fit the design's material to measurements and write a material card with its report."""
     from voxsoft import files
-    from voxsoft.calibration import Experiment, Measurement
-    from voxsoft.calibration import calibrate as fit
-    from voxsoft.cli.progress import ProgressBar
+    from voxsoft.cli.progress import JobBar
+    from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, run_job
 
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
-        experiments = [Experiment(loaded, Measurement.read(path, select=material)) for path in data]
-        with ProgressBar("generations", generations) as bar:
-            answer = fit(
-                experiments,
-                method=method,
-                free_scale=free_scale,
-                generations=generations,
-                population=population,
-                workers=workers,
-                seed=seed,
-                progress=lambda event: bar.advance_to(*_standing(event, generations)),
-            )
+        spec = CalibrateSpec(
+            design=DesignSource.of_file(design, sets or []),
+            data=[MeasuredTable.of_file(path, material) for path in data],
+            method=method,
+            free_scale=free_scale,
+            generations=generations,
+            population=population,
+            workers=workers,
+            seed=seed,
+            card=name,
+        )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-calibration"
-        written = files.write_calibration(answer, folder, name or _card_name(material, data[0]))
+        with JobBar() as bar:
+            outcome = run_job(spec, folder, bar.follow)
         if json:
-            print_json(answer.summary() | {"folder": str(folder)})
+            print_json(outcome.summary)
         else:
-            _show(answer)
-            say(f"wrote {plain(str(folder))}: {', '.join(file.name for file in written)}")
-
-
-def _card_name(material: str | None, data: Path) -> str:
-    """A name that a design can write: lower case, letters, digits and hyphens."""
-    return re.sub(r"[^a-z0-9]+", "-", (material or data.stem).lower()).strip("-") or "material"
-
-
-def _standing(event: CalibrationEvent, generations: int) -> tuple[int, str]:
-    done = event.done if event.stage == "search" else generations
-    return done, f"{event.stage}, mean error {quantity(event.mean_error, 'length')}"
+            _show(outcome.found)
+            names = ", ".join(file.name for file in outcome.written)
+            say(f"wrote {plain(str(folder))}: {names}")
 
 
 def _show(answer: Calibration) -> None:

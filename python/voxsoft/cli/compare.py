@@ -57,42 +57,54 @@ def compare(
         Path | None,
         typer.Option("--output", help="The report; default: runs/NAME-HASH-comparison.html."),
     ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", help="Folder of the job; default: beside the report, with its name."
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Solve a design in several ways and write a report with estimates of their errors.
 
-    The report is one HTML file: a table, figures, run times, discretization errors.
+    The report is one HTML file: a table, figures, run times, discretization errors. The folder
+    beside it holds what `voxsoft again` repeats it with.
     """
     from voxsoft import files
-    from voxsoft.calibration import Measurement
-    from voxsoft.cli.progress import ProgressBar
-    from voxsoft.comparison import compare as run_comparison
+    from voxsoft.cli.progress import JobBar
+    from voxsoft.files.run_folder import make_folder
+    from voxsoft.files.whole import write_whole
+    from voxsoft.jobs import CompareSpec, DesignSource, MeasuredTable, run_job
 
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
         sizes, numbers = _lengths(voxel_sizes), _numbers(splits)
-        data = [Measurement.read(path) for path in measured or []]
-        with ProgressBar("runs", 100, transient=True) as bar:
-            found = run_comparison(
-                loaded,
-                solvers=[name.strip() for name in solvers.split(",") if name.strip()],
-                outside=outside.value,
-                voxel_sizes=sizes,
-                splits=numbers,
-                measured=data,
-                time_limit=time_limit,
-                progress=lambda label, done, total: bar.advance_to(100 * done // total, label),
-            )
+        spec = CompareSpec(
+            design=DesignSource.of_file(design, sets or []),
+            data=[MeasuredTable.of_file(path) for path in measured or []],
+            solvers=[name.strip() for name in solvers.split(",") if name.strip()],
+            outside=outside.value,
+            voxel_sizes=sizes,
+            splits=numbers,
+            time_limit=time_limit,
+        )
         name = f"{folder_name(loaded.name)}-{loaded.hash[:8]}-comparison.html"
         target = output or Path("runs") / name
-        target.parent.mkdir(parents=True, exist_ok=True)
-        files.write_comparison(found, target)
+        with JobBar() as bar:
+            outcome = run_job(spec, out or _beside(target), bar.follow)
+        make_folder(target.parent)
+        write_whole(target, outcome.written[-1].read_bytes())
         if json:
-            print_json(found.summary() | {"report": str(target)})
+            print_json(outcome.summary | {"report": str(target)})
         else:
-            _show(found, target)
-    if not found.base.ok:
+            _show(outcome.found, target)
+    if not outcome.found.base.ok:
         raise typer.Exit(NOT_AT_REST)
+
+
+def _beside(report: Path) -> Path:
+    """The folder of a comparison: named like its report."""
+    return report.with_suffix("") if report.suffix else report.with_name(f"{report.name}-job")
 
 
 def _lengths(text: str | None) -> list[float] | None:

@@ -24,6 +24,7 @@ USAGE: Final = 2
 INVALID: Final = 3
 NOT_AT_REST: Final = 4
 FAILED: Final = 5
+DIFFERS: Final = 6
 INTERRUPTED: Final = 130
 
 #: The codes of all commands, as the documentation has them.
@@ -34,6 +35,7 @@ MEANINGS: Final = {
     NOT_AT_REST: "the run did not come to rest, or diverged",
     FAILED: "the machine failed: a file cannot be written, memory is short, a storage or an "
     "outside code does not answer; what was finished is kept",
+    DIFFERS: "a job that was repeated has other results than its folder",
     INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
 }
 

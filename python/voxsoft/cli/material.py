@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
@@ -85,6 +84,7 @@ def fit(
     json: Json = False,
 ) -> None:
     """Fit all hyperelastic models to coupon tests, rank them, and write a card with a picture."""
+    from voxsoft.files.cards import card_name
     from voxsoft.files.coupons import load_curve, load_observations, write_coupon_fit
     from voxsoft.materials import NeoHookean
     from voxsoft.materials.coupon import fit_coupons
@@ -111,7 +111,7 @@ def fit(
             poisson=rest.poisson,
             density=rest.density,
         )
-        chosen = name or _card_name(curves[0].name)
+        chosen = name or card_name(Path(curves[0].name).stem)
         card = answer.card(chosen, model, source=source)
         folder = out or Path("runs") / f"{folder_name(chosen, 'card')}-material"
         written = write_coupon_fit(answer, card, folder)
@@ -161,11 +161,6 @@ def show(
                 low, high = stable.scanned
                 everywhere = f"{stable.mode}: stable from stretch {low:g} to {high:g}"
                 say(plain(stable.sentence or everywhere))
-
-
-def _card_name(file: str) -> str:
-    """A name that a design can write: lower case, letters, digits and hyphens."""
-    return re.sub(r"[^a-z0-9]+", "-", Path(file).stem.lower()).strip("-") or "material"
 
 
 def _show_fit(answer: CouponFit, chosen: str) -> None:

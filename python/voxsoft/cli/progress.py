@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import time
+from contextlib import ExitStack
 from types import TracebackType
-from typing import Final, Self
+from typing import TYPE_CHECKING, Final, Self
 
 from rich.progress import (
     BarColumn,
@@ -17,8 +18,14 @@ from rich.progress import (
 
 from voxsoft.cli.output import console, plain, say
 
+if TYPE_CHECKING:
+    from voxsoft.jobs.events import JobEvent
+
 #: Seconds between two plain lines where there is no terminal.
 PLAIN_PERIOD: Final = 5.0
+
+#: What is counted on a bar that goes away when all is done.
+PASSING: Final = frozenset({"percent", "confirmations"})
 
 
 class ProgressBar:
@@ -90,3 +97,36 @@ class ProgressBar:
         left = elapsed / max(self._done - (self._first or 0), 1) * (self._total - self._done)
         tail = f", {plain(note)}" if note else ""
         say(f"{self._title}: {self._done}/{self._total}, {elapsed:.0f} s, {left:.0f} s left{tail}")
+
+
+class JobBar:
+    """Bars that follow a job: one for each thing that it counts."""
+
+    def __init__(self) -> None:
+        self._open = ExitStack()
+        self._bar: ProgressBar | None = None
+        self._counted: tuple[str, int] = ("", 0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._open.__exit__(kind, error, trace)
+
+    def follow(self, event: JobEvent) -> None:
+        """Show how far the job is; events that do not say so change nothing."""
+        from voxsoft.jobs.events import Progress
+
+        if not isinstance(event, Progress):
+            return
+        counted = (event.of, event.total)
+        if self._bar is None or counted != self._counted:
+            self._open.close()
+            bar = ProgressBar(event.of, event.total, transient=event.of in PASSING)
+            self._bar, self._counted = self._open.enter_context(bar), counted
+        self._bar.advance_to(event.done, ", ".join(filter(None, (event.stage, event.best))))

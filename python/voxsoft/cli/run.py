@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -15,8 +13,6 @@ from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
-    from voxsoft.cli.progress import ProgressBar
-    from voxsoft.design import Solver
     from voxsoft.simulation import Diagnostic, Result
 
 
@@ -38,53 +34,29 @@ def run(
 ) -> None:
     """Simulate a design and write a run folder.
 
-    The folder holds design.toml (resolved), summary.json and result.vtu.
+    The folder holds design.toml (resolved), summary.json and result.vtu, and job.toml, with which
+    `voxsoft again` repeats it.
     """
     from voxsoft import files
-    from voxsoft.cli.progress import ProgressBar
-    from voxsoft.simulation import simulate
+    from voxsoft.cli.progress import JobBar
+    from voxsoft.jobs import DesignSource, RunSpec, run_job
 
     with errors_in_words(json=json):
         loaded = files.load(design, assignments=sets or [])
-        changes: dict[str, Any] = {} if solver is None else {"method": solver}
-        with ProgressBar("percent", 100, transient=True) as bar:
-            tell = _percent(bar, loaded.solver)
-            result = simulate(loaded, progress=tell, **changes)
+        spec = RunSpec(
+            design=DesignSource.of_file(design, sets or []),
+            solver={} if solver is None else {"method": solver},
+            figure=figure,
+        )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
-        files.write_run(result, folder)
-        if figure:
-            from voxsoft.files.figures import save_figure
-            from voxsoft.plot import plot_body
-
-            save_figure(plot_body(result), folder / "body.png")
+        with JobBar() as bar:
+            outcome = run_job(spec, folder, bar.follow)
         if json:
-            print_json(result.summary() | {"folder": str(folder)})
+            print_json(outcome.summary)
         else:
-            _show(result, folder)
-    if result.status != "ok":
+            _show(outcome.found, folder)
+    if outcome.found.status != "ok":
         raise typer.Exit(NOT_AT_REST)
-
-
-def _percent(bar: ProgressBar, solver: Solver) -> Callable[[int, float, float], None]:
-    """Progress in percent: of the end time, or of the digits that the residual must still lose."""
-    from voxsoft.simulation.rest import DEFAULT_TOLERANCE
-
-    tolerance = solver.tolerance or DEFAULT_TOLERANCE
-    largest = 0.0
-
-    def tell(steps: int, time: float, residual: float) -> None:
-        nonlocal largest
-        if solver.end_time:
-            share = time / solver.end_time
-        else:
-            # A residual falls by about the same factor in the same time.
-            finite = max(residual, tolerance) if math.isfinite(residual) else largest
-            largest = max(largest, finite)
-            digits = math.log(largest / tolerance) if largest > tolerance else 1.0
-            share = math.log(largest / finite) / digits if finite else 0.0
-        bar.advance_to(round(100 * min(share, 1.0)), f"residual {residual:.1e}")
-
-    return tell
 
 
 def _show(result: Result, folder: Path) -> None:

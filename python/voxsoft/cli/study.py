@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -16,9 +15,7 @@ from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 if TYPE_CHECKING:
     from voxsoft.comparison import Confirmation, Estimate
     from voxsoft.design import Design
-    from voxsoft.study import Study, StudyResult, TrialEvent
-
-    Evaluate = Callable[[Study, Callable[[TrialEvent], None]], StudyResult]
+    from voxsoft.study import StudyResult
 
 #: How many of the best designs are listed.
 LISTED = 10
@@ -66,14 +63,10 @@ def sweep(
         sets or [],
         out,
         "sweep",
-        json=json,
-        evaluate=lambda study, tell: study.grid(
-            workers=workers, scheduler=scheduler, progress=tell
-        ),
-        total=lambda study: study.grid_size,
+        {"sampler": "grid", "workers": workers, "confirm": confirm},
+        scheduler=scheduler,
         storage=storage,
-        seed=0,
-        confirm=confirm,
+        json=json,
     )
 
 
@@ -100,19 +93,22 @@ def optimize(
 
     A search that was stopped goes on where it was, and one with a larger budget goes further.
     """
+    search = {
+        "sampler": sampler,
+        "budget": None if sampler == "grid" else budget,
+        "seed": seed,
+        "workers": workers,
+        "confirm": confirm,
+    }
     _study(
         design,
         sets or [],
         out,
         "optimize",
-        json=json,
-        evaluate=lambda study, tell: study.optimize(
-            sampler, budget, workers=workers, scheduler=scheduler, progress=tell
-        ),
-        total=lambda study: study.grid_size if sampler == "grid" else budget,
+        search,
+        scheduler=scheduler,
         storage=storage,
-        seed=seed,
-        confirm=confirm,
+        json=json,
     )
 
 
@@ -121,61 +117,34 @@ def _study(
     sets: list[str],
     out: Path | None,
     verb: str,
+    search: dict[str, Any],
     *,
-    json: bool,
-    evaluate: Evaluate,
-    total: Callable[[Study], int],
+    scheduler: str | None,
     storage: str | None,
-    seed: int,
-    confirm: int,
+    json: bool,
 ) -> None:
     from voxsoft import files
-    from voxsoft.cli.progress import ProgressBar
-    from voxsoft.simulation import check_solver, check_targets
-    from voxsoft.study import Study
+    from voxsoft.cli.progress import JobBar
+    from voxsoft.jobs import DesignSource, StudySpec, run_job
 
     with errors_in_words(json=json):
         design = files.load(path, assignments=sets)
-        # A target that cannot be measured, or a setting that is not used, would fail every trial.
-        check_targets(design)
-        check_solver(design)
+        spec = StudySpec(design=DesignSource.of_file(path, sets), **search)
         folder = out or Path("runs") / f"{folder_name(design.name)}-{verb}"
-        study = Study(design, folder=folder, storage=storage, seed=seed)
-        new: list[TrialEvent] = []
-        with ProgressBar("designs", total(study)) as bar:
-
-            def tell(event: TrialEvent) -> None:
-                new.append(event)
-                bar.advance_to(event.done, _note(design, event))
-
-            result = evaluate(study, tell)
-        earlier = len(result.trials) - len(new)
-        if earlier:
-            say(f"{earlier} designs were solved before and not again; {len(new)} are new")
-        written = files.write_study(result, folder)
-        if not json:
-            _show(design, result)
-        confirmed = _confirmed(design, result, confirm) if confirm and result.ranking else None
-        if confirmed is not None:
-            written = [*written, files.write_confirmation(confirmed, folder)]
+        with JobBar() as bar:
+            outcome = run_job(spec, folder, bar.follow, scheduler=scheduler, storage=storage)
+        result = outcome.found
+        if outcome.earlier:
+            new = len(result.trials) - outcome.earlier
+            say(f"{outcome.earlier} designs were solved before and not again; {new} are new")
         if json:
-            more = {} if confirmed is None else {"confirmed": confirmed.summary()}
-            print_json(result.summary() | more | {"folder": str(folder)})
-        else:
-            if confirmed is not None:
-                _show_confirmation(design, result, confirmed)
-            names = ", ".join(file.name for file in written)
-            say(f"wrote {plain(str(folder))}: {names}")
-
-
-def _confirmed(design: Design, result: StudyResult, count: int) -> Confirmation:
-    from voxsoft.cli.progress import ProgressBar
-    from voxsoft.comparison import confirm
-
-    with ProgressBar("solving the best again", 2 * count, transient=True) as bar:
-        return confirm(
-            design, result, count=count, progress=lambda done, total: bar.advance_to(done, "")
-        )
+            print_json(outcome.summary)
+            return
+        _show(design, result)
+        if outcome.confirmed is not None:
+            _show_confirmation(design, result, outcome.confirmed)
+        names = ", ".join(file.name for file in outcome.written)
+        say(f"wrote {plain(str(folder))}: {names}")
 
 
 def _show_confirmation(design: Design, result: StudyResult, found: Confirmation) -> None:
@@ -206,14 +175,6 @@ def _show_confirmation(design: Design, result: StudyResult, found: Confirmation)
         for warning in row.warnings:
             say(f"[yellow]warning[/yellow], design {row.trial.number}: {plain(warning)}")
     say(f"confirmed: {plain(found.sentence)}")
-
-
-def _note(design: Design, event: TrialEvent) -> str:
-    if event.best is None:
-        return ""
-    first = next(iter(design.objectives))
-    doubtful = ", doubtful" if event.doubts else ""
-    return f"best {first} {_objective(design, first, event.best)}{doubtful}"
 
 
 def _show(design: Design, result: StudyResult) -> None:
@@ -267,9 +228,3 @@ def _column(name: str, values: list[float], kind: str) -> tuple[str, list[str]]:
 
     scale = scale_for(values, kind)
     return scale.label(name), [f"{value * scale.factor:.4g}" for value in values]
-
-
-def _objective(design: Design, name: str, value: float) -> str:
-    from voxsoft.metrics import METRICS
-
-    return quantity(value, METRICS[design.objectives[name].metric].kind)

@@ -1,9 +1,16 @@
 """Comparison of VoxSoft's solvers with each other, with outside codes and with measurements."""
 
-from voxsoft.comparison.comparison import Comparison, Run
-from voxsoft.comparison.confirmation import Confirmation, confirm
-from voxsoft.comparison.richardson import Estimate, discretization_error
-from voxsoft.comparison.run import compare
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from voxsoft._lazy import lazy_names
+
+if TYPE_CHECKING:
+    from voxsoft.comparison.comparison import Comparison, Run
+    from voxsoft.comparison.confirmation import Confirmation, confirm
+    from voxsoft.comparison.richardson import Estimate, discretization_error
+    from voxsoft.comparison.run import compare
 
 __all__ = [
     "Comparison",
@@ -14,3 +21,15 @@ __all__ = [
     "confirm",
     "discretization_error",
 ]
+
+# Loaded when first used: a job knows what a comparison is asked without its solvers.
+_HOMES = {
+    "Comparison": "voxsoft.comparison.comparison",
+    "Confirmation": "voxsoft.comparison.confirmation",
+    "Estimate": "voxsoft.comparison.richardson",
+    "Run": "voxsoft.comparison.comparison",
+    "compare": "voxsoft.comparison.run",
+    "confirm": "voxsoft.comparison.confirmation",
+    "discretization_error": "voxsoft.comparison.richardson",
+}
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

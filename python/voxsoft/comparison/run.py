@@ -6,12 +6,18 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final, Literal
+from typing import Any, Final, get_args
 
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.cautions import cautions_of
 from voxsoft.comparison.comparison import Comparison, Judged, Run
+from voxsoft.comparison.defaults import (
+    DEFAULT_SOLVERS,
+    DEFAULT_SPLITS,
+    DEFAULT_TIME_LIMIT,
+    Outside,
+)
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
@@ -21,14 +27,7 @@ from voxsoft.simulation import Diagnostic, Result, Setup, simulate
 from voxsoft.simulation.choice import given_settings
 from voxsoft.units import format_quantity, si_value
 
-#: An outside code: the first that is installed, one by name, or none.
-Outside = Literal["auto", "calculix", "scikit-fem", "none"]
-OUTSIDE: Final[tuple[Outside, ...]] = ("auto", "calculix", "scikit-fem", "none")
-
-#: Solvers of our own, and seconds that each run may take, unless asked otherwise.
-DEFAULT_SOLVERS: Final = ("xpbd", "statics")
-DEFAULT_TIME_LIMIT: Final = 300.0
-DEFAULT_SPLITS: Final = (1, 2)
+OUTSIDE: Final[tuple[Outside, ...]] = get_args(Outside)
 
 #: Of a design's solver; a comparison names its methods itself.
 _USED: Final = frozenset({"method", "refine"})

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
@@ -90,3 +90,52 @@ def _with_whole_meshes(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a doc
         # A path that is absolute already stays as it is.
         table["path"] = str(folder.absolute() / table["path"])
     return table
+
+
+Steps = tuple[str | int, ...]
+
+
+def file_references(document: Mapping[str, Any]) -> Iterator[tuple[Steps, str]]:
+    """Find the files that a document names: meshes, and cards by their path.
+
+    Returns
+    -------
+    iterator of (steps, path)
+        Keys and indices that lead to a path, and the path as it is written.
+
+    Examples
+    --------
+    >>> part = {"shape": "body", "material": "mine.toml"}
+    >>> list(file_references({"parts": [part]}))
+    [(('parts', 0, 'material'), 'mine.toml')]
+    """
+    yield from _mesh_references(document, ())
+    parts = document.get("parts")
+    for index, part in enumerate(parts if isinstance(parts, list) else ()):
+        material = part.get("material") if isinstance(part, dict) else None
+        if isinstance(material, str) and is_card_path(material):
+            yield ("parts", index, "material"), material
+
+
+def _mesh_references(value: object, steps: Steps) -> Iterator[tuple[Steps, str]]:
+    if isinstance(value, list):
+        for index, entry in enumerate(value):
+            yield from _mesh_references(entry, (*steps, index))
+    elif isinstance(value, Mapping):
+        path = value.get("path")
+        if value.get("kind") == "mesh" and isinstance(path, str):
+            yield (*steps, "path"), path
+        for key, entry in value.items():
+            yield from _mesh_references(entry, (*steps, key))
+
+
+def with_paths_from(document: Mapping[str, Any], folder: Path) -> Document:
+    """Write the paths of files below a folder as seen from there, so that it can be moved.
+
+    The inverse of :func:`with_whole_paths`; paths that lead elsewhere stay.
+    """
+    written = copy.deepcopy(dict(document))
+    for steps, path in file_references(written):
+        if Path(path).is_relative_to(folder.absolute()):
+            _put(written, steps, Path(path).relative_to(folder.absolute()).as_posix())
+    return written

@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Final
 
 from voxsoft._folders import folder_name
 from voxsoft.calibration import Calibration
@@ -13,8 +14,12 @@ from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
+from voxsoft.files.specimen import write_specimen
 from voxsoft.files.whole import write_whole
 from voxsoft.plot import plot_fitness, plot_profiles, plot_shape
+
+#: Files of TOML in the folder of a calibration that are no card.
+NOT_CARDS: Final = frozenset({"design.toml", "job.toml"})
 
 
 def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> list[Path]:
@@ -23,7 +28,8 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
     The folder then holds ``NAME.toml``, the material card; ``summary.json``, everything;
     ``history.csv``, fitness and moduli for each generation, with ``fitness.png`` (the paper's
     Fig. 3); ``shapes.csv``, measured and simulated numbers at each station, with ``shape.png``
-    (Fig. 4); and ``profile.png``, what the data say about each modulus.
+    (Fig. 4); ``specimen.npz``, where its best candidate stands; and ``profile.png``, what the data
+    say about each modulus.
 
     Parameters
     ----------
@@ -45,9 +51,12 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
         The folder or a file in it cannot be written.
     """
     place = make_folder(folder)
-    card, summary = place / f"{folder_name(name, 'card')}.toml", place / "summary.json"
+    stem = folder_name(name, "card")
+    stem = f"{stem}-card" if f"{stem}.toml" in NOT_CARDS else stem
+    card, summary = place / f"{stem}.toml", place / "summary.json"
     save_card(calibration.card(name), card)
     write_json(summary, calibration.summary() | provenance())
+    write_specimen(calibration.fits[0], place)
     written = [card, summary]
     tables = {"history.csv": _history(calibration), "shapes.csv": _shapes(calibration)}
     for file, text in tables.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from voxsoft.files.designs import FilePath, read_document, read_text
@@ -22,6 +23,17 @@ def card_text(card: Card) -> str:
     """
     dumped = card.model_dump(mode="json", by_alias=True, exclude_none=True, context=EXACT)
     return write_toml({key: value for key, value in dumped.items() if value not in ("", {})})
+
+
+def card_name(text: str) -> str:
+    """Make a name that a design can write: lower case, letters, digits and hyphens.
+
+    Examples
+    --------
+    >>> card_name("Ecoflex 00-30, 2nd"), card_name("硅胶")
+    ('ecoflex-00-30-2nd', 'material')
+    """
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "material"
 
 
 def save_card(card: Card, path: FilePath) -> None:

@@ -34,11 +34,22 @@ def load_measurement(path: FilePath, *, select: str | None = None) -> Measuremen
     >>> load_measurement(file).values.tolist()
     [[-0.0125]]
     """
-    name = Path(path).name
+    return read_measurement(measurement_text(path), name=Path(path).name, select=select)
+
+
+def measurement_text(path: FilePath) -> str:
+    """Read the text of a measurement's file.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable or too large file.
+    MeasurementError
+        Text that is not UTF-8.
+    """
     try:
-        text = read_text(path)
+        return read_text(path)
     except FileError as error:
         if "UTF-8" in error.what:
             raise MeasurementError(error.where, error.what, "save the table as CSV") from None
         raise
-    return read_measurement(text, name=name, select=select)

@@ -14,8 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from voxsoft.design.documents import with_paths_from
 from voxsoft.errors import OutputError
 from voxsoft.files.meshes import write_mesh
+from voxsoft.files.toml_text import write_toml
 from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
 
@@ -40,7 +42,8 @@ def write_run(
         The folder cannot be written.
     """
     folder = make_folder(folder)
-    write_whole(folder / "design.toml", result.design.to_toml(resolved=True))
+    resolved = with_paths_from(result.design.resolved, folder)
+    write_whole(folder / "design.toml", write_toml(resolved))
     summary = result.summary() | {
         "design": result.design.name,
         "hash": result.design.hash,

@@ -14,17 +14,24 @@ Examples
 ['body', 'colorbar']
 """
 
-from voxsoft.plot.body import body_image, plot_body
-from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
-from voxsoft.plot.comparison import (
-    plot_agreement,
-    plot_convergence,
-    plot_errors,
-    plot_shapes,
-    plot_times,
-)
-from voxsoft.plot.coupon import plot_coupons
-from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from voxsoft._lazy import lazy_names
+
+if TYPE_CHECKING:
+    from voxsoft.plot.body import body_image, plot_body
+    from voxsoft.plot.calibration import plot_fitness, plot_profiles, plot_shape
+    from voxsoft.plot.comparison import (
+        plot_agreement,
+        plot_convergence,
+        plot_errors,
+        plot_shapes,
+        plot_times,
+    )
+    from voxsoft.plot.coupon import plot_coupons
+    from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
     "body_image",
@@ -42,3 +49,22 @@ __all__ = [
     "plot_shapes",
     "plot_times",
 ]
+
+# Loaded when first used: the picture of a body needs no fit of coupons.
+_HOMES = {
+    "body_image": "voxsoft.plot.body",
+    "plot_agreement": "voxsoft.plot.comparison",
+    "plot_body": "voxsoft.plot.body",
+    "plot_convergence": "voxsoft.plot.comparison",
+    "plot_coupons": "voxsoft.plot.coupon",
+    "plot_errors": "voxsoft.plot.comparison",
+    "plot_fitness": "voxsoft.plot.calibration",
+    "plot_history": "voxsoft.plot.study",
+    "plot_pareto": "voxsoft.plot.study",
+    "plot_profiles": "voxsoft.plot.calibration",
+    "plot_scatter": "voxsoft.plot.study",
+    "plot_shape": "voxsoft.plot.calibration",
+    "plot_shapes": "voxsoft.plot.comparison",
+    "plot_times": "voxsoft.plot.comparison",
+}
+__getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -15,7 +15,6 @@ from voxsoft.records import place
 from voxsoft.studio import events
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.studying import design_text_of, stored_trial
-from voxsoft.studio.task import DESIGN
 
 
 def compared(runs: RunList, a: str, b: str) -> events.Compared:
@@ -36,7 +35,7 @@ def compared(runs: RunList, a: str, b: str) -> events.Compared:
 def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
     run, _, number = name.rpartition("/")
     folder = runs.folder_of(run or name)
-    file = folder / DESIGN
+    file = folder / "design.toml"
     text = read_text(file) if file.is_file() else design_text_of(folder)
     document = read_document(text, name)
     parameters: dict[str, Any] = {}

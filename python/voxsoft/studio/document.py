@@ -13,9 +13,9 @@ from voxsoft.design.formula import is_formula
 from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.designs import LARGEST_FILE, read_document, read_text
+from voxsoft.files.toml_edits import with_value
 from voxsoft.files.whole import write_whole
 from voxsoft.studio import events
-from voxsoft.studio.edits import with_value
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.uploads import safe_name
 from voxsoft.units import KINDS, format_quantity, parse

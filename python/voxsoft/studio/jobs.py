@@ -14,12 +14,14 @@ from typing import Final
 import msgspec
 
 from voxsoft.errors import StudyError
+from voxsoft.jobs import Spec
+from voxsoft.jobs.copies import with_copies
+from voxsoft.jobs.folder import write_job
 from voxsoft.records import closest
 from voxsoft.studio import events
 from voxsoft.studio.job_journal import FINISHED, JobJournal
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.tab import Tab
-from voxsoft.studio.task import Task
 
 #: What a process wrote on its standard error.
 LOG: Final = "job.log"
@@ -37,15 +39,14 @@ class Job:
 
     Attributes
     ----------
-    task, folder
-        What it does, and where.
+    folder
+        Where it works; the job has its name.
     state
         The last it said of itself.
     kept
         What a tab that comes later must be told besides.
     """
 
-    task: Task
     folder: Path
     state: events.Job
     process: subprocess.Popen[str]
@@ -81,8 +82,8 @@ class Jobs:
         self._jobs: dict[str, Job] = {}
         self._lock = threading.Lock()
 
-    def start(self, task: Task, folder: Path) -> Job:
-        """Start a task in its folder, or go on with it.
+    def start(self, spec: Spec, folder: Path) -> Job:
+        """Start a job in its folder, or go on with it.
 
         Raises
         ------
@@ -91,11 +92,14 @@ class Jobs:
         FileError
             The folder cannot be written.
         """
+        if spec.kind == "compare":
+            what = "is a comparison, which the studio cannot run"
+            raise StudyError(folder.name, what, f"run `voxsoft again {folder}`")
         with self._lock:
-            before = self._jobs.get(task.id)
+            before = self._jobs.get(folder.name)
             if before is not None and before.running:
-                raise StudyError(task.name, "is running already")
-            task.write(folder)
+                raise StudyError(folder.name, "is running already")
+            write_job(with_copies(spec, folder), folder)
             log = (folder / LOG).open("w", encoding="utf-8")
             with log:
                 process = subprocess.Popen(
@@ -109,9 +113,9 @@ class Jobs:
                     start_new_session=True,
                 )
             state = events.Job(
-                id=task.id,
-                kind=task.kind,
-                name=task.name,
+                id=folder.name,
+                kind=spec.kind,
+                name=folder.name,
                 state="running",
                 done=0,
                 total=0,
@@ -122,8 +126,8 @@ class Jobs:
                 message="",
                 stage="starting",
             )
-            job = Job(task, folder, state, process)
-            self._jobs[task.id] = job
+            job = Job(folder, state, process)
+            self._jobs[folder.name] = job
         self._tabs.tell(state)
         threading.Thread(target=self._listen, args=(job,), daemon=True).start()
         return job

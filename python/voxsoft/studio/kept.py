@@ -8,10 +8,11 @@ import msgspec
 
 from voxsoft import files
 from voxsoft.files.designs import read_document
-from voxsoft.studio.commands import RunSpec
-from voxsoft.studio.edits import with_value
+from voxsoft.files.toml_edits import with_value
+from voxsoft.jobs import DesignSource, RunSpec
+from voxsoft.jobs.copies import with_copies
+from voxsoft.jobs.folder import write_job
 from voxsoft.studio.exports import Shown
-from voxsoft.studio.task import Task
 from voxsoft.units import format_quantity
 
 
@@ -40,10 +41,9 @@ def keep(shown: Shown, base: Path, folder: Path) -> str:
     result = shown.measured()
     pulls = {"pulls": [msgspec.to_builtins(pull) for pull in shown.pulls]}
     files.write_run(result, folder, more=pulls if shown.pulls else {})
-    text = with_live_loads(shown)
     # With the text as it was typed the parameters can go on to be varied.
-    task = Task(folder.name, folder.name, text, str(base), RunSpec())
-    task.write(folder)
+    design = DesignSource(text=with_live_loads(shown), folder=str(base))
+    write_job(with_copies(RunSpec(design=design, kept=True), folder), folder)
     return f"{folder.name}: {result.message}{_under(shown)}"
 
 

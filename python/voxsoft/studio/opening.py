@@ -7,10 +7,10 @@ from pathlib import Path
 
 from voxsoft.design import families
 from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.files.toml_edits import with_value
+from voxsoft.jobs import load
 from voxsoft.studio.document import DesignDocument
-from voxsoft.studio.edits import with_value
 from voxsoft.studio.studying import design_text_of, stored_trial
-from voxsoft.studio.task import DESIGN, Task
 from voxsoft.studio.uploads import MESHES, design_of_array, design_of_mesh
 from voxsoft.units import format_quantity
 
@@ -46,10 +46,10 @@ def document_at(path: Path, home: Path) -> DesignDocument:
         raise FileError(str(path)[:200], "is no design file", hint)
     if not is_folder:
         return DesignDocument.of_file(path)
-    file, name = path / DESIGN, f"{path.name}.toml"
-    with suppress(VoxSoftError):  # a folder that the studio did not write
-        task = Task.read(path)
-        return DesignDocument(task.design, name, folder=Path(task.base))
+    file, name = path / "design.toml", f"{path.name}.toml"
+    with suppress(VoxSoftError):  # a folder that tells no job
+        source = load(path, check=False).spec.design
+        return DesignDocument(source.with_files({}, home).text, name, folder=home)
     if not file.is_file() and (path / "study.json").is_file():
         return DesignDocument(design_text_of(path), name, folder=home)
     if not file.is_file():

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from voxsoft.studio import events
-from voxsoft.studio.task import Task
+from voxsoft.studio.events import JobKind
+from voxsoft.study import Study
 from voxsoft.study.gate import Gate
 
 Tell = Callable[[events.Event], None]
@@ -26,14 +27,15 @@ class Progress:
 
     Parameters
     ----------
-    task, folder
-        The job.
+    kind, folder
+        The job, which has the name of its folder.
     tell
         Sends an event to the studio; called by any thread.
     """
 
-    def __init__(self, task: Task, folder: Path, tell: Tell) -> None:
-        self.task, self.folder, self.tell = task, folder, tell
+    def __init__(self, kind: JobKind, folder: Path, tell: Tell) -> None:
+        self.kind, self.folder, self.tell = kind, folder, tell
+        self.job = folder.name
         self._goes_on = threading.Event()
         self._goes_on.set()
         self._gate: Gate | None = None
@@ -43,9 +45,9 @@ class Progress:
         self._idle = 0.0
         self._first: int | None = None
         self._done, self._total, self._best, self._stage = 0, 0, "", ""
-        self.parameters: list[str] = []
-        self.objectives: list[str] = []
-        self.directions: list[str] = []
+        self._parameters: list[str] = []
+        self._objectives: list[str] = []
+        self._directions: list[str] = []
 
     @property
     def elapsed(self) -> float:
@@ -94,10 +96,10 @@ class Progress:
             self._held = False
             self.say()
 
-    def doing(self, stage: str) -> None:
-        """Say what is being done beside what is counted."""
-        self._stage = stage
-        self.say()
+    def begin_study(self, study: Study) -> None:
+        """Say from now on what the study of the job is about."""
+        self._parameters, self._objectives = list(study.space), list(study.objectives)
+        self._directions = [each.direction for each in study.objectives.values()]
 
     def end(self, state: events.JobState, message: str) -> None:
         """Say how the job ended."""
@@ -125,7 +127,7 @@ class Progress:
         if self._gate is not None:
             begun = self._gate.begun
             return f"{begun} design{' is' if begun == 1 else 's are'} being finished"
-        if self.task.kind == "run":
+        if self.kind == "run":
             return "the present step is being finished"
         part = "present generation" if self._stage == "search" else self._stage or "start"
         return f"the {part} is being finished"
@@ -162,9 +164,9 @@ class Progress:
     ) -> None:
         self.tell(
             events.Job(
-                id=self.task.id,
-                kind=self.task.kind,
-                name=self.task.name,
+                id=self.job,
+                kind=self.kind,
+                name=self.job,
                 state=state,
                 done=self._done,
                 total=self._total,
@@ -174,8 +176,8 @@ class Progress:
                 folder=str(self.folder),
                 message=message,
                 stage=stage,
-                parameters=self.parameters,
-                objectives=self.objectives,
-                directions=self.directions,
+                parameters=self._parameters,
+                objectives=self._objectives,
+                directions=self._directions,
             )
         )

@@ -8,9 +8,9 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from voxsoft.errors import VoxSoftError
+from voxsoft.jobs.nearness import digits_lost
 from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.choice import settings_at_rest
-from voxsoft.simulation.rest import DEFAULT_TOLERANCE
 from voxsoft.studio.body import StudioBody
 from voxsoft.units import format_percent
 
@@ -90,19 +90,3 @@ class RestSearch(threading.Thread):
         left = f"residual {format_percent(residual)} of the load"
         sentence = f"Solving for equilibrium: step {steps:,}, {left}"
         self._listener.searching(self, sentence, digits_lost(residual, self._largest))
-
-
-def digits_lost(residual: float, largest: float) -> float:
-    """The part of the digits that a residual must lose until rest, and has lost.
-
-    Examples
-    --------
-    >>> round(digits_lost(1e-3, 1e-1), 2), digits_lost(1e-6, 1.0)
-    (0.5, 1.0)
-    """
-    if not largest > residual > 0:
-        return 0.0
-    if largest <= DEFAULT_TOLERANCE:
-        return 1.0
-    lost = math.log(largest / residual) / math.log(largest / DEFAULT_TOLERANCE)
-    return min(1.0, max(0.0, lost))

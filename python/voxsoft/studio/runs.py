@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any, Final, Literal
 
 from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.files.calibrations import NOT_CARDS
+from voxsoft.files.figures import THUMBNAIL
 from voxsoft.files.run_folder import make_folder
+from voxsoft.jobs.comparing import REPORT
+from voxsoft.jobs.folder import holds_job, kind_of_job
 from voxsoft.metrics import METRICS
 from voxsoft.studio import events
-from voxsoft.studio.running import THUMBNAIL
-from voxsoft.studio.task import DESIGN, TASK, Task
 from voxsoft.units import format_quantity
 
 #: Where folders go that are deleted, so that they can come back.
@@ -28,6 +30,9 @@ PICTURES: Final = (THUMBNAIL, "body.png", "shape.png", "scatter.png", "history.p
 _LARGEST: Final = 20_000_000
 
 Kind = Literal["run", "study", "calibrate", "unknown"]
+
+#: What the studio can do again itself.
+_DONE_HERE: Final[tuple[Literal["run", "study", "calibrate"], ...]] = ("run", "study", "calibrate")
 
 
 class RunList:
@@ -136,7 +141,7 @@ class RunList:
             thumbnail=f"/thumbnail/{folder.name}" if _picture(folder) else None,
             message=message,
             trials=trials,
-            again=(folder / TASK).is_file(),
+            again=kind in _DONE_HERE and holds_job(folder),
         )
 
     def _existing(self, parent: Path, name: str) -> Path:
@@ -153,9 +158,11 @@ class RunList:
 
 def kind_of(folder: Path) -> Kind:
     """What a folder holds, judged by the files in it."""
-    if (folder / TASK).is_file():
-        with suppress(VoxSoftError):
-            return Task.read(folder).kind
+    told = kind_of_job(folder)
+    if told == "compare":
+        return "unknown"
+    if told in _DONE_HERE:
+        return told
     if (folder / "study.json").is_file() or (folder / "study.journal").is_file():
         return "study"
     if (folder / "shapes.csv").is_file():
@@ -165,7 +172,9 @@ def kind_of(folder: Path) -> Kind:
 
 def card_of(folder: Path) -> Path | None:
     """The material card that a calibration left in its folder, or None."""
-    return next((file for file in sorted(folder.glob("*.toml")) if file.name != DESIGN), None)
+    return next(
+        (file for file in sorted(folder.glob("*.toml")) if file.name not in NOT_CARDS), None
+    )
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
@@ -193,6 +202,8 @@ def read_summary(folder: Path) -> dict[str, Any]:
 def _content(folder: Path) -> tuple[Kind, dict[str, Any], str]:
     """Kind and summary of a folder, and what is wrong with it."""
     kind = kind_of(folder)
+    if kind == "unknown" and (folder / REPORT).is_file():
+        return kind, {}, f"a comparison: open {REPORT} in its folder"
     if kind == "unknown":
         return kind, {}, "holds neither a run nor a study"
     try:

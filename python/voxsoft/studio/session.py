@@ -13,14 +13,16 @@ from functools import singledispatchmethod
 from pathlib import Path
 from typing import Any, Final
 
-from voxsoft import _core
 from voxsoft._folders import folder_name
 from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
-from voxsoft.files.cards import load_card_file, save_card
+from voxsoft.files.cards import card_name, load_card_file, save_card
+from voxsoft.files.figures import save_thumbnail
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.whole import write_whole
+from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, load
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
+from voxsoft.studio.asked import spec_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
 from voxsoft.studio.compared import compared
@@ -40,13 +42,11 @@ from voxsoft.studio.opening import (
 from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.recipes import recipe_of
-from voxsoft.studio.running import draw
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
-from voxsoft.studio.task import Table, Task
 from voxsoft.studio.uploads import safe_name, unpack_folder
 
 #: Folder of the studio's own files below the runs.
@@ -281,29 +281,24 @@ class Session:
 
     def _draw(self, shown: Shown, folder: Path) -> None:
         with suppress(VoxSoftError, OSError):
-            draw(shown.measured(), folder)
+            save_thumbnail(shown.measured(), folder)
             self._runs_changed()
 
     @_obey.register
     def _(self, command: commands.JobStart, tab: Tab) -> None:
-        spec, document = command.spec, self.document
+        asked, document = command.spec, self.document
         if not document.valid or document.design is None:
             raise StudyError("job", "the design is not valid", "mend what the editor underlines")
         tables = []
-        if isinstance(spec, commands.CalibrateSpec):
-            tables = [self._table(each) for each in spec.data]
-        stem = spec.name or f"{document.design.name}-{_KIND_NAMES[type(spec)]}"
-        folder = self._free_folder(stem)
-        task = Task(
-            id=folder.name,
-            name=folder.name,
-            design=document.text,
-            base=str(document.folder),
-            spec=spec,
-            tables=tables,
-            version=_core.__version__,
-        )
-        self.jobs.start(task, folder)
+        if isinstance(asked, commands.CalibrateSpec):
+            tables = [self._table(each) for each in asked.data]
+        source = DesignSource(text=document.text, folder=str(document.folder))
+        name = asked.name or f"{document.design.name}-{_KIND_NAMES[type(asked)]}"
+        spec = spec_of(asked, source, tables)
+        folder = self._free_folder(name)
+        if isinstance(spec, CalibrateSpec):
+            spec = spec.replace(card=card_name(folder.name))
+        self.jobs.start(spec, folder)
         self._runs_changed()
 
     @_obey.register
@@ -319,9 +314,7 @@ class Session:
         if self.jobs.known(command.id) is not None and self.jobs.resume(command.id):
             return
         folder = self.list.folder_of(command.id)
-        task = Task.read(folder)
-        task.id = task.name = folder.name
-        self.jobs.start(task, folder)
+        self.jobs.start(load(folder).spec, folder)
         self._runs_changed()
 
     @_obey.register
@@ -340,7 +333,7 @@ class Session:
         self._tables[command.name] = (command.text, command.columns)
         self.tabs.tell_one(tab, event)
 
-    def _table(self, data: commands.MeasuredData) -> Table:
+    def _table(self, data: commands.MeasuredData) -> MeasuredTable:
         """A table that was sent before, mapped."""
         if data.name not in self._tables:
             raise FileError(data.name, "was not sent", "drop the file on the page again")
@@ -350,7 +343,7 @@ class Session:
             first = event.problems[0]
             raise MeasurementError(first.where, first.what, first.hint)
         mapped = mapped_text(text, data.columns or columns or guessed_columns(text))
-        return Table(name=data.name, text=mapped, select=data.select)
+        return MeasuredTable(name=data.name, text=mapped, select=data.select)
 
     @_obey.register
     def _(self, command: commands.CardSave, tab: Tab) -> None:

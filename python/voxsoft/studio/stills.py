@@ -21,15 +21,15 @@ from voxsoft.design.documents import with_whole_paths
 from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.meshes import read_mesh_file
+from voxsoft.files.specimen import read_specimen
+from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
 from voxsoft.studio.frames import pack_points
 from voxsoft.studio.runs import RunList, kind_of, read_summary
-from voxsoft.studio.specimen import read_specimen
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
 from voxsoft.studio.surface import Surface, pack_surface
-from voxsoft.studio.task import DESIGN, Task
 from voxsoft.studio.wire import FrameFlag
 from voxsoft.study.trial import Trial
 
@@ -191,13 +191,13 @@ def design_in(folder: Path) -> Design:
     VoxSoftError
         There is none, or it cannot be read.
     """
-    file = folder / DESIGN
+    file = folder / "design.toml"
     try:
-        task = Task.read(folder)
-    except VoxSoftError:  # a folder that the studio did not write
+        job = load(folder, check=False)
+    except VoxSoftError:  # a folder that tells no job
         text = read_text(file) if file.is_file() else design_text_of(folder)
         return Design.from_document(with_whole_paths(read_document(text, folder.name), folder))
-    return task.read_design()
+    return job.spec.design.read()
 
 
 def _of_run(folder: Path) -> Still:

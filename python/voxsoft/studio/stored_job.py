@@ -11,12 +11,12 @@ import msgspec
 
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.cards import load_card_file
+from voxsoft.jobs.folder import holds_job
 from voxsoft.materials import constants_of
 from voxsoft.studio import events
 from voxsoft.studio.job_journal import FINISHED, read_journal
 from voxsoft.studio.runs import card_of, kind_of, read_summary
 from voxsoft.studio.studying import stored_study, trials_event
-from voxsoft.studio.task import TASK
 from voxsoft.units import format_quantity
 
 
@@ -46,7 +46,7 @@ def stored_job(folder: Path) -> list[events.Event]:
 def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:
     """Where the job of a folder stood when it was heard of last; nobody works on it now."""
     states = [event for event in read_journal(folder) if isinstance(event, events.Job)]
-    if not states or not (folder / TASK).is_file():
+    if not states or not holds_job(folder):
         return
     last = states[-1]
     if last.state not in FINISHED:

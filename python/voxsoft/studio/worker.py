@@ -11,16 +11,16 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Callable
 from pathlib import Path
 from typing import TextIO
 
-from voxsoft.errors import VoxSoftError
+from voxsoft.errors import StudyError, VoxSoftError
+from voxsoft.jobs import CompareSpec, load, run_job
 from voxsoft.studio import events
 from voxsoft.studio.job_journal import JobJournal
 from voxsoft.studio.progress import Progress, Tell
 from voxsoft.studio.protocol import encode
-from voxsoft.studio.task import Task
+from voxsoft.studio.telling import listener_of
 
 
 def listen(lines: TextIO, progress: Progress) -> None:
@@ -46,32 +46,20 @@ def _interrupt_main() -> None:
         _thread.interrupt_main()
 
 
-def runner_of(kind: events.JobKind) -> Callable[[Task, Progress], str]:
-    """What does jobs of a kind; each loads no more than it needs."""
-    if kind == "run":
-        from voxsoft.studio.running import run_once
-
-        return run_once
-    if kind == "study":
-        from voxsoft.studio.studying import run_study
-
-        return run_study
-    from voxsoft.studio.calibrating import run_calibration
-
-    return run_calibration
-
-
 def main(folder: Path) -> int:
-    """Do the task of a folder; returns the exit code."""
+    """Do the job of a folder; returns the exit code."""
     # Whatever libraries print must not come between the events.
     line_out = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)
-    task = Task.read(folder)
-    progress = Progress(task, folder, _teller(line_out, task, folder))
+    spec = load(folder).spec
+    if isinstance(spec, CompareSpec):
+        raise StudyError(folder.name, "is a comparison, which the studio cannot run")
+    progress = Progress(spec.kind, folder, _teller(line_out, spec.kind, folder))
     try:
         threading.Thread(target=listen, args=(sys.stdin, progress), daemon=True).start()
-        message = runner_of(task.kind)(task, progress)
-        progress.end("done", message)
+        gate = progress.gate() if spec.kind == "study" else None
+        outcome = run_job(spec, folder, listener_of(spec, progress), gate=gate)
+        progress.end("done", outcome.sentence)
     except KeyboardInterrupt as interrupt:
         progress.end("stopped", str(interrupt) or "stopped; what is finished is kept")
     except VoxSoftError as error:
@@ -82,11 +70,11 @@ def main(folder: Path) -> int:
     return 0
 
 
-def _teller(line_out: TextIO, task: Task, folder: Path) -> Tell:
+def _teller(line_out: TextIO, kind: events.JobKind, folder: Path) -> Tell:
     """What sends events to the studio, and writes down those that a later tab has to know."""
     lock = threading.Lock()
     # Only a study goes on where it was; other work begins anew.
-    journal = JobJournal(folder, anew=task.kind != "study")
+    journal = JobJournal(folder, anew=kind != "study")
 
     def tell(event: events.Event) -> None:
         with lock:

@@ -7,10 +7,12 @@ import hashlib
 import inspect
 import json
 from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
 from typing import Any, Final
 
 from voxsoft._core import __version__
 from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design.documents import with_paths_from
 from voxsoft.errors import StudyError
 from voxsoft.metrics import METRICS
 from voxsoft.metrics.own import own_metrics
@@ -26,16 +28,18 @@ def definition(
     constraints: Mapping[str, Constraint],
     evaluate: Callable[..., object],
     seed: int,
+    folder: Path,
 ) -> dict[str, Any]:
     """Write everything that decides the results of a study as plain data.
 
     A function, also that of a metric of the user's, is written as its name and a hash of its
-    source text, where it has one.
+    source text, where it has one. Files below `folder`, that of the study, are written as seen from
+    there, so that it can be moved.
     """
     written = {
         "schema": SCHEMA,
         "voxsoft": __version__,
-        "family": _without_own_targets(family.document)
+        "family": _without_own_targets(with_paths_from(family.document, folder))
         if isinstance(family, Design)
         else _function(family),
         "space": {name: domain.model_dump(mode="json") for name, domain in space.items()},

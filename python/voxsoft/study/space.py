@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-from optuna.distributions import (
-    BaseDistribution,
-    CategoricalDistribution,
-    FloatDistribution,
-    IntDistribution,
-)
 from pydantic import Field, model_validator
 
 from voxsoft.design import Design, Parameter
 from voxsoft.errors import StudyError, VoxSoftError
 from voxsoft.records import Record, closest, plain_values
 from voxsoft.units import format_quantity, is_pint, parse_any, quantity_of, round_significant
+
+if TYPE_CHECKING:
+    from optuna.distributions import BaseDistribution
 
 Choice = bool | int | float | str
 
@@ -64,6 +61,8 @@ class Range(Record):
     @property
     def distribution(self) -> BaseDistribution:
         """The same as Optuna writes it."""
+        from optuna.distributions import FloatDistribution, IntDistribution  # slow to load
+
         if isinstance(self.low, int) and isinstance(self.high, int) and _whole(self.step):
             return IntDistribution(self.low, self.high, log=self.log, step=int(self.step or 1))
         if self.step is None:
@@ -90,6 +89,8 @@ class Choices(Record):
     @property
     def distribution(self) -> BaseDistribution:
         """The same as Optuna writes it."""
+        from optuna.distributions import CategoricalDistribution  # slow to load
+
         return CategoricalDistribution(self.values)
 
 

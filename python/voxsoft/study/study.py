@@ -126,12 +126,15 @@ class Study:
         # Of a design, once for all trials; a function may return one with other probes each time.
         self._asked = None if own is None else self._asking(own)
         usual = Path("studies", folder_name(self.name, "study"))
-        place = Path(folder or usual) if storage is None else storage
+        beside = Path(folder or usual)
+        place = beside if storage is None else storage
         self.folder = place if isinstance(place, Path) else None
         self._storage = TrialStorage(
             self.name,
             [objective.direction for objective in self.objectives.values()],
-            definition(family, self.space, self.objectives, self.constraints, evaluate, seed),
+            definition(
+                family, self.space, self.objectives, self.constraints, evaluate, seed, beside
+            ),
             place,
         )
 
@@ -275,6 +278,12 @@ class Study:
         """Return what is stored so far, also while another process runs the study."""
         with self._storage.open(write=False) as study:
             return self._result(study)
+
+    @property
+    def begun(self) -> int:
+        """Number of trials that are stored, those included that were begun and not finished."""
+        with self._storage.open(write=False) as study:
+            return len(study.get_trials(deepcopy=False))
 
     @property
     def grid_size(self) -> int:

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from voxsoft.calibration.result import Fit
 from voxsoft.errors import FileError
 from voxsoft.files.whole import write_whole
-from voxsoft.studio.message import Triple
 
 #: The file of a calibration that holds the specimen, as NumPy writes arrays.
 SPECIMEN: Final = "specimen.npz"
 
 Floats = NDArray[np.float64]
+Triple = tuple[float, float, float]
 
 
 def drawn_positions(fit: Fit) -> Floats:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import tomlkit
@@ -10,6 +11,7 @@ from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import AoT
 
 from voxsoft.errors import DesignError
+from voxsoft.files.toml_text import write_toml
 from voxsoft.records import place
 
 Path = Sequence[str | int]
@@ -50,6 +52,40 @@ def with_value(text: str, path: Path, value: object) -> str:
         ) from None
     except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
         raise DesignError(place(path), f"cannot be set: {error}") from None
+
+
+def with_document(text: str, document: Mapping[str, Any]) -> str:
+    """Change a text so that it holds another document, with as much of its layout as can stay.
+
+    Examples
+    --------
+    >>> print(with_document('wall = "5 mm"  # thin', {"wall": "6 mm"}))
+    wall = "6 mm"  # thin
+    """
+    try:
+        changed = text
+        for path, value in _changes(tomllib.loads(text), document, ()):
+            changed = with_value(changed, path, value)
+        if tomllib.loads(changed) == document:
+            return changed
+    except (DesignError, tomllib.TOMLDecodeError):
+        pass  # written anew, then
+    return write_toml(document)
+
+
+def _changes(before: object, after: object, path: Path) -> Iterator[tuple[Path, object]]:
+    """The values that differ; an entry that is gone is not among them."""
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        for key, value in after.items():
+            if key in before:
+                yield from _changes(before[key], value, (*path, key))
+            else:
+                yield (*path, key), value
+    elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        for index, pair in enumerate(zip(before, after, strict=True)):
+            yield from _changes(*pair, (*path, index))
+    elif type(before) is not type(after) or before != after:
+        yield path, after
 
 
 def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -> None:

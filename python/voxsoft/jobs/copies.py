@@ -1,0 +1,62 @@
+"""Copies of the meshes and cards that a design names, so that a folder can be moved."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+from typing import Final, TypeVar
+
+from voxsoft._folders import folder_name
+from voxsoft.files.run_folder import make_folder
+from voxsoft.files.whole import write_whole
+from voxsoft.jobs.spec import JobSpec
+
+#: The folder of the copies in that of a job.
+INPUTS: Final = "inputs"
+#: Digits of the content's hash in the name of a copy.
+_DIGITS: Final = 8
+
+AnySpec = TypeVar("AnySpec", bound=JobSpec)
+
+
+def design_file(kind: str) -> str:
+    """Where the design of a job lies in its folder: a run leaves its resolved one at the top.
+
+    Examples
+    --------
+    >>> design_file("run"), design_file("study")
+    ('inputs/design.toml', 'design.toml')
+    """
+    return f"{INPUTS}/design.toml" if kind == "run" else "design.toml"
+
+
+def with_copies(spec: AnySpec, folder: Path) -> AnySpec:
+    """Copy the files that the design of a spec names to a folder; return the spec that names those.
+
+    A copy has the hash of its content in its name, so that no other copy is ever replaced. A file
+    that cannot be read is left to the job, which says what it was for.
+
+    Raises
+    ------
+    FileError
+        A copy cannot be written.
+    """
+    copies = {}
+    for steps, file in spec.design.files().items():
+        try:
+            content = file.read_bytes()
+        except OSError:
+            continue
+        copies[steps] = _copied(content, file, folder / INPUTS)
+    place = (folder / design_file(spec.kind)).parent
+    return spec.replace(design=spec.design.with_files(copies, place))
+
+
+def _copied(content: bytes, file: Path, inputs: Path) -> Path:
+    digest = hashlib.sha256(content).hexdigest()[:_DIGITS]
+    stem = file.stem.removesuffix(f"-{digest}")
+    target = inputs / f"{folder_name(stem, 'file')}-{digest}{file.suffix}"
+    if not target.is_file() or target.read_bytes() != content:
+        make_folder(inputs)
+        write_whole(target, content)
+    return target

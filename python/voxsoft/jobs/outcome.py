@@ -1,0 +1,55 @@
+"""What a job leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
+
+if TYPE_CHECKING:
+    from voxsoft.comparison import Confirmation
+
+
+class Summarized(Protocol):
+    """A result that can be told as plain data."""
+
+    def summary(self) -> dict[str, Any]:
+        """Everything in SI units."""
+        ...
+
+
+Found = TypeVar("Found", bound=Summarized)
+
+
+@dataclass(frozen=True)
+class JobOutcome(Generic[Found]):
+    """What a job found, and where it wrote it.
+
+    Attributes
+    ----------
+    folder
+        Its folder.
+    found
+        The result.
+    sentence
+        What came out, in words.
+    written
+        The files of the results.
+    earlier
+        Trials that a study held before.
+    confirmed
+        The best designs of a study, solved again, if that was asked.
+    """
+
+    folder: Path
+    found: Found
+    sentence: str
+    written: tuple[Path, ...] = ()
+    earlier: int = 0
+    confirmed: Confirmation | None = None
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Plain data in SI units: the ``--json`` of its verb."""
+        more = {} if self.confirmed is None else {"confirmed": self.confirmed.summary()}
+        return self.found.summary() | more | {"folder": str(self.folder)}

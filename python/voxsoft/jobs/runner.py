@@ -1,0 +1,139 @@
+"""One runner for every kind of job: a spec to a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+from voxsoft.files.designs import FilePath
+from voxsoft.jobs.copies import with_copies
+from voxsoft.jobs.events import Listener, nobody
+from voxsoft.jobs.outcome import JobOutcome
+from voxsoft.jobs.spec import CalibrateSpec, CompareSpec, RunSpec, Spec, StudySpec
+
+if TYPE_CHECKING:
+    from voxsoft.calibration import Calibration
+    from voxsoft.comparison import Comparison
+    from voxsoft.simulation import Result
+    from voxsoft.study import StudyResult
+    from voxsoft.study.gate import Gate
+
+
+@overload
+def run_job(spec: RunSpec, folder: FilePath, tell: Listener = ...) -> JobOutcome[Result]: ...
+
+
+@overload
+def run_job(
+    spec: StudySpec,
+    folder: FilePath,
+    tell: Listener = ...,
+    *,
+    gate: Gate | None = ...,
+    scheduler: str | None = ...,
+    storage: str | None = ...,
+) -> JobOutcome[StudyResult]: ...
+
+
+@overload
+def run_job(
+    spec: CalibrateSpec, folder: FilePath, tell: Listener = ...
+) -> JobOutcome[Calibration]: ...
+
+
+@overload
+def run_job(
+    spec: CompareSpec, folder: FilePath, tell: Listener = ...
+) -> JobOutcome[Comparison]: ...
+
+
+@overload
+def run_job(
+    spec: Spec,
+    folder: FilePath,
+    tell: Listener = ...,
+    *,
+    gate: Gate | None = ...,
+    scheduler: str | None = ...,
+    storage: str | None = ...,
+) -> JobOutcome[Any]: ...
+
+
+def run_job(
+    spec: Spec,
+    folder: FilePath,
+    tell: Listener = nobody,
+    *,
+    gate: Gate | None = None,
+    scheduler: str | None = None,
+    storage: str | None = None,
+) -> JobOutcome[Any]:
+    """Do a job and leave its folder.
+
+    The folder then holds the results, ``job.toml`` and all that the job needs, so that
+    :func:`voxsoft.jobs.again` repeats it, also elsewhere.
+
+    Parameters
+    ----------
+    spec
+        What is to be done.
+    folder
+        Where; made if it does not exist. A study that the folder holds already goes on.
+    tell
+        Called with each :data:`voxsoft.jobs.events.JobEvent`. The job waits for it, and ends with
+        what it raises; ``KeyboardInterrupt`` stops the job as Ctrl-C does.
+    gate
+        Holds back the trials of a study while it is closed.
+    scheduler, storage
+        Where the trials of a study run, and where they are stored, as for
+        :class:`voxsoft.study.Study`; neither changes a result, and neither is kept.
+
+    Returns
+    -------
+    JobOutcome
+        The result, and what was written.
+
+    Raises
+    ------
+    VoxSoftError
+        What the function of that name raises: :func:`voxsoft.simulate`,
+        :meth:`voxsoft.study.Study.optimize`, :func:`voxsoft.calibrate`, :func:`voxsoft.compare`.
+    KeyboardInterrupt
+        After Ctrl-C; what is finished is kept.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from voxsoft.design import families
+    >>> from voxsoft.jobs import RunSpec
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     outcome = run_job(RunSpec(design=families.beam()), folder)
+    >>> outcome.found.status
+    'ok'
+    """
+    place = Path(folder)
+    # The job itself reads the copies: what is run is what is kept.
+    match spec:
+        case RunSpec():
+            from voxsoft.jobs.simulating import run_simulation
+
+            return run_simulation(with_copies(spec, place), place, tell)
+        case StudySpec():
+            from voxsoft.jobs.studying import run_study
+
+            return run_study(
+                with_copies(spec, place),
+                place,
+                tell,
+                gate=gate,
+                scheduler=scheduler,
+                storage=storage,
+            )
+        case CalibrateSpec():
+            from voxsoft.jobs.calibrating import run_calibration
+
+            return run_calibration(with_copies(spec, place), place, tell)
+        case CompareSpec():
+            from voxsoft.jobs.comparing import run_comparison
+
+            return run_comparison(with_copies(spec, place), place, tell)

@@ -1,0 +1,146 @@
+"""What goes into a job as text: the design, and the measured tables."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+from voxsoft.design import Design, set_values
+from voxsoft.design.documents import Steps, file_references, with_whole_paths
+from voxsoft.errors import DesignError, VoxSoftError
+from voxsoft.files.designs import FilePath, read_document, read_text
+from voxsoft.files.toml_edits import with_document, with_value
+from voxsoft.records import Record
+
+if TYPE_CHECKING:
+    from voxsoft.calibration import Measurement
+
+
+class DesignSource(Record):
+    """The text of a design, and where relative paths in it begin.
+
+    Parameters
+    ----------
+    text
+        As a design file holds it, with its formulas and comments.
+    folder
+        An absolute path; empty where no path in the text is relative.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> DesignSource.of_design(families.beam()).read() == families.beam()
+    True
+    """
+
+    error_type: ClassVar[type[VoxSoftError]] = DesignError
+
+    text: str
+    folder: str = ""
+
+    @classmethod
+    def of_file(cls, path: FilePath, assignments: Iterable[str] = ()) -> Self:
+        """Read a design file, with changes ``key=value`` as the command line takes them.
+
+        Raises
+        ------
+        FileError
+            The file cannot be read, or is not TOML.
+        DesignError
+            An assignment that leads nowhere.
+        """
+        text = read_text(path)
+        changed = set_values(read_document(text, Path(path).name), assignments)
+        return cls(text=with_document(text, changed), folder=str(Path(path).parent.absolute()))
+
+    @classmethod
+    def of_design(cls, design: Design) -> Self:
+        """Take the text of a design that was made in Python."""
+        return cls(text=design.to_toml())
+
+    def read(self) -> Design:
+        """Make the design.
+
+        Raises
+        ------
+        FileError
+            The text is not TOML.
+        DesignError
+            It is no valid design.
+        """
+        return Design.from_document(with_whole_paths(self._document(), Path(self.folder)))
+
+    def files(self) -> dict[Steps, Path]:
+        """The meshes and cards that the design names, by the keys that lead to their paths."""
+        return {steps: Path(self.folder, path) for steps, path in file_references(self._document())}
+
+    def with_files(self, files: dict[Steps, Path], folder: Path) -> Self:
+        """Return the same for a folder, with other files in place of those it names.
+
+        Parameters
+        ----------
+        files
+            By the keys that lead to their paths; the others stay where they are.
+        folder
+            Where the text will be; files below it are written as seen from there.
+        """
+        text = self.text
+        for steps, file in (self.files() | files).items():
+            text = with_value(text, steps, _as_seen_from(folder, file))
+        return type(self)(text=text, folder=str(folder.absolute()))
+
+    def _document(self) -> dict[str, Any]:
+        return read_document(self.text, "design.toml")
+
+
+class MeasuredTable(Record):
+    """A measured table as text, and which material to take of it.
+
+    Parameters
+    ----------
+    name
+        What errors and reports call it: the name of its file.
+    text
+        Comma-separated, as :func:`voxsoft.calibration.read_measurement` reads it.
+    select
+        The material, where the table holds several.
+    """
+
+    name: str
+    text: str
+    select: str | None = None
+
+    @classmethod
+    def of_file(cls, path: FilePath, select: str | None = None) -> Self:
+        """Read the file of a table.
+
+        Raises
+        ------
+        FileError
+            A missing, unreadable or too large file.
+        MeasurementError
+            Text that is not UTF-8.
+        """
+        from voxsoft.files.measurements import measurement_text
+
+        return cls(name=Path(path).name, text=measurement_text(path), select=select)
+
+    def read(self) -> Measurement:
+        """Make the measurement.
+
+        Raises
+        ------
+        MeasurementError
+            The table cannot be used, with the line.
+        """
+        from voxsoft.calibration import read_measurement
+
+        return read_measurement(self.text, name=self.name, select=self.select)
+
+
+def _as_seen_from(folder: Path, file: Path) -> str:
+    inside = file.absolute().is_relative_to(folder.absolute())
+    below = "" if not inside else os.path.relpath(file.absolute(), folder.absolute())
+    return Path(below).as_posix() if inside else str(file.absolute())

@@ -1,0 +1,204 @@
+"""Specs: all that decides the results of a job, as typed values."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from voxsoft.comparison.defaults import (
+    DEFAULT_SOLVERS,
+    DEFAULT_SPLITS,
+    DEFAULT_TIME_LIMIT,
+    Outside,
+)
+from voxsoft.design import Constraint, Design, Objective
+from voxsoft.errors import StudyError, VoxSoftError
+from voxsoft.files.cards import card_name
+from voxsoft.jobs.source import DesignSource, MeasuredTable
+from voxsoft.records import FrozenDict, Record
+from voxsoft.records.table import Table
+from voxsoft.study.space import Choices, Range
+
+Scalar = bool | int | float | str
+Bounds = tuple[float | str, float | str]
+
+
+def _source(given: Any) -> Any:  # noqa: ANN401 - pydantic checks what else came
+    return DesignSource.of_design(given) if isinstance(given, Design) else given
+
+
+def _domain(given: Any) -> Any:  # noqa: ANN401 - pydantic checks what else came
+    return {"values": given} if isinstance(given, list) else given
+
+
+Domain = Annotated[Range | Choices, BeforeValidator(_domain)]
+
+
+class JobSpec(Record):
+    """What the specs of all jobs have: the design, which may be given as a Design."""
+
+    error_type: ClassVar[type[VoxSoftError]] = StudyError
+
+    kind: str
+    design: Annotated[DesignSource, BeforeValidator(_source)]
+
+    @property
+    def tables(self) -> tuple[MeasuredTable, ...]:
+        """The measured tables that go in."""
+        return ()
+
+
+class RunSpec(JobSpec):
+    """Bring a design to rest, or to its end time.
+
+    Parameters
+    ----------
+    design
+        A :class:`DesignSource`, or a :class:`~voxsoft.design.Design`.
+    solver
+        Settings in place of those of the design.
+    figure
+        Whether ``body.png`` is drawn too.
+    kept
+        Whether the folder holds what stood on the studio's screen: such a state no job repeats.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> RunSpec(design=families.beam(), solver={"method": "xpbd"}).kind
+    'run'
+    """
+
+    kind: Literal["run"] = "run"
+    solver: Table[str, Scalar] = Field(default_factory=FrozenDict)
+    figure: bool = False
+    kept: bool = False
+
+
+class Stage(Record):
+    """A part of a study that ended before the present one began, by another search or budget.
+
+    Parameters
+    ----------
+    sampler, batch
+        As for :class:`StudySpec`.
+    budget
+        How many trials the study held at its end.
+    """
+
+    error_type: ClassVar[type[VoxSoftError]] = StudyError
+
+    sampler: str
+    budget: int = Field(ge=1)
+    batch: int | None = Field(None, ge=1)
+
+
+class StudySpec(JobSpec):
+    """Solve many designs: all of a grid (a sweep), or what a sampler suggests (an optimization).
+
+    Parameters
+    ----------
+    sampler, batch, workers, seed
+        As for :meth:`voxsoft.study.Study.optimize`; the number of workers changes no result.
+    budget
+        Number of trials in the end; None for a grid, which ends with its last point.
+    space, objectives, constraints
+        In place of those of the design.
+    confirm
+        How many of the best designs are solved again, as rubber and on finer voxels.
+    earlier
+        What the study held already when this part of it began. Suggestions depend on where an
+        earlier budget cut a batch, so that a repetition goes the same way.
+    """
+
+    kind: Literal["study"] = "study"
+    sampler: str = "grid"
+    budget: int | None = Field(None, ge=1)
+    batch: int | None = Field(None, ge=1)
+    seed: int = 0
+    workers: int | None = Field(None, ge=1)
+    space: Table[str, Domain] | None = None
+    objectives: Table[str, Objective] | None = None
+    constraints: Table[str, Constraint] | None = None
+    confirm: int = Field(0, ge=0)
+    earlier: tuple[Stage, ...] = ()
+
+    @model_validator(mode="after")
+    def _has_a_budget(self) -> Self:
+        if self.sampler != "grid" and self.budget is None:
+            raise StudyError("budget", "is missing", "say how many trials; a grid needs none")
+        return self
+
+
+class CalibrateSpec(JobSpec):
+    """Fit the design's material to measurements.
+
+    Parameters
+    ----------
+    data
+        The measured tables.
+    bounds
+        Range of each constant, as the `parameters` of :func:`voxsoft.calibration.calibrate`.
+    method, generations, population, free_scale, refine, identify, seed, workers
+        As for :func:`voxsoft.calibration.calibrate`.
+    card
+        Name of the material card; default: that of the material or file that was measured.
+    """
+
+    kind: Literal["calibrate"] = "calibrate"
+    data: tuple[MeasuredTable, ...] = Field(min_length=1)
+    method: str = "genetic"
+    generations: int = Field(50, ge=1)
+    population: int = Field(30, ge=4)
+    bounds: Table[str, Bounds] | None = None
+    free_scale: bool = False
+    refine: bool = True
+    identify: bool = True
+    seed: int = 0
+    workers: int | None = Field(None, ge=1)
+    card: str | None = None
+
+    @property
+    def tables(self) -> tuple[MeasuredTable, ...]:
+        """The measured tables."""
+        return self.data
+
+    @property
+    def card_name(self) -> str:
+        """The name of the card that it writes."""
+        first = self.data[0]
+        stem = first.name.rpartition(".")[0] or first.name
+        return self.card or card_name(first.select or stem)
+
+
+class CompareSpec(JobSpec):
+    """Solve a design in several ways, with estimates of their errors.
+
+    Parameters
+    ----------
+    data
+        Measured tables of the real body.
+    solvers, outside, voxel_sizes, splits, time_limit
+        As for :func:`voxsoft.compare`; sizes in m, the time in s.
+    """
+
+    kind: Literal["compare"] = "compare"
+    data: tuple[MeasuredTable, ...] = ()
+    solvers: tuple[str, ...] = DEFAULT_SOLVERS
+    outside: Outside = "auto"
+    voxel_sizes: tuple[float, ...] | None = None
+    splits: tuple[int, ...] = DEFAULT_SPLITS
+    time_limit: float = DEFAULT_TIME_LIMIT
+
+    @property
+    def tables(self) -> tuple[MeasuredTable, ...]:
+        """The measured tables."""
+        return self.data
+
+
+#: What a job is to do; `kind` tells which.
+Spec = RunSpec | StudySpec | CalibrateSpec | CompareSpec
+
+#: The same for a field of a record.
+TaggedSpec = Annotated[Spec, Field(discriminator="kind")]
