@@ -33,7 +33,7 @@ TARGETS = st.sampled_from(
     [{"maximize": "displacement", "probe": "top", "axis": "z"}, {"minimize": "mass"}]
 )
 LIMITS = st.builds(
-    lambda value: {"metric": "cavity_volume", "at_most": value}, st.floats(1e-9, 1e-3)
+    lambda value: {"metric": "cavity_volume", "max": value}, st.floats(1e-9, 1e-3)
 )
 STAGES = st.builds(
     Stage, sampler=st.sampled_from(["tpe", "grid"]), budget=COUNTS, batch=OPTIONAL_COUNTS
