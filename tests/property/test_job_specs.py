@@ -32,9 +32,7 @@ CHOICES = st.lists(st.booleans() | st.integers(-(2**60), 2**60) | FINITE | TEXT,
 TARGETS = st.sampled_from(
     [{"maximize": "displacement", "probe": "top", "axis": "z"}, {"minimize": "mass"}]
 )
-LIMITS = st.builds(
-    lambda value: {"metric": "cavity_volume", "max": value}, st.floats(1e-9, 1e-3)
-)
+LIMITS = st.builds(lambda value: {"metric": "cavity_volume", "max": value}, st.floats(1e-9, 1e-3))
 STAGES = st.builds(
     Stage, sampler=st.sampled_from(["tpe", "grid"]), budget=COUNTS, batch=OPTIONAL_COUNTS
 )

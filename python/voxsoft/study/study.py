@@ -283,7 +283,7 @@ class Study:
     def begun(self) -> int:
         """Number of trials that are stored, those included that were begun and not finished."""
         with self._storage.open(write=False) as study:
-            return len(study.get_trials(deepcopy=False))
+            return len(study.trials())
 
     @property
     def grid_size(self) -> int:
