@@ -99,6 +99,16 @@ def test_a_spec_is_read_back_as_it_was_written_and_after_a_move(spec):
         assert repr(read.spec.replace(design=spec.design)) == repr(spec)
 
 
+def test_the_ends_of_lines_stay(tmp_path):
+    table = MeasuredTable(name="tip.csv", text="probe,dz_mm\r\ntip,-1\rtip,-2\n")
+    source = DesignSource.of_design(families.beam())
+    design = source.replace(text=source.text.replace("\n", "\r\n"))
+    write_job(with_copies(CalibrateSpec(design=design, data=[table]), tmp_path), tmp_path)
+    read = load(tmp_path).spec
+    assert read.data == (table,)
+    assert read.design.text == design.text
+
+
 @settings(max_examples=60)
 @given(st.text(max_size=200) | st.binary(max_size=200).map(lambda raw: raw.decode("latin-1")))
 def test_a_damaged_job_is_told_as_one(text):

@@ -58,7 +58,8 @@ def script(recipe, folder):
     return run.stdout
 
 
-@pytest.mark.parametrize("sampler", ["tpe", pytest.param("grid", marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("sampler", ["tpe", "grid"])
 def test_a_study_is_done_again_with_the_same_best(tmp_path, sampler):
     asked = commands.StudySpec(sampler=sampler, budget=6, seed=7, workers=2, space=OWN_RANGES)
     folder = begun(tmp_path / "runs" / "arm", asked)
