@@ -50,7 +50,7 @@ def measured() -> Curve:
     return Curve(pressure, np.radians([float(row["angle_deg"]) for row in rows]))
 
 
-def foretold(ratio: float = RATIO, film: float = 41 * MPa) -> Curve:
+def predicted(ratio: float = RATIO, film: float = 41 * MPa) -> Curve:
     """The equilibria along the path, from no pressure on.
 
     The angle is that of the line from the root's lower edge to the tip's, as the authors measure
@@ -88,7 +88,7 @@ def _turn(curve: Curve) -> int:
 
 
 def errors(simulated: Curve, real: Curve) -> tuple[Floats, Floats]:
-    """Pressures in Pa that both curves reach, and foretold less measured angles there, in rad."""
+    """Pressures in Pa that both curves reach, and predicted less measured angles there, in rad."""
     line, rising = from_start(simulated), slice(_turn(simulated))
     at = real.pressure[real.pressure <= line.pressure[rising][-1]]
     here = np.interp(at, line.pressure[rising], line.angle[rising])
@@ -120,7 +120,7 @@ def main() -> None:
     parser.add_argument("--ratio", type=float, default=RATIO, help="how far the chambers grow")
     parser.add_argument("--picture", type=Path, help="where to save a picture")
     options = parser.parse_args()
-    simulated, real = foretold(options.ratio, options.film), measured()
+    simulated, real = predicted(options.ratio, options.film), measured()
     at, apart = errors(simulated, real)
     print(
         f"up to {at[-1] / kPa:.1f} kPa the angle is {np.degrees(np.abs(apart).mean()):.1f} deg off"
@@ -133,7 +133,7 @@ def main() -> None:
         angle = np.radians(degrees)
         here, there = (reached(curve, angle) / kPa for curve in (from_start(simulated), real))
         print(f"  {degrees} deg at {here:.1f} kPa, measured {there:.1f}")
-    for name, curve in {"foretold": simulated, "measured": real}.items():
+    for name, curve in {"predicted": simulated, "measured": real}.items():
         pressure, slope = steepest(curve)
         slope = np.degrees(slope) * kPa
         print(f"  {name}: steepest at {pressure / kPa:.1f} kPa, {slope:.1f} deg/kPa")
@@ -142,11 +142,11 @@ def main() -> None:
 
 
 def draw(simulated: Curve, real: Curve, path: Path) -> None:
-    """Draw angle over pressure, foretold and measured."""
+    """Draw angle over pressure, predicted and measured."""
     figure = empty_figure(6.5, 4.2)
     axes = figure.subplots()
     line = from_start(simulated)
-    axes.plot(line.pressure / kPa, np.degrees(line.angle), color=SERIES[0], label="foretold")
+    axes.plot(line.pressure / kPa, np.degrees(line.angle), color=SERIES[0], label="predicted")
     seen = np.degrees(real.angle)
     axes.plot(real.pressure / kPa, seen, "o", color=SERIES[1], markersize=4, label="measured")
     axes.set_xlim(START / kPa, 70)

@@ -1,4 +1,4 @@
-"""A beam of Dragon Skin 10: fit one modulus to self weight, foretell a weight and the swinging.
+"""A beam of Dragon Skin 10: fit one modulus to self weight, predict a weight and the swinging.
 
 Young's modulus is fitted to the sag under self weight alone. With it the sag under 52 g on the
 tip's upper edge is predicted, and the frequency of the swinging about both states: the lowest mode
@@ -170,7 +170,7 @@ def frequency(beam: Setup, result: vs.Result, mass: float) -> float:
 
 @dataclass(frozen=True)
 class Outcome:
-    """The fitted modulus in Pa; sags in m and swings, foretold and measured, by case."""
+    """The fitted modulus in Pa; sags in m and swings, predicted and measured, by case."""
 
     young: float
     sags: dict[str, tuple[float, float]]
@@ -221,12 +221,12 @@ def main() -> None:
 
 
 def draw(found: Outcome, path: Path) -> None:
-    """Sag of each marker, foretold and measured, and the recorded swinging."""
+    """Sag of each marker, predicted and measured, and the recorded swinging."""
     figure = empty_figure(11.0, 4.2)
     left, right = figure.subplots(1, 2)
     ticks = []
     for row, case in enumerate(MASSES):
-        title = "self weight (fitted)" if case == "gravity" else "with 52 g (foretold)"
+        title = "self weight (fitted)" if case == "gravity" else "with 52 g (predicted)"
         ticks.append(title)
         real = -measured(case)[:, :, 1, 2] / mm
         here = -found.shapes[case][:, :, 2].mean(axis=0) / mm
@@ -241,7 +241,7 @@ def draw(found: Outcome, path: Path) -> None:
     for color, case in zip(SERIES, MASSES, strict=False):
         time, height = trace(case, "a")
         seen = [swing.frequency for swing in found.frequencies[case][1]]
-        words = f"{found.frequencies[case][0]:.2f} Hz foretold, {np.mean(seen):.2f} Hz measured"
+        words = f"{found.frequencies[case][0]:.2f} Hz predicted, {np.mean(seen):.2f} Hz measured"
         right.plot(time, height - height[-1], color=color, label=words, linewidth=1.2)
     right.set_xlim(-0.05, 2.0)
     plain_axes(right, x="time after release (s)", y="height of the tip (mm)", title="released")

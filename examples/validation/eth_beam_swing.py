@@ -3,11 +3,11 @@
 The modulus is that of `eth_beam.py`, from self weight alone, made a little smaller so that voxels
 of 10 mm, which are quicker over time, sag as those of 5 mm do. The beam starts straight and is let
 go, as measured. Each of two dampings has one constant, fitted to the decay without the weight; the
-decay with 52 g and both frequencies are then foretold:
+decay with 52 g and both frequencies are then predicted:
 
 - Kelvin-Voigt: a retardation time. Its loss factor grows with the frequency.
 - One Prony branch, whose time is one over the mean of the two angular frequencies that the elastic
-  beam is foretold to have: its loss factor is largest there, and nearly flat between them. Only
+  beam is predicted to have: its loss factor is largest there, and nearly flat between them. Only
   its share of the stress is fitted.
 
 The weight is two rows of heavy voxels along the upper edge, one on either side of it.
@@ -130,7 +130,7 @@ def dampings(elastic: list[float]) -> list[Damping]:
 
 
 def main() -> None:
-    """Fit both constants and print what they foretell."""
+    """Fit both constants and print what they predict."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--picture", type=Path, help="where to save a picture")
     options = parser.parse_args()
@@ -169,7 +169,7 @@ def draw(traces: dict[str, dict[str, tuple[Floats, Floats]]], path: Path) -> Non
             rest = heights[times >= WINDOW[0]].mean()
             axes.plot(times, heights - rest, color=color, linewidth=1.2, label=name)
         axes.set_xlim(-0.05, WINDOW[1])
-        title = "self weight (decay fitted)" if case == "gravity" else "with 52 g (foretold)"
+        title = "self weight (decay fitted)" if case == "gravity" else "with 52 g (predicted)"
         plain_axes(axes, x="time after release (s)", y="height above rest (mm)", title=title)
         plain_legend(axes, loc="upper right")
     figure.savefig(path)

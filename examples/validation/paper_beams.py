@@ -3,7 +3,7 @@
 A neo-Hookean beam hangs under its weight, solved with elements of 5 and 2.5 mm and extrapolated.
 One Young's modulus is fitted to nine points of its lower edge; then one modulus and one scale of
 the photograph, whose marks are 5 to 11 % too far apart (`examples/data/paper_beams/README.md`).
-Nothing else is free. The modulus of EcoFlex 00-30 then foretells the rise of the paper's cylinder,
+Nothing else is free. The modulus of EcoFlex 00-30 then predicts the rise of the paper's cylinder,
 a body of another shape under another load.
 
 ``python examples/validation/paper_beams.py [--picture FILE]``

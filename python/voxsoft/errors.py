@@ -39,12 +39,12 @@ def _cut(text: str, longest: int, start: int) -> str:
 _QUOTED: Final = re.compile(r'"([^"]*)"')
 
 
-class Problem(NamedTuple):
+class ErrorDetail(NamedTuple):
     """One thing that is wrong: the place, what came and is allowed, and what to try.
 
     Examples
     --------
-    >>> str(Problem("wall", "-2 mm is negative"))
+    >>> str(ErrorDetail("wall", "-2 mm is negative"))
     'wall: -2 mm is negative'
     """
 
@@ -71,7 +71,7 @@ class VoxSoftError(Exception):
 
     Attributes
     ----------
-    problems : tuple of Problem
+    problems : tuple of ErrorDetail
         Everything that is wrong, where a check goes on after the first find; at least one.
 
     Examples
@@ -83,21 +83,22 @@ class VoxSoftError(Exception):
     def __init__(self, where: str, what: str = "", hint: str = "") -> None:
         where, what, hint = brief(where), brief(what), brief(hint)
         self.where, self.what, self.hint = where, what, hint
-        self.problems: tuple[Problem, ...] = (Problem(where, what, hint),)
+        self.problems: tuple[ErrorDetail, ...] = (ErrorDetail(where, what, hint),)
         super().__init__(where, what, hint)
 
     @classmethod
-    def listing(cls, problems: Iterable[Problem]) -> Self:
+    def listing(cls, problems: Iterable[ErrorDetail]) -> Self:
         """Make one error of several problems; its own place is that of the first.
 
         Examples
         --------
-        >>> print(DesignError.listing([Problem("a", "is missing"), Problem("b", "is negative")]))
+        >>> problems = [ErrorDetail("a", "is missing"), ErrorDetail("b", "is negative")]
+        >>> print(DesignError.listing(problems))
         2 problems
           a: is missing
           b: is negative
         """
-        every = tuple(Problem(*map(brief, problem)) for problem in problems)
+        every = tuple(ErrorDetail(*map(brief, problem)) for problem in problems)
         error = cls(*every[0])
         error.problems = every
         return error
@@ -125,7 +126,7 @@ class NoCavityError(DesignError):
 
 
 class DisconnectedError(DesignError):
-    """A piece of the body is held by nothing."""
+    """A component of the body is held by nothing."""
 
 
 class ShapeError(VoxSoftError, ValueError):

@@ -186,7 +186,7 @@ class Mesh:
         """Return a mesh of given tetrahedra.
 
         Tets of negative volume are turned round (their last two corners swapped). Edges and
-        boundary are found; a closed piece of the boundary that points inward is a cavity. An
+        boundary are found; a closed component of the boundary that points inward is a cavity. An
         island that floats in a cavity is not subtracted from its volume.
 
         Parameters

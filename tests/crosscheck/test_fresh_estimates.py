@@ -41,7 +41,7 @@ def limit(values, finest=3):
 
 
 @pytest.mark.parametrize("group", ["first", "second"])
-def test_nine_of_ten_bodies_have_their_error_within_the_estimate_of_two_sizes(made, table, group):
+def test_estimates_from_two_sizes_hold_for_nine_of_ten_bodies(made, table, group):
     """The truth is from splits of 2 and up; the estimate knows 1 and 2."""
     held = {}
     for name, body in made.SETS[group]().items():

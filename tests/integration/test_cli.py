@@ -200,7 +200,7 @@ def test_calibrate_prints_the_object_and_writes_a_card():
 
 
 @pytest.mark.slow
-def test_calibrate_along_gradients_finds_the_modulus_of_a_made_up_beam():
+def test_calibration_by_gradients_finds_the_modulus_of_a_beam():
     """A process of its own; the data are from the other solver, and carry no noise."""
     rubber = 'parts.0.material={model="neo-hookean", young="%s kPa", poisson=0.49}'
     short = ["--set", "length=50 mm", "--set"]
@@ -218,7 +218,7 @@ def test_calibrate_along_gradients_finds_the_modulus_of_a_made_up_beam():
     assert done.returncode == 0, done.stderr
     found = json.loads(done.stdout)
     # The two solvers agree within 0.5 % on ten designs, and stay far below that on one element.
-    # The search alone: a simplex follows it, and would mend what wrong slopes leave.
+    # The search alone: a simplex follows it, and would fix what wrong slopes leave.
     assert found["search"]["parameters"]["young"] == pytest.approx(30e3, rel=5e-3)
     assert (found["method"], found["settings"]["solver"]) == ("gradient", "statics")
     # A search that knows no slopes takes 30 for its first generation alone.

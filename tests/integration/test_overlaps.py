@@ -66,7 +66,7 @@ def test_chambers_that_meet_are_told_from_the_load_where_they_do():
     assert "contact is not simulated. Try: lower the load" in line
 
 
-def test_the_best_designs_of_a_study_are_not_green_where_they_are_in_themselves():
+def test_best_designs_that_overlap_are_not_green():
     outcome = call("sweep", DATA / "pushed.toml", "--workers", "1")
     said = [line for line in outcome.stderr.splitlines() if line.startswith("warning: rank")]
     assert len(said) == 1

@@ -78,8 +78,8 @@ def test_cavities_and_pieces_are_those_of_a_flood(array):
     padded = np.pad(array == 0, 1, constant_values=True)
     enclosed = sorted((int(r.sum()) for r in labeled(padded) if not r[0, 0, 0]), reverse=True)
     assert [cavity.count for cavity in voxels.cavities] == enclosed
-    pieces = sorted((int(r.sum()) for r in labeled(array > 0)), reverse=True)
-    assert [piece.count for piece in voxels.components()] == pieces
+    components = sorted((int(r.sum()) for r in labeled(array > 0)), reverse=True)
+    assert [piece.count for piece in voxels.components()] == components
     for cavity, surface in zip(voxels.cavities, voxels.mesh().cavities, strict=True):
         assert (array[tuple(cavity.cells.T)] == 0).all()
         assert np.isclose(len(surface.triangles) * MU**2 / 2, cavity.area)

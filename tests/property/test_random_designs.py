@@ -1,4 +1,4 @@
-"""Designs of random shapes: voxels, mesh and doctor never crash, and every mesh is sound."""
+"""Designs of random shapes: voxels, mesh and checks never crash, and every mesh is sound."""
 
 import numpy as np
 import pytest

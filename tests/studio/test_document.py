@@ -154,7 +154,7 @@ def test_a_slider_that_was_dragged_back_leaves_nothing_to_undo():
     assert edited.text == CYLINDER
 
 
-def test_documents_with_unsaved_changes_are_led_back_to_the_newest_first():
+def test_unsaved_documents_are_offered_newest_first():
     first, clean, second, third = (document(f"{CYLINDER}# {i}") for i in range(4))
     clean.saved = clean.text
     for later, earlier in ((clean, first), (second, clean), (third, second)):

@@ -37,7 +37,7 @@ def upload(port, token, name, content):
 
 
 @pytest.mark.parametrize(("change", "words"), NO_DESIGN)
-def test_what_is_no_design_is_said_at_its_line_and_the_last_body_stays(studio, change, words):
+def test_an_invalid_design_is_reported_at_its_line(studio, change, words):
     async def scenario():
         async with studio.page() as page:
             good = await page.until("body")
@@ -71,7 +71,7 @@ def test_what_cannot_be_solved_is_shown_all_the_same(studio, change, words):
 
 
 @pytest.mark.parametrize("content", NO_TEXT.values(), ids=NO_TEXT)
-def test_a_broken_design_file_is_said_and_undo_brings_the_good_one_back(studio, content):
+def test_undo_recovers_from_a_broken_design_file(studio, content):
     assert upload(studio.port, studio.token, "broken.toml", content).status_code == 200
 
     async def scenario():
@@ -133,9 +133,7 @@ def memory_of(studio):
         pytest.param(["shapes", "outer", "height"], "1000 km", marks=pytest.mark.slow),
     ],
 )
-def test_a_design_larger_than_the_memory_is_refused_before_it_takes_any(
-    in_own_process, tmp_path, path, value
-):
+def test_a_design_larger_than_the_memory_is_refused_at_once(in_own_process, tmp_path, path, value):
     source = tmp_path / "cylinder.toml"
     source.write_text(CYLINDER)
     studio = in_own_process(source)

@@ -91,7 +91,7 @@ def test_a_full_disk_is_said_and_the_study_goes_on_once_there_is_room(studio):
 
 
 @pytest.mark.slow
-def test_a_folder_of_runs_that_cannot_be_written_is_said_and_nothing_is_started(studio):
+def test_a_job_does_not_start_if_its_folder_cannot_be_written(studio):
     runs = studio.session.runs
     shutil.rmtree(runs, ignore_errors=True)
     runs.write_text("a file where a folder is due")

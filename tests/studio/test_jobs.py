@@ -67,7 +67,7 @@ def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
 
 
 @pytest.mark.slow
-def test_a_study_goes_on_without_tabs_and_is_there_when_one_comes_back(studio):
+def test_a_study_goes_on_while_no_tab_is_open(studio):
     async def begin():
         async with studio.page() as page:
             await page.send("job_start", spec=small_study())

@@ -80,7 +80,7 @@ def test_a_run_that_is_kept_is_the_state_on_the_screen(studio):
     assert again.metrics["max_displacement"] < 0.7 * as_written.metrics["max_displacement"]
 
 
-def test_a_run_kept_while_a_hand_pulls_tells_the_pull_and_is_not_called_at_rest(studio):
+def test_a_run_kept_under_a_pull_says_so_and_is_not_at_rest(studio):
     async def scenario():
         async with studio.page() as page:
             await ready(page)

@@ -44,7 +44,7 @@ def test_undo_leads_back_to_the_document_before_with_its_own_file(make_studio, t
     assert leg.read_text() == CYLINDER.replace('"cylinder"', '"leg"', 1)
 
 
-def test_unsaved_changes_of_another_file_are_led_to_by_undo_after_a_restart(make_studio, tmp_path):
+def test_undo_after_a_restart_leads_to_unsaved_changes(make_studio, tmp_path):
     arm, leg = arm_and_leg(tmp_path)
     first = make_studio(arm)
 

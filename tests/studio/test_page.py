@@ -160,7 +160,7 @@ def test_the_same_page_gives_the_same_bits(tree):
 
 
 @pytest.mark.parametrize("changed", ["src/main.ts", "src/new.css", "vite.config.ts"])
-def test_an_archive_older_than_its_sources_is_built_where_node_is_there(tree, changed):
+def test_a_stale_archive_is_built_where_node_is_there(tree, changed):
     (tree / "studio" / changed).write_text("two")
     checked = archive(tree, "check")
     assert checked.returncode == 0, checked.stderr
@@ -205,7 +205,7 @@ def without_network(tree):
         (without_network, "ENOTFOUND"),
     ],
 )
-def test_where_the_page_cannot_be_built_the_older_one_stays_and_it_is_said(tree, obstacle, reason):
+def test_a_page_that_cannot_be_built_keeps_the_older_one(tree, obstacle, reason):
     before = bits(tree)
     obstacle(tree)
     (tree / "studio/src/main.ts").write_text("two")

@@ -190,7 +190,7 @@ def test_a_body_that_rests_too_soon_to_be_seen_is_shown_slowly(studio):
     run(scenario())
 
 
-def test_the_pace_that_is_chosen_holds_and_a_hand_ends_the_automatic_one(studio):
+def test_a_chosen_pace_holds_and_ends_the_automatic_one(studio):
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")
@@ -216,7 +216,7 @@ def test_the_pace_that_is_chosen_holds_and_a_hand_ends_the_automatic_one(studio)
     run(scenario())
 
 
-def test_a_stored_frame_is_found_by_its_time_though_the_pace_has_changed(studio):
+def test_a_stored_frame_is_found_by_time_after_a_change_of_pace(studio):
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")

@@ -1,4 +1,4 @@
-"""From a wish for a shape to the shape: the newest wins, and the picture comes before the words."""
+"""From a request for a shape to the shape: the newest wins; the picture comes before the words."""
 
 import struct
 import threading
@@ -30,7 +30,7 @@ def body():
 
 
 @pytest.fixture
-def wishes(monkeypatch):
+def requests(monkeypatch):
     """A mesher whose bodies are made only when the test lets them."""
     begun, let, made, shown = [], threading.Semaphore(0), threading.Semaphore(0), []
 
@@ -50,8 +50,8 @@ def wishes(monkeypatch):
     thread.join(20)
 
 
-def test_of_wishes_that_come_while_a_body_is_made_only_the_newest_is_fulfilled(wishes):
-    thread, begun, made, let, shown = wishes
+def test_only_the_newest_of_several_requests_is_answered(requests):
+    thread, begun, made, let, shown = requests
     design = families.cylinder()
     thread.ask(design, 1)
     assert made.acquire(timeout=20)
@@ -70,7 +70,7 @@ def test_of_wishes_that_come_while_a_body_is_made_only_the_newest_is_fulfilled(w
 
 
 class Heard:
-    """An outlet that keeps what it is told."""
+    """A bus that keeps what it is told."""
 
     def __init__(self):
         self.said = []
@@ -82,7 +82,7 @@ class Heard:
     def topology(self, packed, mode):
         self.said.append("topology")
 
-    def tell(self, event):
+    def publish(self, event):
         self.said.append(type(event).__name__)
 
     def frame(self, tab, packed):
@@ -110,7 +110,7 @@ def drawn(packed):
 
 
 @pytest.mark.parametrize("mode", ["surface", "tets"])
-def test_the_first_frame_is_what_the_core_would_pack_without_asking_it(body, mode, monkeypatch):
+def test_the_first_frame_equals_what_the_core_packs(body, mode, monkeypatch):
     canvas = Canvas(body)
     of_core = canvas.frame(UNMOVED._replace(mover=Mover(body)), DISPLACEMENT, mode)
     monkeypatch.setattr(Canvas, "_surface", None)
@@ -121,7 +121,7 @@ def test_the_first_frame_is_what_the_core_would_pack_without_asking_it(body, mod
     assert span == expected_span == (0.0, 0.0)
 
 
-def test_triangles_tell_the_part_behind_them_and_the_cavity_before_them():
+def test_triangles_know_their_part_and_their_cavity():
     rng = np.random.default_rng(3)
     grid = rng.integers(1, 4, (5, 5, 5))
     grid[2, 2, 2] = 0

@@ -85,7 +85,7 @@ def test_a_past_calibration_is_told_as_it_was_also_under_another_name(make_studi
 
 
 @pytest.mark.slow
-def test_a_calibration_that_was_stopped_or_killed_shows_its_generations(make_studio, beam):
+def test_a_stopped_or_killed_calibration_shows_its_generations(make_studio, beam):
     first = make_studio(beam)
 
     async def scenario():
@@ -173,7 +173,7 @@ def state(**changes):
     )
 
 
-def test_the_journal_leaves_out_lines_that_were_cut_off_and_repeat_themselves(tmp_path):
+def test_the_journal_ignores_cut_off_and_repeated_lines(tmp_path):
     journal = JobJournal(tmp_path)
     for done in range(5):
         journal.keep(state(done=done))

@@ -55,7 +55,7 @@ def test_without_credits_the_newest_frame_waits_alone():
     assert pumped(fill).sent == [b"1", b"2", b"4"]
 
 
-def test_a_new_topology_goes_before_frames_and_drops_the_one_that_waits():
+def test_a_new_topology_goes_first_and_drops_waiting_frames():
     def fill(tab):
         tab.put_frame(b"old")
         yield tab.put_topology(b"topology")
@@ -78,7 +78,7 @@ def test_statistics_and_rows_are_merged_while_they_wait():
     assert '"rows":[[1.0],[2.0]]' in sent[1]
 
 
-def test_news_that_were_overtaken_are_not_kept_for_a_tab_that_reads_slowly():
+def test_outdated_events_are_not_kept_for_a_slow_tab():
     def fill(tab):
         for number in range(1000):
             tab.put(events.Runs(rows=[], trash=[], folder=f"{number}"))

@@ -30,8 +30,8 @@ def test_a_hinge_is_where_its_cells_touch():
 
 
 def test_a_piece_that_hangs_on_nothing_is_where_the_smaller_one_is():
-    (pieces,) = found(body((0, 0, 0), (1, 0, 0), (5, 5, 5)), "pieces")
-    assert pieces.at == pytest.approx((0.155, 0.055, 0.035))
+    (components,) = found(body((0, 0, 0), (1, 0, 0), (5, 5, 5)), "components")
+    assert components.at == pytest.approx((0.155, 0.055, 0.035))
 
 
 def test_a_thin_wall_and_a_leak_are_where_they_are():

@@ -129,7 +129,7 @@ def test_residuals_that_follow_one_another_widen_the_interval():
     assert widths[1] > 2.5 * widths[0]
 
 
-def test_only_uniaxial_curves_recommend_a_model_of_the_first_invariant(rtv615):
+def test_uniaxial_curves_alone_recommend_a_first_invariant_model(rtv615):
     fit = fit_coupons([rtv615])
     assert fit.models[0].name.startswith("ogden")
     assert fit.recommended.material.model in ("yeoh", "gent", "neo-hookean")

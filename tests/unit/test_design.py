@@ -304,7 +304,7 @@ def test_differences_of_differences_lose_their_empty_operands():
     assert set(design.shapes) == {"outer", "body", "final"}
 
 
-def test_a_difference_of_itself_is_refused_also_when_the_rest_is_empty():
+def test_a_difference_of_itself_is_refused_if_the_rest_is_empty():
     document = changed("shapes", "body", "of", ["body", "cavity"])
     found = problems(document, wall="15 mm", radius="15 mm")
     assert found[0].what == "is made of itself: body → body"

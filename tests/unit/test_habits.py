@@ -168,7 +168,7 @@ def test_points_and_tables_come_as_arrays():
     assert ring.points[1] == (0.001, 0.0)
 
 
-def test_quantities_of_pint_are_taken_where_a_number_with_a_unit_is_due():
+def test_quantities_of_pint_are_taken_as_numbers_with_units():
     length = 10 * UREG.mm
     assert vs.Sphere(length).radius == 0.01
     assert vs.Sphere(1, center=np.array([1, 2, 3]) * UREG.cm).center == (0.01, 0.02, 0.03)

@@ -49,7 +49,7 @@ def test_an_interrupt_that_was_swallowed_stops_the_loop():
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_an_interrupt_that_a_serializer_made_another_error_is_one_again():
+def test_an_interrupt_inside_a_serializer_stays_an_interrupt():
     with pytest.raises(KeyboardInterrupt):
         turn_endlessly(lambda: Interrupting().model_dump(mode="json"))
 

@@ -108,7 +108,7 @@ def test_goes_back_and_elsewhere(setup):
         live.seek(rest[1:])
 
 
-def test_takes_no_longer_than_its_budget_asks_and_no_more_than_the_most(setup):
+def test_an_advance_keeps_to_its_budget_and_its_limit(setup):
     live = live_of(setup)
     assert live.advance_for(0.0)["taken"] == 1
     assert live.advance_for(60.0, max_substeps=7)["taken"] == 7

@@ -33,7 +33,7 @@ def pressed():
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
 def test_no_shipped_example_is_in_itself_unloaded(path):
-    setup = Setup.of(files.load(path), may_fly=True)
+    setup = Setup.of(files.load(path), allow_loose=True)
     found = penetration_of(setup.design, setup.mesh, setup.mesh.vertices)
     assert found.regions == ()
     assert len(found.pairs) == 0
@@ -149,7 +149,7 @@ def test_films_over_openings_count():
     assert found.depth == pytest.approx(0.002)
 
 
-def test_of_cut_voxels_the_shape_counts_and_not_the_voxels():
+def test_cut_voxels_count_by_their_shape():
     """Two balls of 9 mm in voxels of 5 mm reach 0.7 mm out of them at the poles."""
     text = """
         schema = "voxsoft/1"

@@ -48,7 +48,7 @@ def test_values_are_interpolated_to_the_centers_of_pixels():
     assert picture[0, 0] == -1.0
 
 
-def test_edges_along_rows_and_columns_beyond_the_picture_and_between_pixels():
+def test_edges_along_rows_and_beyond_the_picture_are_drawn():
     """Along a row a weight may not change at all: such an edge bounds no span."""
     points = np.array([[0.5, -20.0, 1], [0.5, 30, 1], [9.5, 30, 1], [9.5, -20, 1]])
     with np.errstate(all="raise"), warnings.catch_warnings():

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 import pytest
 from pydantic import Field
 
-from voxsoft.errors import DesignError, Problem, VoxSoftError
+from voxsoft.errors import DesignError, ErrorDetail, VoxSoftError
 from voxsoft.records import Record, closest, place
 from voxsoft.units import FILE_CONTEXT, Point, PositiveLength
 
@@ -45,7 +45,7 @@ def problems(**data):
 def test_a_nested_problem_carries_its_whole_place():
     found = problems(shapes={"a": {"kind": "ball", "radius": "-1 mm"}})
     assert found == (
-        Problem("shapes.a.radius", '"-1 mm" is not positive', "give a length above zero"),
+        ErrorDetail("shapes.a.radius", '"-1 mm" is not positive', "give a length above zero"),
     )
 
 
@@ -57,12 +57,12 @@ def test_every_problem_is_listed():
 
 def test_an_unknown_key_is_matched_with_the_keys_of_its_own_table():
     (found,) = problems(shapes={"a": {"kind": "ball", "radius": "1 mm", "centre": [0, 0, 0]}})
-    assert found == Problem("shapes.a.centre", "is not known here", 'did you mean "center"?')
+    assert found == ErrorDetail("shapes.a.centre", "is not known here", 'did you mean "center"?')
 
 
 def test_an_unknown_kind_lists_what_there_is():
     (found,) = problems(shapes={"a": {"kind": "bal", "radius": "1 mm"}})
-    assert found == Problem("shapes.a.kind", '"bal" is not known', 'did you mean "ball"?')
+    assert found == ErrorDetail("shapes.a.kind", '"bal" is not known', 'did you mean "ball"?')
     (found,) = problems(shapes={"a": {"radius": "1 mm"}})
     assert found.where == "shapes.a.kind"
 
@@ -76,7 +76,9 @@ def test_a_faulty_operand_is_reported_once_and_inside():
 def test_the_branches_of_a_union_are_told_in_one_sentence():
     with pytest.raises(DesignError) as caught:
         Arrow(along="w")
-    assert caught.value.problems == (Problem("along", '"w" came; expected "x" or "y", or a list'),)
+    assert caught.value.problems == (
+        ErrorDetail("along", '"w" came; expected "x" or "y", or a list'),
+    )
     with pytest.raises(DesignError) as caught:
         Arrow(along=(0, "q"))
     assert [p.where for p in caught.value.problems] == ["along[1]"]
@@ -95,7 +97,9 @@ def test_tables_in_tables_see_the_context_of_the_file():
 
 
 def test_errors_survive_pickling_with_all_problems():
-    error = DesignError.listing([Problem("a", "is missing"), Problem("b", "is wrong", "try c")])
+    error = DesignError.listing(
+        [ErrorDetail("a", "is missing"), ErrorDetail("b", "is wrong", "try c")]
+    )
     again = pickle.loads(pickle.dumps(error))
     assert again.problems == error.problems
     assert str(again) == str(error)

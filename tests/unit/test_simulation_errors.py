@@ -45,7 +45,7 @@ def test_a_floating_body():
     assert "nothing holds the body" in message(DesignError, clamps=[])
 
 
-def test_a_floating_body_may_fly_or_lie():
+def test_a_loose_body_may_move_or_lie():
     assert simulate(design(clamps=[]), end_time=0.01).status == "ok"
     assert simulate(design(clamps=[], floor=vs.Floor(z=0.0))).status == "ok"
 
@@ -104,7 +104,7 @@ def test_a_setting_of_the_other_solver():
         simulate(families.beam(), control="volume")
 
 
-def test_a_load_past_what_the_material_carries_diverges_and_says_where():
+def test_a_load_too_large_diverges_and_says_where():
     cylinder = families.cylinder(height="25 mm", radius="15 mm")
     result = simulate(cylinder.replace(loads=(vs.Pressure(value=500 * kPa),)))
     assert result.status == "diverged"

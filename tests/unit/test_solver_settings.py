@@ -90,7 +90,7 @@ def test_every_setting_has_its_users():
 
 
 @pytest.mark.parametrize("material", MATERIALS)
-def test_of_every_pair_of_settings_each_is_used_or_refused(material):
+def test_each_of_two_settings_is_used_or_refused(material):
     design = box(material)
     refused = 0
     for (one, first), (other, second) in itertools.combinations(VALUES, 2):

@@ -66,7 +66,7 @@ def test_suggestions_depend_on_the_seed_and_not_on_the_workers(make, sampler):
 
 
 @pytest.mark.parametrize("sampler", ["tpe", "genetic", "cma-es"])
-def test_a_study_that_was_stopped_suggests_what_it_would_have_suggested(make, threads, sampler):
+def test_a_resumed_study_suggests_the_same_trials(make, threads, sampler):
     def stop(event):
         if event.done == 21:
             raise KeyboardInterrupt
@@ -208,7 +208,7 @@ def test_results_are_readable_while_the_study_runs(make, threads):
     assert [len(result.trials) for result in seen] == [1, 2, 3, 4, 5]
 
 
-def test_a_progress_hook_that_raises_stops_the_study_and_loses_nothing(make, threads):
+def test_a_progress_hook_that_raises_stops_without_a_loss(make, threads):
     def stop(event):
         if event.done == 7:
             raise RuntimeError("enough")
@@ -401,7 +401,7 @@ def test_wrong_calls_are_named(make, call, message):
         call(make())
 
 
-def test_a_grid_over_a_range_without_a_step_is_refused_before_anything_runs(make):
+def test_a_grid_over_a_range_without_a_step_is_refused(make):
     study = make({"x": (0.0, 1.0)})
     with pytest.raises(StudyError, match=r"space\.x: has no step"):
         study.grid()

@@ -49,7 +49,7 @@ def test_true_distances_are_not_told_of(name):
     assert told(TRUE[name].offset(1 * mm)) == []
 
 
-def test_a_shell_of_an_unequal_scale_is_thicker_by_the_ratio_of_the_scales():
+def test_an_unequal_scale_thickens_a_shell_by_its_ratio():
     # s is the distance over the largest ratio of scales: along z, three times the distance counts
     # as one. At the poles the wall is three times as thick, at the equator as written.
     (found,) = told(BALL.scale((1, 1, 3)).shell(1 * mm))

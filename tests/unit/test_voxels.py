@@ -114,9 +114,9 @@ def test_components_tell_contacts_apart():
     grid = Voxels.from_array(cells, 0.1)
     counts = [len(grid.components(contact)) for contact in ("face", "edge", "corner")]
     assert counts == [3, 2, 1]
-    piece = grid.components("corner")[0]
-    assert piece.cells.tolist() == [[0, 0, 0], [0, 1, 1], [1, 2, 2]]
-    assert piece.bounds == pytest.approx(np.array([[0, 0, 0], [0.2, 0.3, 0.3]]))
+    component = grid.components("corner")[0]
+    assert component.cells.tolist() == [[0, 0, 0], [0, 1, 1], [1, 2, 2]]
+    assert component.bounds == pytest.approx(np.array([[0, 0, 0], [0.2, 0.3, 0.3]]))
 
 
 def test_a_cavity_has_volume_area_bounds_and_cells():

@@ -1,4 +1,4 @@
-"""A bending actuator with a film of silk: what published constants foretell, and what not."""
+"""A bending actuator with a film of silk: what published constants predict, and what not."""
 
 import sys
 from pathlib import Path
@@ -45,12 +45,12 @@ def test_angles_are_compared_where_both_are_known(bender):
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-def test_the_first_bending_is_foretold_and_the_transition_comes_late(bender):
+def test_the_first_bending_is_predicted_and_the_transition_comes_late(bender):
     """Up to 30 kPa 0.14 degrees off on average were seen; 3 degrees come 0.9 kPa too late.
 
     The whole path to 62 kPa, 10.6 degrees off, takes minutes; `docs/validation.md` has it.
     """
-    simulated, real = bender.foretold(ratio=4.5), bender.measured()
+    simulated, real = bender.predicted(ratio=4.5), bender.measured()
     at, apart = bender.errors(simulated, real)
     assert at[-1] >= 30 * kPa
     early = np.degrees(apart[at <= 30 * kPa])

@@ -1,4 +1,4 @@
-"""A beam of Dragon Skin 10: one modulus from self weight, and what it foretells.
+"""A beam of Dragon Skin 10: one modulus from self weight, and what it predicts.
 
 Coarse elements of 5 mm keep this quick; `docs/validation.md` has the figures of 2.5 mm.
 """
@@ -34,13 +34,13 @@ def test_self_weight_identifies_a_plausible_modulus(found):
     assert simulated == pytest.approx(measured, rel=1e-3)  # the modulus is found to 0.02 %
 
 
-def test_the_unseen_load_is_foretold(found):
+def test_the_unseen_load_is_predicted(found):
     """-4.9 % was seen: short of the 3 % that were hoped for, and of one sign for all markers."""
     simulated, measured = found.sags["load52"]
     assert simulated == pytest.approx(measured, rel=0.06)
 
 
-def test_the_frequencies_are_foretold(found):
+def test_the_frequencies_are_predicted(found):
     """-2.8 and -4.8 % were seen; the two runs are 0.04 Hz apart."""
     for simulated, swings in found.frequencies.values():
         real = np.mean([swing.frequency for swing in swings])
@@ -101,7 +101,7 @@ def test_the_weight_hangs_on_the_upper_edge(eth, swing):
 
 
 @pytest.mark.slow
-def test_the_decay_with_a_weight_is_foretold_from_that_without(eth, swing):
+def test_the_decay_with_a_weight_is_predicted_from_that_without(eth, swing):
     """The share of one Prony branch is that which the script fits to the bare beam, 0.180.
 
     -7 % was seen with the weight, where the two runs are 13 % apart; Kelvin-Voigt damping, whose

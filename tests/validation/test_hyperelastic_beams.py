@@ -83,7 +83,7 @@ def test_elements_are_of_second_order_where_nothing_is_singular(accuracy, poisso
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_the_cylinder_agrees_with_the_reading_of_soft_caps(paper):
-    """2.3 mm were measured; the beam's 61 kPa foretell it for soft caps and not for rigid ones."""
+    """2.3 mm were measured; the beam's 61 kPa predict it for soft caps and not for rigid ones."""
     soft, rigid = (paper.cylinder(61.3e3, rigid_caps=caps, voxel=2.5e-3) for caps in (False, True))
     assert soft == pytest.approx(paper.MEASURED_RISE, rel=0.12)
     assert rigid < 0.25 * paper.MEASURED_RISE

@@ -118,7 +118,7 @@ def test_bars_side_by_side_at_the_largest_contrast():
     assert stiffness(bar(parts)) == pytest.approx(expected, rel=LINEAR)
 
 
-def test_bars_of_unlike_contraction_lie_between_the_bounds_of_voigt_and_reuss():
+def test_bars_side_by_side_lie_between_voigt_and_reuss():
     soft, hard = rubber(0.49), rubber(0.2, 20 * YOUNG)
     half = LENGTH / 2
     parts = [
@@ -199,7 +199,7 @@ def braided_tube(degrees):
     )
 
 
-def test_a_braid_extends_or_shortens_on_either_side_of_the_magic_angle():
+def test_a_braid_changes_sign_at_the_magic_angle():
     # In a thin tube under pressure the stress around is twice that along: stiff fibers turn to
     # the angle atan(√2) = 54.7 degrees to the axis. From nearer to the axis they shorten the tube
     # on the way there, from nearer to the hoop they lengthen it.

@@ -126,7 +126,7 @@ def check_balance(result):
     assert result.metric("reaction") == pytest.approx(np.linalg.norm(result.reaction))
 
 
-def test_of_a_body_that_pressure_alone_loads_the_supports_carry_nothing():
+def test_inner_pressure_alone_leaves_no_reaction():
     """One chamber wall held sideways: 9.76 N were told for the whole 20 kPa, of 0 N."""
     design = vs.load(BENDER)
     clamps = [*design.document["clamps"], {"region": WALL, "axes": "y"}]

@@ -1,4 +1,4 @@
-//! The ways from Python into long Rust work: they free the GIL and obey Ctrl-C.
+//! The ways from Python into long Rust work: they free the GIL and handle Ctrl-C.
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -2,7 +2,9 @@
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
 use voxsoft_shape::periodic::{Struts, Surface};
-use voxsoft_shape::{Bounds, BuildError, Expr, Lattice, SampleError, Shape, operators, primitives};
+use voxsoft_shape::{
+    Bounds, BuildError, Expr, SampleError, SampleGrid, Shape, operators, primitives,
+};
 
 use crate::errors::exception;
 use crate::gate;
@@ -403,13 +405,13 @@ impl PyShape {
         shape: [usize; 3],
         memory_limit: u64,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
-        let lattice = Lattice {
+        let grid = SampleGrid {
             origin,
             voxel_size,
             shape,
         };
         let cells = gate::run(py, |cancel| {
-            voxsoft_shape::sample(&self.0, &lattice, memory_limit, cancel)
+            voxsoft_shape::sample(&self.0, &grid, memory_limit, cancel)
         })?;
         let cells = cells.map_err(|error| sample_error(py, &error))?;
         cells.into_pyarray(py).reshape(shape)

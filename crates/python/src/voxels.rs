@@ -4,16 +4,16 @@ use std::sync::Arc;
 use numpy::{IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray3};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use voxsoft_voxel::{self as voxel, CombineError, Contact, GridError, Region};
+use voxsoft_voxel::{self as voxel, CombineError, Component, Contact, GridError};
 
 use crate::errors::exception;
 use crate::gate;
 
 /// Runs of cells as rows (i, j, first, last), and the number of cells.
-type PyRegion<'py> = (Bound<'py, PyArray2<u32>>, u64);
+type PyComponent<'py> = (Bound<'py, PyArray2<u32>>, u64);
 
-/// Region, width and cells of the openings.
-type PyLeak<'py> = (PyRegion<'py>, usize, Vec<(u32, u32, u32)>);
+/// Component, width and cells of the openings.
+type PyLeak<'py> = (PyComponent<'py>, usize, Vec<(u32, u32, u32)>);
 
 /// Thickness in cells, and a cell.
 type PyWall = (u16, (u32, u32, u32));
@@ -228,7 +228,7 @@ impl PyGrid {
     }
 
     /// `contact`: how many dimensions two cells may differ in, 1 face, 2 edge, 3 corner.
-    fn components<'py>(&self, py: Python<'py>, contact: u8) -> PyResult<Vec<PyRegion<'py>>> {
+    fn components<'py>(&self, py: Python<'py>, contact: u8) -> PyResult<Vec<PyComponent<'py>>> {
         let contact = match contact {
             1 => Contact::Face,
             2 => Contact::Edge,
@@ -238,7 +238,7 @@ impl PyGrid {
         pieces.iter().map(|piece| region(py, piece)).collect()
     }
 
-    fn cavities<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyRegion<'py>, f64, f64)>> {
+    fn cavities<'py>(&self, py: Python<'py>) -> PyResult<Vec<(PyComponent<'py>, f64, f64)>> {
         let cavities = self.found(py, voxel::cavities)?;
         cavities
             .iter()
@@ -283,7 +283,7 @@ fn wall(wall: voxel::Wall) -> PyWall {
     (wall.thickness, wall.cell.into())
 }
 
-fn region<'py>(py: Python<'py>, region: &Region) -> PyResult<PyRegion<'py>> {
+fn region<'py>(py: Python<'py>, region: &Component) -> PyResult<PyComponent<'py>> {
     let rows: Vec<[u32; 4]> = region
         .runs()
         .iter()

@@ -3,7 +3,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use voxsoft_shape::periodic::Surface;
-use voxsoft_shape::{Lattice, Shape, operators, primitives, sample};
+use voxsoft_shape::{SampleGrid, Shape, operators, primitives, sample};
 
 fn main() {
     let gyroid = Surface::Gyroid
@@ -24,14 +24,13 @@ fn main() {
 }
 
 fn report(name: &str, shape: &Shape) {
-    let lattice = Lattice {
+    let grid = SampleGrid {
         origin: [-0.05; 3],
         voxel_size: 0.1 / 256.0,
         shape: [256; 3],
     };
     let start = Instant::now();
-    let cells =
-        sample(shape, &lattice, u64::MAX, &AtomicBool::new(false)).expect("a valid lattice");
+    let cells = sample(shape, &grid, u64::MAX, &AtomicBool::new(false)).expect("a valid grid");
     let seconds = start.elapsed().as_secs_f64();
     let inside: usize = cells.iter().map(|&cell| usize::from(cell)).sum();
     let rate = cells.len() as f64 / seconds / 1e6;

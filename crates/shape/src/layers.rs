@@ -6,7 +6,7 @@ use fidget::var::VarIndex;
 use crate::block::Block;
 use crate::compiled::Table;
 use crate::error::FieldError;
-use crate::sample::Lattice;
+use crate::sample::SampleGrid;
 use crate::tape::Tape;
 
 /// One value per layer of cells along an axis, for each table of a compiled function.
@@ -21,10 +21,10 @@ struct Column {
 }
 
 impl Layers {
-    pub fn new(tables: &[Table], lattice: &Lattice) -> Result<Self, FieldError> {
+    pub fn new(tables: &[Table], grid: &SampleGrid) -> Result<Self, FieldError> {
         let columns = tables.iter().map(|table| {
             let points: Vec<_> = (0..lattice.shape[table.axis])
-                .map(|index| [lattice.center(table.axis, index); 3])
+                .map(|index| [grid.center(table.axis, index); 3])
                 .collect();
             let mut values = vec![0.0; points.len()];
             Tape::new(&table.expr).evaluate_into(&points, &mut values)?;

@@ -8,7 +8,7 @@
 //! # A tour
 //! ```
 //! use std::sync::atomic::AtomicBool;
-//! use voxsoft_shape::{Lattice, operators, primitives, sample};
+//! use voxsoft_shape::{SampleGrid, operators, primitives, sample};
 //!
 //! // A closed pot: a cylinder with a smaller one taken out.
 //! let up = [0.0, 0.0, 1.0];
@@ -17,8 +17,8 @@
 //! let body = operators::difference(&[outer, cavity])?;
 //!
 //! // Its cells of 5 mm.
-//! let lattice = Lattice { origin: [-0.025, -0.025, 0.0], voxel_size: 0.005, shape: [10, 10, 7] };
-//! let cells = sample(&body, &lattice, u64::MAX, &AtomicBool::new(false))?;
+//! let grid = SampleGrid { origin: [-0.025, -0.025, 0.0], voxel_size: 0.005, shape: [10, 10, 7] };
+//! let cells = sample(&body, &grid, u64::MAX, &AtomicBool::new(false))?;
 //! assert_eq!(cells.iter().filter(|&&cell| cell == 1).count(), 300);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -53,7 +53,7 @@ pub use error::{BuildError, FieldError, ParseError, SampleError};
 pub use expr::{Binary, Expr, Node, Unary, length};
 pub use field::{Field, distance_range};
 pub use parse::parse;
-pub use sample::{Lattice, TIE, sample};
+pub use sample::{SampleGrid, TIE, sample};
 pub use search::HORIZON;
 pub use shape::Shape;
 pub use tape::Tape;

@@ -1,4 +1,4 @@
-//! Classification of the cells of a lattice: which centers lie inside a shape.
+//! Classification of the cells of a grid: which centers lie inside a shape.
 //!
 //! A cell is inside when s < −10⁻⁹ voxel sizes at its center, in float64: values closer to zero
 //! count as on the surface, hence outside, so that rounding cannot flip a cell whose center lies
@@ -32,7 +32,7 @@ const FEW_OPERATIONS: u128 = 100_000;
 
 /// Cells in space: cell (i, j, k) is the cube from `origin + size·(i, j, k)` with edge `size`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lattice {
+pub struct SampleGrid {
     /// Lowest corner of cell (0, 0, 0), m
     pub origin: [f64; 3],
     /// Edge of a cell, m
@@ -41,7 +41,7 @@ pub struct Lattice {
     pub shape: [usize; 3],
 }
 
-impl Lattice {
+impl SampleGrid {
     /// Number of cells.
     pub fn cells(&self) -> u128 {
         self.shape.iter().map(|&n| n as u128).product()
@@ -92,45 +92,45 @@ impl Lattice {
 /// The result does not depend on the number of threads. `cancel` stops the work early.
 ///
 /// # Errors
-/// [`SampleError`]: a lattice that is unusable or needs more than `memory_limit` bytes, a function
+/// [`SampleError`]: a grid that is unusable or needs more than `memory_limit` bytes, a function
 /// without a value.
 ///
 /// ```
 /// use std::sync::atomic::AtomicBool;
-/// use voxsoft_shape::{Lattice, primitives, sample};
+/// use voxsoft_shape::{SampleGrid, primitives, sample};
 /// let ball = primitives::sphere([0.0; 3], 1.0)?;
-/// let lattice = Lattice { origin: [-1.0; 3], voxel_size: 0.1, shape: [20; 3] };
-/// let cells = sample(&ball, &lattice, u64::MAX, &AtomicBool::new(false))?;
+/// let grid = SampleGrid { origin: [-1.0; 3], voxel_size: 0.1, shape: [20; 3] };
+/// let cells = sample(&ball, &grid, u64::MAX, &AtomicBool::new(false))?;
 /// let volume = cells.iter().filter(|&&c| c == 1).count() as f64 * 1e-3;
 /// assert!((volume - 4.189).abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sample(
     shape: &Shape,
-    lattice: &Lattice,
+    grid: &SampleGrid,
     memory_limit: u64,
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
-    lattice.check(memory_limit)?;
+    grid.check(memory_limit)?;
     let tape = Tape::new(&shape.expr);
-    if !tape.has_fields() && lattice.cells() * tape.len() as u128 <= FEW_OPERATIONS {
-        return evaluate_all(&tape, lattice);
+    if !tape.has_fields() && grid.cells() * tape.len() as u128 <= FEW_OPERATIONS {
+        return evaluate_all(&tape, grid);
     }
     #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
     if runs_machine_code() {
-        return sample_by::<MachineCode>(shape, lattice, cancel);
+        return sample_by::<MachineCode>(shape, grid, cancel);
     }
-    sample_by::<Interpreted>(shape, lattice, cancel)
+    sample_by::<Interpreted>(shape, grid, cancel)
 }
 
 /// [`sample`] with one of fidget's evaluators.
 fn sample_by<F: MathFunction>(
     shape: &Shape,
-    lattice: &Lattice,
+    grid: &SampleGrid,
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
-    let classifier = Classifier::<F>::new(shape, lattice, TIE * lattice.voxel_size)?;
-    let tiles = Block::whole(lattice.shape).split(TILE);
+    let classifier = Classifier::<F>::new(shape, grid, TIE * grid.voxel_size)?;
+    let tiles = Block::whole(grid.shape).split(TILE);
     let done = for_each_tile(&tiles, |worker, tile| {
         if cancel.load(Ordering::Relaxed) {
             return Err(SampleError::Canceled);
@@ -138,25 +138,25 @@ fn sample_by<F: MathFunction>(
         worker.classify(&classifier, *tile)
     })?;
 
-    let mut cells = vec![0; lattice.cells() as usize];
+    let mut cells = vec![0; grid.cells() as usize];
     let mut undefined: Vec<[usize; 3]> = Vec::new();
     for (tile, content) in tiles.iter().zip(done) {
-        content.write(tile, lattice.shape, &mut cells);
+        content.write(tile, grid.shape, &mut cells);
         undefined.extend(content.undefined);
     }
     match undefined.iter().min() {
-        Some(first) => Err(not_a_number(lattice.center_of(*first), undefined.len())),
+        Some(first) => Err(not_a_number(grid.center_of(*first), undefined.len())),
         None => Ok(cells),
     }
 }
 
 /// As [`sample`], by the definition.
-fn evaluate_all(tape: &Tape, lattice: &Lattice) -> Result<Vec<u8>, SampleError> {
-    let [nx, ny, nz] = lattice.shape;
+fn evaluate_all(tape: &Tape, grid: &SampleGrid) -> Result<Vec<u8>, SampleError> {
+    let [nx, ny, nz] = grid.shape;
     let mut centers = Vec::with_capacity(nx * ny * nz);
     for i in 0..nx {
         for j in 0..ny {
-            centers.extend((0..nz).map(|k| lattice.center_of([i, j, k])));
+            centers.extend((0..nz).map(|k| grid.center_of([i, j, k])));
         }
     }
     let mut values = vec![0.0; centers.len()];
@@ -165,7 +165,7 @@ fn evaluate_all(tape: &Tape, lattice: &Lattice) -> Result<Vec<u8>, SampleError> 
     if let Some(first) = undefined.next() {
         return Err(not_a_number(centers[first], 1 + undefined.count()));
     }
-    let threshold = -TIE * lattice.voxel_size;
+    let threshold = -TIE * grid.voxel_size;
     Ok(values.iter().map(|s| u8::from(*s < threshold)).collect())
 }
 
@@ -208,16 +208,16 @@ mod tests {
         let waves = "sin(x/a)*cos(y/a) + sin(y/a)*cos(z/a) + sin(z/a)*cos(x/a)";
         let gyroid = Shape::unknown(parse(&waves.replace('a', "0.0013")).unwrap());
         let shape = intersection(&[ball, gyroid]).unwrap();
-        let lattice = Lattice {
+        let grid = SampleGrid {
             origin: [-0.021; 3],
             voxel_size: 0.0007,
             shape: [60; 3],
         };
         let go_on = AtomicBool::new(false);
-        let interpreted = sample_by::<Interpreted>(&shape, &lattice, &go_on).unwrap();
+        let interpreted = sample_by::<Interpreted>(&shape, &grid, &go_on).unwrap();
         assert!(interpreted.contains(&1) && interpreted.contains(&0));
         if runs_machine_code() {
-            let compiled = sample_by::<MachineCode>(&shape, &lattice, &go_on).unwrap();
+            let compiled = sample_by::<MachineCode>(&shape, &grid, &go_on).unwrap();
             assert!(compiled == interpreted);
         }
     }

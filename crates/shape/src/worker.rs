@@ -8,7 +8,7 @@ use crate::compiled::{FloatEval, IntervalEval, Part};
 use crate::error::SampleError;
 use crate::layers::{Layers, spread};
 use crate::range::Range;
-use crate::sample::Lattice;
+use crate::sample::SampleGrid;
 use crate::shape::Shape;
 use crate::tape::Tape;
 
@@ -28,13 +28,13 @@ pub(crate) struct Classifier<F: Function> {
     tape: Tape,
     compiled: Option<Part<F>>,
     layers: Layers,
-    lattice: Lattice,
+    grid: SampleGrid,
     /// Inside means s below this
     threshold: f64,
 }
 
 impl<F: MathFunction> Classifier<F> {
-    pub fn new(shape: &Shape, lattice: &Lattice, tie: f64) -> Result<Self, SampleError> {
+    pub fn new(shape: &Shape, grid: &SampleGrid, tie: f64) -> Result<Self, SampleError> {
         let (compiled, tables) = match Part::compile(&shape.expr) {
             Some((part, tables)) => (Some(part), tables),
             None => (None, vec![]),
@@ -42,8 +42,8 @@ impl<F: MathFunction> Classifier<F> {
         Ok(Self {
             tape: Tape::new(&shape.expr),
             compiled,
-            layers: Layers::new(&tables, lattice)?,
-            lattice: *lattice,
+            layers: Layers::new(&tables, grid)?,
+            grid: *grid,
             threshold: -tie,
         })
     }
@@ -61,7 +61,7 @@ impl<F: MathFunction> Classifier<F> {
     /// The cell centers of a block along each axis, m.
     fn extent(&self, block: &Block) -> [Range; 3] {
         [0, 1, 2].map(|axis| {
-            let center = |index| self.lattice.center(axis, index);
+            let center = |index| self.grid.center(axis, index);
             Range::new(center(block.low[axis]), center(block.high[axis] - 1))
         })
     }
@@ -97,7 +97,7 @@ impl Canvas {
         }
     }
 
-    /// Lattice indices of the cell at a position in the tile.
+    /// SampleGrid indices of the cell at a position in the tile.
     fn index(&self, position: usize) -> [usize; 3] {
         let [_, ny, nz] = self.tile.shape();
         let local = [position / (ny * nz), position / nz % ny, position % nz];
@@ -246,7 +246,7 @@ impl<F: MathFunction> Worker<F> {
                     spread(
                         block,
                         axis,
-                        |index| of.lattice.center(axis, index) as f32,
+                        |index| of.grid.center(axis, index) as f32,
                         slice,
                     );
                 }
@@ -287,7 +287,7 @@ impl<F: MathFunction> Worker<F> {
         self.points.clear();
         self.points.extend(self.doubtful.iter().map(|&position| {
             let index = canvas.index(position);
-            [0, 1, 2].map(|axis| of.lattice.center(axis, index[axis]))
+            [0, 1, 2].map(|axis| of.grid.center(axis, index[axis]))
         }));
         self.values.resize(self.points.len(), 0.0);
         of.tape.evaluate_into(&self.points, &mut self.values)?;

@@ -3,24 +3,20 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use voxsoft_shape::periodic::{Struts, Surface};
-use voxsoft_shape::{Expr, Lattice, SampleError, Shape, TIE, operators, primitives, sample};
+use voxsoft_shape::{Expr, SampleError, SampleGrid, Shape, TIE, operators, primitives, sample};
 
 /// Every cell on its own, in float64.
-fn brute_force(shape: &Shape, lattice: &Lattice) -> Vec<u8> {
-    let [nx, ny, nz] = lattice.shape;
+fn brute_force(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
+    let [nx, ny, nz] = grid.shape;
     let mut points = Vec::new();
     for i in 0..nx {
         for j in 0..ny {
             for k in 0..nz {
-                points.push([
-                    lattice.center(0, i),
-                    lattice.center(1, j),
-                    lattice.center(2, k),
-                ]);
+                points.push([grid.center(0, i), grid.center(1, j), grid.center(2, k)]);
             }
         }
     }
-    let threshold = -TIE * lattice.voxel_size;
+    let threshold = -TIE * grid.voxel_size;
     shape
         .evaluate(&points)
         .unwrap()
@@ -29,14 +25,14 @@ fn brute_force(shape: &Shape, lattice: &Lattice) -> Vec<u8> {
         .collect()
 }
 
-fn classify(shape: &Shape, lattice: &Lattice) -> Vec<u8> {
-    sample(shape, lattice, u64::MAX, &AtomicBool::new(false)).unwrap()
+fn classify(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
+    sample(shape, grid, u64::MAX, &AtomicBool::new(false)).unwrap()
 }
 
-/// A lattice of about `cells`³ that covers ±0.05 m, deliberately not a whole number of blocks.
-fn lattice(cells: usize) -> Lattice {
+/// A grid of about `cells`³ that covers ±0.05 m, deliberately not a whole number of blocks.
+fn grid(cells: usize) -> SampleGrid {
     let voxel_size = 0.1 / cells as f64;
-    Lattice {
+    SampleGrid {
         origin: [-0.05; 3],
         voxel_size,
         shape: [cells, cells + 3, cells - 5],
@@ -45,8 +41,8 @@ fn lattice(cells: usize) -> Lattice {
 
 fn assert_exact(name: &str, shape: &Shape, sizes: [usize; 2]) {
     for cells in sizes {
-        let lattice = lattice(cells);
-        let (fast, slow) = (classify(shape, &lattice), brute_force(shape, &lattice));
+        let grid = grid(cells);
+        let (fast, slow) = (classify(shape, &grid), brute_force(shape, &grid));
         let wrong = fast.iter().zip(&slow).filter(|(a, b)| a != b).count();
         assert_eq!(wrong, 0, "{name}: {wrong} of {} cells differ", slow.len());
     }
@@ -219,14 +215,14 @@ fn a_center_on_the_surface_is_outside() {
     let plane = primitives::half_space([0.0; 3], [1.0, 0.0, 0.0]).unwrap();
     // Few cells, which are evaluated one by one, and many.
     for cells in [4, 64] {
-        let lattice = Lattice {
+        let grid = SampleGrid {
             origin: [-0.5 * cells as f64; 3],
             voxel_size: 1.0,
             shape: [cells; 3],
         };
         let count = |thickness: f64| {
             let shell = operators::shell(&plane, thickness).unwrap();
-            let cells = classify(&shell, &lattice);
+            let cells = classify(&shell, &grid);
             cells.iter().filter(|&&cell| cell == 1).count()
         };
         assert_eq!(count(1.0), 0);
@@ -240,13 +236,13 @@ fn thread_count_does_not_change_a_cell() {
     let gyroid = Surface::Gyroid
         .sheet(&0.02.into(), &0.003.into(), 0.0)
         .unwrap();
-    let lattice = lattice(130);
+    let grid = grid(130);
     let with_threads = |count| {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .build()
             .unwrap();
-        pool.install(|| classify(&gyroid, &lattice))
+        pool.install(|| classify(&gyroid, &grid))
     };
     assert_eq!(with_threads(1), with_threads(4));
 }
@@ -254,12 +250,12 @@ fn thread_count_does_not_change_a_cell() {
 #[test]
 fn too_large_a_grid_is_refused_before_allocating() {
     let ball = primitives::sphere([0.0; 3], 1.0).unwrap();
-    let lattice = Lattice {
+    let grid = SampleGrid {
         origin: [0.0; 3],
         voxel_size: 1e-6,
         shape: [2_000_000; 3],
     };
-    let refused = sample(&ball, &lattice, 1 << 30, &AtomicBool::new(false));
+    let refused = sample(&ball, &grid, 1 << 30, &AtomicBool::new(false));
     assert!(
         matches!(refused, Err(SampleError::TooLarge { bytes, .. }) if bytes == 16 * 10_u128.pow(18))
     );
@@ -271,7 +267,7 @@ fn a_function_without_a_value_is_an_error_with_its_place() {
     let shape = Shape::unknown(x.sqrt() - 0.01);
     // Few cells, which are evaluated one by one, and many.
     for (cells, undefined) in [(20, 10 * 23 * 15), (80, 40 * 83 * 75)] {
-        let refused = sample(&shape, &lattice(cells), u64::MAX, &AtomicBool::new(false));
+        let refused = sample(&shape, &grid(cells), u64::MAX, &AtomicBool::new(false));
         let Err(SampleError::NotANumber { count, at }) = refused else {
             panic!("{refused:?}")
         };
@@ -284,6 +280,6 @@ fn a_function_without_a_value_is_an_error_with_its_place() {
 #[test]
 fn cancel_stops() {
     let ball = primitives::sphere([0.0; 3], 0.04).unwrap();
-    let stopped = sample(&ball, &lattice(75), u64::MAX, &AtomicBool::new(true));
+    let stopped = sample(&ball, &grid(75), u64::MAX, &AtomicBool::new(true));
     assert_eq!(stopped, Err(SampleError::Canceled));
 }

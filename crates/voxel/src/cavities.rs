@@ -1,6 +1,6 @@
 //! Enclosed empty regions: the chambers that pressure can act in.
 use crate::bits::BitGrid;
-use crate::components::{Contact, Region, sort_largest_first};
+use crate::components::{Component, Contact, sort_largest_first};
 use crate::grid::Grid;
 use crate::runs::LabeledRuns;
 
@@ -8,7 +8,7 @@ use crate::runs::LabeledRuns;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cavity {
     /// Its cells.
-    pub region: Region,
+    pub region: Component,
     /// Its volume [m³].
     pub volume: f64,
     /// Its surface, the faces it shares with filled cells [m²].
@@ -39,7 +39,7 @@ impl LabeledCavities {
             .filter(|&label| !outside[label])
             .map(|label| label as u32)
             .collect();
-        let regions = runs.to_regions(|label| !outside[label as usize]);
+        let regions = runs.to_components(|label| !outside[label as usize]);
         let size = grid.voxel_size();
         let mut numbered: Vec<(u32, Cavity)> = inside
             .into_iter()
@@ -77,7 +77,7 @@ impl LabeledCavities {
 }
 
 /// Number of faces between the cells of an enclosed region and filled cells.
-fn exposed_faces(region: &Region, filled: &BitGrid) -> u64 {
+fn exposed_faces(region: &Component, filled: &BitGrid) -> u64 {
     region
         .runs()
         .iter()

@@ -6,11 +6,11 @@ use crate::runs::LabeledRuns;
 /// How two cells must touch to belong together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Contact {
-    /// Through a face: 6 neighbors. The material is one piece.
+    /// Through a face: 6 neighbors. The material is one component.
     Face,
-    /// Through a face or an edge: 18 neighbors. A piece may hang on a hinge line.
+    /// Through a face or an edge: 18 neighbors. A component may hang on a hinge line.
     Edge,
-    /// Through a face, an edge or a corner: 26 neighbors. A piece may hang on a point.
+    /// Through a face, an edge or a corner: 26 neighbors. A component may hang on a point.
     Corner,
 }
 
@@ -29,14 +29,14 @@ pub struct CellRun {
 
 /// A connected set of cells, kept as runs along z in C order.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Region {
+pub struct Component {
     runs: Vec<CellRun>,
     cell_count: u64,
     lower: [u32; 3],
     upper: [u32; 3],
 }
 
-impl Region {
+impl Component {
     /// A region of at least one run; runs come in C order.
     pub(crate) fn from_runs(runs: Vec<CellRun>) -> Self {
         let (mut lower, mut upper, mut cell_count) = ([u32::MAX; 3], [0; 3], 0);
@@ -80,13 +80,13 @@ impl Region {
     }
 }
 
-/// The connected pieces of the filled cells, largest first; equal ones by their first cell in C order.
+/// The connected components of the filled cells, largest first; equal ones by their first cell in C order.
 ///
-/// Parts are not told apart: two parts that touch are one piece.
-pub fn components(grid: &Grid, contact: Contact) -> Vec<Region> {
-    let mut pieces = LabeledRuns::new(&BitGrid::filled(grid), contact).to_regions(|_| true);
-    sort_largest_first(&mut pieces, |piece| piece.cell_count());
-    pieces
+/// Parts are not told apart: two parts that touch are one component.
+pub fn components(grid: &Grid, contact: Contact) -> Vec<Component> {
+    let mut components = LabeledRuns::new(&BitGrid::filled(grid), contact).to_components(|_| true);
+    sort_largest_first(&mut components, |component| component.cell_count());
+    components
 }
 
 /// Sorts by size; the sort is stable, so equal ones keep the C order of their first cells.
@@ -122,15 +122,15 @@ mod tests {
 
     #[test]
     fn the_largest_piece_comes_first() {
-        let pieces = components(
+        let components = components(
             &cells(&[[0, 0, 0], [2, 2, 1], [2, 2, 2], [0, 2, 0]]),
             Contact::Face,
         );
-        let first: Vec<_> = pieces
+        let first: Vec<_> = components
             .iter()
-            .map(|piece| piece.cells().next().unwrap())
+            .map(|component| component.cells().next().unwrap())
             .collect();
         assert_eq!(first, [[2, 2, 1], [0, 0, 0], [0, 2, 0]]);
-        assert_eq!(pieces[0].bounds(), [[2, 2, 1], [3, 3, 3]]);
+        assert_eq!(components[0].bounds(), [[2, 2, 1], [3, 3, 3]]);
     }
 }

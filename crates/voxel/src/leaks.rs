@@ -9,7 +9,7 @@
 //! channels and chambers behind other chambers included; the cells of O that they touch are their
 //! openings. Pieces that do not touch O are cavities.
 use crate::bits::BitGrid;
-use crate::components::{CellRun, Contact, Region, sort_largest_first};
+use crate::components::{CellRun, Component, Contact, sort_largest_first};
 use crate::grid::Grid;
 use crate::runs::LabeledRuns;
 
@@ -17,7 +17,7 @@ use crate::runs::LabeledRuns;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leak {
     /// Its cells, up to the openings.
-    pub region: Region,
+    pub region: Component,
     /// Its volume [m³].
     pub volume: f64,
     /// Its openings are at most this many cells wide in one direction.
@@ -35,7 +35,7 @@ pub fn leaks(grid: &Grid, max_width: usize) -> Vec<Leak> {
     let mut found: Vec<Leak> = Vec::new();
     for width in 1..=max_width {
         let wider = leaks_of_width(grid, width);
-        let known: Vec<Region> = found.iter().map(|leak| leak.region.clone()).collect();
+        let known: Vec<Component> = found.iter().map(|leak| leak.region.clone()).collect();
         found.extend(
             wider
                 .into_iter()
@@ -61,12 +61,12 @@ fn leaks_of_width(grid: &Grid, width: usize) -> Vec<Leak> {
 
     let volume = grid.voxel_size().powi(3);
     LabeledRuns::new(&empty.without(&outer), Contact::Face)
-        .to_regions(|_| true)
+        .to_components(|_| true)
         .into_iter()
         .filter_map(|region| {
             let openings = openings(&region, &outer, cube);
             let region =
-                Region::from_runs(region.runs().iter().map(|&run| unpad(run, cube)).collect());
+                Component::from_runs(region.runs().iter().map(|&run| unpad(run, cube)).collect());
             let volume = region.cell_count() as f64 * volume;
             (!openings.is_empty()).then_some(Leak {
                 region,
@@ -145,7 +145,7 @@ fn covered(
 /// One cell of `outer` for each opening of a chamber, in the indices of the grid.
 ///
 /// Chambers never reach the border of the padded box, so all neighbors exist.
-fn openings(chamber: &Region, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]> {
+fn openings(chamber: &Component, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]> {
     let mut mouths: Vec<[usize; 3]> = Vec::new();
     for run in chamber.runs() {
         let [i, j, first, last] = [run.i, run.j, run.first, run.last].map(usize::from);
@@ -174,7 +174,7 @@ fn openings(chamber: &Region, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]> {
         set.insert_between(i - lower[0], j - lower[1], k - lower[2], k - lower[2]);
     }
     LabeledRuns::new(&set, Contact::Corner)
-        .to_regions(|_| true)
+        .to_components(|_| true)
         .iter()
         .filter_map(|group| group.cells().next())
         .map(|cell| std::array::from_fn(|a| cell[a] + (lower[a] - margin) as u32))
@@ -182,7 +182,7 @@ fn openings(chamber: &Region, outer: &BitGrid, margin: usize) -> Vec<[u32; 3]> {
 }
 
 /// Whether two regions have a cell in common; both list their runs in C order.
-fn share_cell(a: &Region, b: &Region) -> bool {
+fn share_cell(a: &Component, b: &Component) -> bool {
     let (mut a, mut b) = (a.runs().iter().peekable(), b.runs().iter().peekable());
     while let (Some(p), Some(q)) = (a.peek(), b.peek()) {
         let (row_p, row_q) = ((p.i, p.j), (q.i, q.j));

@@ -61,7 +61,7 @@ mod voxel_lists;
 
 pub use cavities::{Cavity, cavities};
 pub use combine::CombineError;
-pub use components::{CellRun, Contact, Region, components};
+pub use components::{CellRun, Component, Contact, components};
 pub use from_tets::{FromTetsError, mesh_from_tets};
 pub use grid::{Grid, GridError, MAX_CELLS_PER_AXIS};
 pub use hinges::{Hinge, hinges};

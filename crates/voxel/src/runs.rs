@@ -3,7 +3,7 @@
 //! A run is a maximal row of cells along z. Runs that touch are joined by union-find; the memory is
 //! eight bytes per run, at most 512 MiB for a checkerboard of 512³ cells and a few MiB for a robot.
 use crate::bits::BitGrid;
-use crate::components::{CellRun, Contact, Region};
+use crate::components::{CellRun, Component, Contact};
 
 #[derive(Debug, Clone, Copy)]
 struct Span {
@@ -17,7 +17,7 @@ pub(crate) struct LabeledRuns {
     /// Row r holds the spans `row_start[r]..row_start[r + 1]`.
     row_start: Vec<u32>,
     spans: Vec<Span>,
-    /// Region of each span.
+    /// Component of each span.
     labels: Vec<u32>,
     regions: usize,
 }
@@ -169,7 +169,7 @@ impl LabeledRuns {
     }
 
     /// The regions picked by `keep`, in the order of their labels.
-    pub fn to_regions(&self, keep: impl Fn(u32) -> bool) -> Vec<Region> {
+    pub fn to_components(&self, keep: impl Fn(u32) -> bool) -> Vec<Component> {
         let mut lengths = vec![0; self.regions];
         for &label in &self.labels {
             lengths[label as usize] += 1;
@@ -185,6 +185,6 @@ impl LabeledRuns {
                 runs.push(run);
             }
         }
-        kept.into_iter().map(Region::from_runs).collect()
+        kept.into_iter().map(Component::from_runs).collect()
     }
 }

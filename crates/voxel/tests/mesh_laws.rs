@@ -1,4 +1,4 @@
-//! What every voxel mesh obeys, on random grids, against counts made without the library.
+//! What every voxel mesh satisfies, on random grids, against counts made without the library.
 use std::collections::{HashMap, HashSet};
 
 use proptest::prelude::*;

@@ -15,8 +15,8 @@ from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.identifiability import Profile
 from voxsoft.calibration.line import LineName
 from voxsoft.calibration.measurement import Measurement
-from voxsoft.calibration.misfit import Comparison
-from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
+from voxsoft.calibration.misfit import Deviation
+from voxsoft.calibration.result import Calibration, Candidate, Fit, Generation
 from voxsoft.calibration.run import CalibrationEvent, ProgressCallback, calibrate
 from voxsoft.calibration.space import DEFAULT_BOUNDS, usual_ranges
 from voxsoft.calibration.table import read_measurement
@@ -25,7 +25,8 @@ __all__ = [
     "DEFAULT_BOUNDS",
     "Calibration",
     "CalibrationEvent",
-    "Comparison",
+    "Candidate",
+    "Deviation",
     "Experiment",
     "Fit",
     "Generation",
@@ -33,7 +34,6 @@ __all__ = [
     "Measurement",
     "Profile",
     "ProgressCallback",
-    "Stage",
     "calibrate",
     "read_measurement",
     "usual_ranges",

@@ -88,17 +88,17 @@ def descend(
 def _step(misfit: Misfit, here: Linearized, damping: float) -> Floats:
     """One weighted, damped step in the logarithms of the constants, (k,)."""
     count = len(misfit.space)
-    unknowns = count + (len(here.comparisons) if misfit.free_scale else 0)
+    unknowns = count + (len(here.deviations) if misfit.free_scale else 0)
     rows, sides = [], []
-    for index, (comparison, slopes) in enumerate(zip(here.comparisons, here.slopes, strict=True)):
-        lengths = comparison.errors
+    for index, (deviation, slopes) in enumerate(zip(here.deviations, here.slopes, strict=True)):
+        lengths = deviation.errors
         weights = np.maximum(lengths, max(_FLOOR * lengths.mean(), 1e-12)) ** -0.5
         weights /= np.sqrt(len(lengths))
-        columns = np.zeros((*comparison.simulated.shape, unknowns))
-        columns[..., :count] = comparison.scale * slopes
+        columns = np.zeros((*deviation.simulated.shape, unknowns))
+        columns[..., :count] = deviation.scale * slopes
         if misfit.free_scale:
-            columns[..., count + index] = comparison.simulated
-        residual = comparison.simulated - comparison.measured
+            columns[..., count + index] = deviation.simulated
+        residual = deviation.simulated - deviation.measured
         rows.append((weights[:, None, None] * columns).reshape(-1, unknowns))
         sides.append((weights[:, None] * residual).ravel())
     matrix, side = np.vstack(rows), np.concatenate(sides)

@@ -37,7 +37,7 @@ _SCALES: Final = (0.5, 2.0)
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Deviation:
     """A simulated body beside the measured one.
 
     Attributes
@@ -95,19 +95,19 @@ class Linearized:
     ----------
     evaluation
         What it was worth.
-    comparisons
+    deviations
         Each experiment beside what was measured.
     slopes
         Derivatives of the simulated numbers before scaling, (n, q, k) for each experiment, m.
     """
 
     evaluation: Evaluation
-    comparisons: tuple[Comparison, ...]
+    deviations: tuple[Deviation, ...]
     slopes: tuple[NDArray[np.float64], ...]
 
 
 #: Each experiment beside its measurement with the state that was found, or how the first failed.
-_Solved = list[tuple[Comparison, Settled]] | Status
+_Solved = list[tuple[Deviation, Settled]] | Status
 #: Runs a task for each input, in some order.
 _Runner = Callable[
     [Callable[[Material], Settled], Sequence[Material]],
@@ -248,13 +248,13 @@ class Misfit:
                 self._seen[key] = known
         return known
 
-    def compare(self, genes: ArrayLike) -> list[Comparison] | Status:
+    def compare(self, genes: ArrayLike) -> list[Deviation] | Status:
         """Simulate every experiment and lay it beside what was measured.
 
         Returns the status of the first simulation that failed, if one did.
         """
         solved = self._solved(genes)
-        return solved if isinstance(solved, str) else [comparison for comparison, _ in solved]
+        return solved if isinstance(solved, str) else [deviation for deviation, _ in solved]
 
     def linearized(self, genes: ArrayLike) -> Linearized | Status:
         """Evaluate one candidate, (n,), and its slopes; or return how its simulation failed."""
@@ -270,7 +270,7 @@ class Misfit:
             seen_slopes(experiment, self.space, material, result.positions)
             for experiment, (_, result) in zip(self.experiments, solved, strict=True)
         )
-        return Linearized(evaluation, tuple(comparison for comparison, _ in solved), slopes)
+        return Linearized(evaluation, tuple(deviation for deviation, _ in solved), slopes)
 
     @property
     def ways(self) -> tuple[str, ...]:
@@ -301,7 +301,7 @@ class Misfit:
                 simulated = experiment.seen_at(result.positions)
                 measured = experiment.measurement.values
                 scale = best_scale(simulated, measured) if self.free_scale else 1.0
-                compared = Comparison(scale * simulated, measured, scale, result.positions)
+                compared = Deviation(scale * simulated, measured, scale, result.positions)
                 here.append((compared, result))
         return found
 
@@ -337,8 +337,8 @@ class Misfit:
     def _worth(self, genes: tuple[float, ...], solved: _Solved) -> Evaluation:
         if isinstance(solved, str):
             return Evaluation(genes, solved, np.inf, 0.0, (1.0,) * len(self.experiments))
-        error = float(np.mean([comparison.errors.mean() for comparison, _ in solved]))
-        scales = tuple(comparison.scale for comparison, _ in solved)
+        error = float(np.mean([deviation.errors.mean() for deviation, _ in solved]))
+        scales = tuple(deviation.scale for deviation, _ in solved)
         return Evaluation(genes, "ok", error, self.fitness(error), scales)
 
 

@@ -13,7 +13,7 @@ from voxsoft import _core
 from voxsoft._shown import Shown, counted, rounded
 from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.identifiability import Profile
-from voxsoft.calibration.misfit import Comparison
+from voxsoft.calibration.misfit import Deviation
 from voxsoft.materials import Card, Hyperelastic, Lattice, Material, with_constants
 from voxsoft.units import format_quantity
 
@@ -42,7 +42,7 @@ class Generation:
 
 
 @dataclass(frozen=True)
-class Stage:
+class Candidate:
     """A candidate at the end of a stage: of the search, or of the refinement after it.
 
     Attributes
@@ -71,17 +71,17 @@ class Fit:
     ----------
     experiment
         The experiment.
-    comparison
+    deviation
         Simulated and measured numbers at its stations, and the scale.
     """
 
     experiment: Experiment
-    comparison: Comparison
+    deviation: Deviation
 
     @property
     def errors(self) -> NDArray[np.float64]:
         """Length of the error vector at each station, (n,), m."""
-        return self.comparison.errors
+        return self.deviation.errors
 
     @property
     def percent(self) -> NDArray[np.float64]:
@@ -94,19 +94,19 @@ class Fit:
 
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units."""
-        measurement, comparison = self.experiment.measurement, self.comparison
+        measurement, deviation = self.experiment.measurement, self.deviation
         return {
             "name": self.experiment.name,
             "source": measurement.source,
             "line": self.experiment.line,
             "stations": list(measurement.station_names),
             "quantities": list(measurement.quantities),
-            "measured": comparison.measured.tolist(),
-            "simulated": comparison.simulated.tolist(),
+            "measured": deviation.measured.tolist(),
+            "simulated": deviation.simulated.tolist(),
             "errors": self.errors.tolist(),
             "percent": self.percent.tolist(),
             "sag": self.experiment.sag,
-            "scale": comparison.scale,
+            "scale": deviation.scale,
             "mean_error": float(self.errors.mean()),
             "max_error": float(self.errors.max()),
             "mean_percent": float(self.percent.mean()),
@@ -153,7 +153,7 @@ class Calibration(Shown):
     kinds: Mapping[str, str]
     fits: tuple[Fit, ...]
     fitness: float
-    search: Stage
+    search: Candidate
     history: tuple[Generation, ...] = field(repr=False)
     profiles: tuple[Profile, ...] = field(repr=False)
     evaluations: int
@@ -182,7 +182,7 @@ class Calibration(Shown):
     @property
     def scale(self) -> float | list[float]:
         """Factor on the simulated shape; a list for several experiments with a free scale."""
-        scales = [fit.comparison.scale for fit in self.fits]
+        scales = [fit.deviation.scale for fit in self.fits]
         return scales if len(set(scales)) > 1 else scales[0]
 
     @property
@@ -300,7 +300,7 @@ class Calibration(Shown):
             "stations": sum(len(fit.experiment.measurement) for fit in self.fits),
             "line": [fit.experiment.line for fit in self.fits],
             "voxel_size": [_text(size, "length", 6) for size in sizes],
-            "scale": [float(f"{fit.comparison.scale:.5g}") for fit in self.fits],
+            "scale": [float(f"{fit.deviation.scale:.5g}") for fit in self.fits],
             "free_scale": self.free_scale,
             "mean_error": _text(self.mean_error, "length", 4),
             "max_error": _text(self.max_error, "length", 4),

@@ -16,7 +16,7 @@ from voxsoft.calibration.identifiability import profiles
 from voxsoft.calibration.methods import Batch, errors_of, method_named
 from voxsoft.calibration.misfit import TOLERANCE, Evaluation, Misfit
 from voxsoft.calibration.refinement import refine as refined
-from voxsoft.calibration.result import Calibration, Fit, Generation, Stage
+from voxsoft.calibration.result import Calibration, Candidate, Fit, Generation
 from voxsoft.calibration.space import Bounds, Space
 from voxsoft.errors import MeasurementError, SimulationError, StudyError
 from voxsoft.materials import Hyperelastic, Material
@@ -190,7 +190,7 @@ def calibrate(
                 )
             )
         found = _require_rest(best)
-        stage = _stage(misfit, found)
+        stage = _candidate(misfit, found)
         if refine:
             report(CalibrationEvent("refinement", 0, 1, misfit.evaluations, found.error))
             found = refined(misfit, found)
@@ -284,8 +284,8 @@ def _spread(candidates: Sequence[Mapping[str, float]]) -> dict[str, tuple[float,
     }
 
 
-def _stage(misfit: Misfit, found: Evaluation) -> Stage:
-    return Stage(
+def _candidate(misfit: Misfit, found: Evaluation) -> Candidate:
+    return Candidate(
         misfit.space.parameters(found.genes), found.error, found.fitness, misfit.evaluations
     )
 

@@ -1,4 +1,4 @@
-"""``voxsoft check``: a doctor for designs and meshes."""
+"""``voxsoft check``: checks of designs and meshes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def check(
     ] = None,
     json: Json = False,
 ) -> None:
-    """Look for what would go wrong: units, pieces, hinges, cavities, leaks, walls, mass, cost."""
+    """Check for what would go wrong: units, components, hinges, cavities, leaks, walls, cost."""
     from voxsoft import files
 
     is_design = source.suffix.lower() == ".toml"

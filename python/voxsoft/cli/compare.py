@@ -72,8 +72,8 @@ def compare(
     """
     from voxsoft import files
     from voxsoft.cli.progress import JobBar
+    from voxsoft.files.atomic import write_atomically
     from voxsoft.files.run_folder import make_folder
-    from voxsoft.files.whole import write_whole
     from voxsoft.jobs import CompareSpec, DesignSource, MeasuredTable, run_job
 
     with errors_in_words(json=json):
@@ -93,7 +93,7 @@ def compare(
         with JobBar() as bar:
             outcome = run_job(spec, out or _beside(target), bar.follow)
         make_folder(target.parent)
-        write_whole(target, outcome.written[-1].read_bytes())
+        write_atomically(target, outcome.written[-1].read_bytes())
         if json:
             print_json(outcome.summary | {"report": str(target)})
         else:

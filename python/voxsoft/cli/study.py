@@ -189,8 +189,8 @@ def _show(design: Design, result: StudyResult) -> None:
             say(f"[yellow]{status}[/yellow], for instance: {plain(reasons[status])}")
     doubtful = [trial for trial in result.trials if trial.status == "ok" and trial.warnings]
     if doubtful:
-        told = f"{len(doubtful)} of {result.counts['ok']} ok have warnings"
-        say(f"[yellow]{told}[/yellow], for instance: {plain(doubtful[0].warnings[0])}")
+        warned = f"{len(doubtful)} of {result.counts['ok']} ok have warnings"
+        say(f"[yellow]{warned}[/yellow], for instance: {plain(doubtful[0].warnings[0])}")
     for doubt in result.warnings:
         say(f"[yellow]warning:[/yellow] {plain(str(doubt))}")
     if not result.ranking:

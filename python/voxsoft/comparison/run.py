@@ -111,7 +111,7 @@ def compare(
     code = _outside(outside)
     plain = design.replace(solver=Solver())
     refine = design.solver.refine
-    base = Setup.of(plain, may_fly=False, refine=refine)
+    base = Setup.of(plain, allow_loose=False, refine=refine)
     experiments = [Experiment(plain, measurement) for measurement in measured]
     sizes = (
         [design.voxel_size / 2]
@@ -206,12 +206,12 @@ def _tasks(
     for split in splits:
         if split > 1:
             finer = f"{last}, {own} split {split}"
-            setup = partial(Setup.of, design, may_fly=False, refine=split * refine)
+            setup = partial(Setup.of, design, allow_loose=False, refine=split * refine)
             yield _Task(finer, last, design.voxel_size, split, solving(last, setup))
     for size in sizes:
         if size != design.voxel_size:
             other = design.replace(voxel_size=size)
-            setup = partial(Setup.of, other, may_fly=False, refine=refine)
+            setup = partial(Setup.of, other, allow_loose=False, refine=refine)
             yield _Task(f"{last}, {_length(size)}", last, size, 1, solving(last, setup))
     for split in splits if code else ():
         whole = "" if split == 1 else f" split {split}"

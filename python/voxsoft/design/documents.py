@@ -69,7 +69,7 @@ def written_path(path: tuple[str | int, ...]) -> tuple[str | int, ...]:
     return (*path[:-1], _WRITTEN.get(path[-1], path[-1]))
 
 
-def with_whole_paths(document: Mapping[str, Any], folder: Path) -> Document:
+def with_absolute_paths(document: Mapping[str, Any], folder: Path) -> Document:
     """Complete the relative paths of meshes and cards, which are meant from the file's folder."""
     whole: Document = _with_whole_meshes(document, folder)
     parts = whole.get("parts")
@@ -132,7 +132,7 @@ def _mesh_references(value: object, steps: Steps) -> Iterator[tuple[Steps, str]]
 def with_paths_from(document: Mapping[str, Any], folder: Path) -> Document:
     """Write the paths of files below a folder as seen from there, so that it can be moved.
 
-    The inverse of :func:`with_whole_paths`; paths that lead elsewhere stay.
+    The inverse of :func:`with_absolute_paths`; paths that lead elsewhere stay.
     """
     written = copy.deepcopy(dict(document))
     for steps, path in file_references(written):

@@ -21,7 +21,7 @@ from pydantic_core import PydanticSerializationError
 from voxsoft.design.assignment import set_values
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
-from voxsoft.design.documents import plain_document, with_whole_paths, written_path
+from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
 from voxsoft.design.kept_formulas import with_kept_formulas
@@ -169,7 +169,7 @@ class Design(Record):
           parts: is missing
         """
         if isinstance(document, Mapping):
-            document = with_whole_paths(plain_values(document), Path())
+            document = with_absolute_paths(plain_values(document), Path())
         return cls._read(document, overrides or {}, None if from_file else frozenset(document))
 
     @classmethod
@@ -196,7 +196,7 @@ class Design(Record):
         if not isinstance(data, Mapping):
             return handler(data)
         context = info.context or {}
-        source = data if context.get("ready") else with_whole_paths(plain_values(data), Path())
+        source = data if context.get("ready") else with_absolute_paths(plain_values(data), Path())
         source = with_parameter_values(source, context.get("overrides", {}))
         found = Resolution.of(source)
         if context.get("whole"):
@@ -390,7 +390,7 @@ class Design(Record):
 
     def _with(self, changes: Mapping[str, Any], overrides: Mapping[str, object]) -> Self:
         """Replace entries and set parameters."""
-        known = with_whole_paths(plain_values(self._known(changes)), Path())
+        known = with_absolute_paths(plain_values(self._known(changes)), Path())
         kept = with_kept_formulas(self._entries(), self._source, known)
         return self._read({**self._source, **kept}, overrides, self._typed | frozenset(kept))
 

@@ -21,7 +21,7 @@ from pydantic import (
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema
 
-from voxsoft.errors import DesignError, Problem
+from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.records import Record
 from voxsoft.units import (
     KINDS,
@@ -216,7 +216,7 @@ def as_one_kind(
     dimension = due or (with_unit[0] if with_unit else plain)
     bare_is_si = due is not None and not from_file
     wrong = [
-        Problem(
+        ErrorDetail(
             name, f"is {describe_dimension(q.dimension)}; expected {describe_dimension(dimension)}"
         )
         for name, q in found.items()

@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
-from voxsoft.errors import MaterialError, Problem, VoxSoftError
+from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import closest, place
 
 Path = tuple[str | int, ...]
 
 
-def dangling_references(document: Mapping[str, Any], empty: Collection[str]) -> Iterator[Problem]:
+def dangling_references(
+    document: Mapping[str, Any], empty: Collection[str]
+) -> Iterator[ErrorDetail]:
     """Find every name in a design that leads nowhere, and shapes made of themselves.
 
     Parameters
@@ -25,13 +27,13 @@ def dangling_references(document: Mapping[str, Any], empty: Collection[str]) -> 
 
     Yields
     ------
-    Problem
+    ErrorDetail
         The place of the name, the name, and the closest one that exists.
     """
     shapes = _table(document, "shapes")
     for path, name in _shape_names(document):
         if name in empty:
-            yield Problem(place(path), f'the shape "{name}" is empty at these parameters')
+            yield ErrorDetail(place(path), f'the shape "{name}" is empty at these parameters')
         elif name not in shapes:
             yield _unknown(path, "shape", name, shapes)
     yield from _circles(shapes)
@@ -61,11 +63,11 @@ def _list(document: Mapping[str, Any], key: str) -> Iterator[tuple[Path, Any]]:
         yield (key, index), entry
 
 
-def _unknown(path: Path, what: str, name: str, known: Iterable[str]) -> Problem:
-    return Problem(place(path), f'there is no {what} "{name}"', closest(name, map(str, known)))
+def _unknown(path: Path, what: str, name: str, known: Iterable[str]) -> ErrorDetail:
+    return ErrorDetail(place(path), f'there is no {what} "{name}"', closest(name, map(str, known)))
 
 
-def _materials(document: Mapping[str, Any]) -> Iterator[Problem]:
+def _materials(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
     known = {*_table(document, "materials"), *card_names()}
     for path, part in _list(document, "parts"):
         material, where = entry_of(part, "material"), (*path, "material")
@@ -78,12 +80,12 @@ def _materials(document: Mapping[str, Any]) -> Iterator[Problem]:
             load_card(material)
         except MaterialError as error:
             for problem in error.problems:
-                yield Problem(place(where), f"{material}: {problem}")
+                yield ErrorDetail(place(where), f"{material}: {problem}")
         except VoxSoftError as error:  # the file cannot be read
-            yield Problem(place(where), f"{error.where}: {error.what}", error.hint)
+            yield ErrorDetail(place(where), f"{error.where}: {error.what}", error.hint)
 
 
-def _chambers(document: Mapping[str, Any]) -> Iterator[Problem]:
+def _chambers(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
     known = _table(document, "chambers")
     users = list(_list(document, "loads"))
     for table in ("objectives", "constraints"):
@@ -93,7 +95,7 @@ def _chambers(document: Mapping[str, Any]) -> Iterator[Problem]:
         if isinstance(choice, str) and choice != "all" and choice not in known:
             hint = closest(choice, map(str, known))
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
-            yield Problem(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
+            yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
 
 
 def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
@@ -132,7 +134,7 @@ def _operand(operand: object, path: Path) -> Iterator[tuple[Path, str]]:
         yield from operand_names(operand, path)
 
 
-def _circles(shapes: Mapping[str, Any]) -> Iterator[Problem]:
+def _circles(shapes: Mapping[str, Any]) -> Iterator[ErrorDetail]:
     uses = {
         name: [used for _, used in operand_names(shape, ()) if used in shapes]
         for name, shape in shapes.items()
@@ -142,7 +144,7 @@ def _circles(shapes: Mapping[str, Any]) -> Iterator[Problem]:
         circle = _circle_from(start, uses)
         if circle and not reported & set(circle):
             reported.update(circle)
-            yield Problem(place(("shapes", start)), f"is made of itself: {' → '.join(circle)}")
+            yield ErrorDetail(place(("shapes", start)), f"is made of itself: {' → '.join(circle)}")
 
 
 def _circle_from(start: str, uses: Mapping[str, list[str]]) -> list[str]:

@@ -13,7 +13,7 @@ from typing import Any, Final
 
 from voxsoft.design.formula import evaluate, is_formula
 from voxsoft.design.parameter import Parameter, kind_of, read_quantity
-from voxsoft.errors import DesignError, FormulaError, Problem, VoxSoftError
+from voxsoft.errors import DesignError, ErrorDetail, FormulaError, VoxSoftError
 from voxsoft.records import closest, place, steps_of
 from voxsoft.units import KINDS, Dimension, Number, Quantity, describe_dimension, write_exactly
 
@@ -73,7 +73,7 @@ class Resolution:
     """
 
     document: Document
-    problems: list[Problem]
+    problems: list[ErrorDetail]
     told: set[Path]
 
     @classmethod
@@ -121,7 +121,7 @@ def with_parameter_values(document: Mapping[str, Any], overrides: Mapping[str, o
     declared = document.get("parameters")
     parameters = dict(declared) if isinstance(declared, Mapping) else {}
     unknown = [
-        Problem(name, "is not a parameter of this design", closest(name, map(str, parameters)))
+        ErrorDetail(name, "is not a parameter of this design", closest(name, map(str, parameters)))
         for name in overrides
         if name not in parameters
     ]
@@ -249,9 +249,9 @@ def _evaluated(
         return result if result.dimension != Dimension() else Number(result.value)
     except FormulaError as error:
         what = _within(formula, error.what)
-        found.problems.append(Problem(error.where or place(path), what, error.hint))
+        found.problems.append(ErrorDetail(error.where or place(path), what, error.hint))
     except VoxSoftError as error:  # the value of a parameter that the formula uses
-        found.problems.append(Problem(error.where, error.what, error.hint))
+        found.problems.append(ErrorDetail(error.where, error.what, error.hint))
         found.told.add(tuple(steps_of(error.where)))
     found.told.add(path)
     return UNREAD

@@ -10,12 +10,12 @@ from typing import Final
 
 from voxsoft._folders import folder_name
 from voxsoft.calibration import Calibration
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import save_card
 from voxsoft.files.designs import FilePath
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
 from voxsoft.files.specimen import write_specimen
-from voxsoft.files.whole import write_whole
 from voxsoft.plot import plot_fitness, plot_profiles, plot_shape
 
 #: Files of TOML in the folder of a calibration that are no card.
@@ -60,7 +60,7 @@ def write_calibration(calibration: Calibration, folder: FilePath, name: str) -> 
     written = [card, summary]
     tables = {"history.csv": _history(calibration), "shapes.csv": _shapes(calibration)}
     for file, text in tables.items():
-        write_whole(place / file, text)
+        write_atomically(place / file, text)
         written.append(place / file)
     written.append(save_figure(plot_fitness(calibration), place / "fitness.png"))
     written.append(save_figure(plot_shape(calibration), place / "shape.png"))
@@ -95,8 +95,8 @@ def _shapes(calibration: Calibration) -> str:
             fit.experiment.name,
             station,
             quantity,
-            fit.comparison.measured[at, column],
-            fit.comparison.simulated[at, column],
+            fit.deviation.measured[at, column],
+            fit.deviation.simulated[at, column],
         ]
         for fit in calibration.fits
         for at, station in enumerate(fit.experiment.measurement.station_names)

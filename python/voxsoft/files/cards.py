@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_text import write_toml
-from voxsoft.files.whole import write_whole
 from voxsoft.materials import Card
 from voxsoft.units import EXACT
 
@@ -51,7 +51,7 @@ def save_card(card: Card, path: FilePath) -> None:
     FileError
         The file cannot be written.
     """
-    write_whole(path, card_text(card))
+    write_atomically(path, card_text(card))
 
 
 def load_card_file(path: FilePath) -> Card:

@@ -1,4 +1,4 @@
-"""The doctor, for designs and meshes in files."""
+"""The checks of designs and meshes in files."""
 
 from __future__ import annotations
 

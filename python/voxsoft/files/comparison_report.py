@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from voxsoft.comparison import Comparison, Run
 from voxsoft.comparison.quantities import in_words
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath
 from voxsoft.files.run_folder import provenance
-from voxsoft.files.whole import write_whole
 from voxsoft.plot.body import plot_body
 from voxsoft.plot.comparison import (
     plot_agreement,
@@ -57,7 +57,7 @@ def write_comparison(comparison: Comparison, path: FilePath) -> Path:
         The file cannot be written.
     """
     target = Path(path)
-    write_whole(target, "\n".join(_page(comparison)) + "\n")
+    write_atomically(target, "\n".join(_page(comparison)) + "\n")
     return target
 
 

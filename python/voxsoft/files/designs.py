@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import with_whole_paths
-from voxsoft.errors import DesignError, FileError, Problem
+from voxsoft.design.documents import with_absolute_paths
+from voxsoft.errors import DesignError, ErrorDetail, FileError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.toml_text import line_of
-from voxsoft.files.whole import write_whole
 from voxsoft.records import steps_of
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     document = read_document(text, Path(path).name)
     _refuse_card(document, path)
     try:
-        changed = with_whole_paths(set_values(document, assignments), Path(path).parent)
+        changed = with_absolute_paths(set_values(document, assignments), Path(path).parent)
         return Design.from_document(changed, parameters)
     except DesignError as error:
         raise type(error).listing(_with_lines(error.problems, text, Path(path).name)) from None
@@ -95,7 +95,7 @@ def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
     FileError
         The file cannot be written.
     """
-    write_whole(path, design.to_toml(resolved=resolved))
+    write_atomically(path, design.to_toml(resolved=resolved))
 
 
 def read_text(path: FilePath) -> str:
@@ -161,9 +161,9 @@ def _position(message: str, text: str, name: str) -> tuple[str, str]:
     return where, f"{what}; the file ends too early"
 
 
-def _with_lines(problems: Iterable[Problem], text: str, name: str) -> Iterator[Problem]:
+def _with_lines(problems: Iterable[ErrorDetail], text: str, name: str) -> Iterator[ErrorDetail]:
     """Say the line of each problem, in the order of the lines."""
     found = [(line_of(text, steps_of(problem.where)) or 0, problem) for problem in problems]
     for line, problem in sorted(found, key=lambda pair: pair[0]):
         where = f"{name}, line {line}" if line else name
-        yield Problem(f"{where}, {problem.where}" if problem.where else where, *problem[1:])
+        yield ErrorDetail(f"{where}, {problem.where}" if problem.where else where, *problem[1:])

@@ -14,11 +14,11 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.discretize import mesh_of, voxels_of
 from voxsoft.errors import FileError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load, read_text, save
 from voxsoft.files.mesh_file import MeshFile
 from voxsoft.files.meshes import read_mesh_file, write_mesh
 from voxsoft.files.run_folder import csv_text
-from voxsoft.files.whole import write_whole
 from voxsoft.simulation import named_regions
 from voxsoft.units import parse
 
@@ -79,11 +79,11 @@ def export(
     if suffix == ".toml":
         save(design, goal, resolved=True)
     elif suffix == ".csv":
-        write_whole(goal, _probes_csv(origin))
+        write_atomically(goal, _probes_csv(origin))
     elif suffix == ".npy":
         array = io.BytesIO()
         np.save(array, voxels_of(design).array)
-        write_whole(goal, array.getvalue())
+        write_atomically(goal, array.getvalue())
     else:
         _write_body(goal, _body(origin, design), deformed, parse(f"1 {unit}", "length"))
 

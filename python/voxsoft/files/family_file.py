@@ -8,9 +8,9 @@ import tomllib
 from pathlib import Path
 
 from voxsoft.design import Design, families
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath
 from voxsoft.files.run_folder import make_folder
-from voxsoft.files.whole import write_whole
 
 
 def write_family(family: str, path: FilePath, *, name: str) -> None:
@@ -48,4 +48,4 @@ def write_family(family: str, path: FilePath, *, name: str) -> None:
     )
     Design.from_document(tomllib.loads(text))
     make_folder(Path(path).parent)
-    write_whole(path, text)
+    write_atomically(path, text)

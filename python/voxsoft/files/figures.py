@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.files.whole import write_whole
+from voxsoft.files.atomic import write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -40,7 +40,7 @@ def save_figure(figure: Figure, path: Path) -> Path:
     """
     drawn = io.BytesIO()
     figure.savefig(drawn, format="png")
-    write_whole(path, drawn.getvalue())
+    write_atomically(path, drawn.getvalue())
     return path
 
 
@@ -54,7 +54,7 @@ def save_thumbnail(result: Result, folder: Path) -> Path:
     """
     from voxsoft.plot.body import body_image
 
-    write_whole(folder / THUMBNAIL, _png(body_image(result)))
+    write_atomically(folder / THUMBNAIL, _png(body_image(result)))
     return folder / THUMBNAIL
 
 

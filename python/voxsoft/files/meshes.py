@@ -27,8 +27,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.errors import DesignError, FileError, MeshError
 from voxsoft.files import abaqus, gmsh, vtu
+from voxsoft.files.atomic import replace_whole
 from voxsoft.files.mesh_file import MeshFile, vertex_set
-from voxsoft.files.whole import replace_whole
 from voxsoft.mesh import Mesh
 from voxsoft.records import check_name
 from voxsoft.shapes.surface_files import known_suffixes

@@ -16,9 +16,9 @@ import numpy as np
 
 from voxsoft.design.documents import with_paths_from
 from voxsoft.errors import OutputError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.meshes import write_mesh
 from voxsoft.files.toml_text import write_toml
-from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result, named_regions
 
 
@@ -43,7 +43,7 @@ def write_run(
     """
     folder = make_folder(folder)
     resolved = with_paths_from(result.design.resolved, folder)
-    write_whole(folder / "design.toml", write_toml(resolved))
+    write_atomically(folder / "design.toml", write_toml(resolved))
     summary = result.summary() | {
         "design": result.design.name,
         "hash": result.design.hash,
@@ -65,7 +65,7 @@ def write_run(
         regions=named_regions(result.design, result.mesh),
     )
     if len(result.history.times) > 1:
-        write_whole(folder / "history.csv", _history_csv(result))
+        write_atomically(folder / "history.csv", _history_csv(result))
     return folder
 
 
@@ -100,7 +100,7 @@ def write_json(path: Path, value: Mapping[str, Any]) -> None:
             return [plain(value) for value in item]
         return item
 
-    write_whole(path, json.dumps(plain(value), indent=2, ensure_ascii=False) + "\n")
+    write_atomically(path, json.dumps(plain(value), indent=2, ensure_ascii=False) + "\n")
 
 
 def _history_csv(result: Result) -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from voxsoft.calibration.result import Fit
 from voxsoft.errors import FileError
-from voxsoft.files.whole import write_whole
+from voxsoft.files.atomic import write_atomically
 
 #: The file of a calibration that holds the specimen, as NumPy writes arrays.
 SPECIMEN: Final = "specimen.npz"
@@ -30,7 +30,7 @@ def drawn_positions(fit: Fit) -> Floats:
     for axis, is_position in zip(measurement.axes, measurement.are_positions, strict=True):
         if is_position:
             center[:, axis] = experiment.station_line.foot[axis]
-    drawn: Floats = center + fit.comparison.scale * (fit.comparison.positions - center)
+    drawn: Floats = center + fit.deviation.scale * (fit.deviation.positions - center)
     return drawn
 
 
@@ -40,7 +40,7 @@ def stations(fit: Fit) -> tuple[list[Triple], list[Triple]]:
     A coordinate that was not measured is that of the simulated station, so that the line between
     the two is the error.
     """
-    experiment, comparison = fit.experiment, fit.comparison
+    experiment, comparison = fit.experiment, fit.deviation
     drawn = drawn_positions(fit)
     simulated = np.array([place.weights @ drawn[place.vertices] for place in experiment.places])
     measured = simulated.copy()
@@ -60,7 +60,7 @@ def write_specimen(fit: Fit, folder: Path) -> None:
     """
     content = io.BytesIO()
     np.savez_compressed(content, positions=drawn_positions(fit))
-    write_whole(folder / SPECIMEN, content.getvalue())
+    write_atomically(folder / SPECIMEN, content.getvalue())
 
 
 def read_specimen(folder: Path, vertices: int) -> Floats:

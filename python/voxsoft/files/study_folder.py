@@ -7,9 +7,9 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from voxsoft.comparison import Confirmation
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
-from voxsoft.files.whole import write_whole
 from voxsoft.plot import plot_history, plot_pareto, plot_scatter
 from voxsoft.study import StudyResult
 
@@ -38,7 +38,7 @@ def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Pat
     """
     folder = make_folder(folder)
     table = folder / "table.csv"
-    write_whole(table, result.table().to_csv(index=False))
+    write_atomically(table, result.table().to_csv(index=False))
     written = [table]
     if find_spec("pyarrow") is not None:
         result.to_parquet(folder / "table.parquet")

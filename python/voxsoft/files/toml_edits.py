@@ -48,7 +48,7 @@ def with_value(text: str, path: Path, value: object) -> str:
         return tomlkit.dumps(document)
     except (TOMLKitError, RecursionError) as error:
         raise DesignError(
-            place(path), f"cannot be set: {error}", "mend the text first, then use the form"
+            place(path), f"cannot be set: {error}", "fix the text first, then use the form"
         ) from None
     except (KeyError, IndexError, TypeError, AttributeError, ValueError) as error:
         raise DesignError(place(path), f"cannot be set: {error}") from None

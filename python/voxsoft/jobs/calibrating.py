@@ -15,18 +15,18 @@ from voxsoft.jobs.spec import CalibrateSpec
 from voxsoft.units import format_quantity
 
 
-def run_calibration(spec: CalibrateSpec, folder: Path, tell: Listener) -> JobOutcome[Calibration]:
+def run_calibration(spec: CalibrateSpec, folder: Path, notify: Listener) -> JobOutcome[Calibration]:
     """Fit the material of a spec's design and write the card and its report."""
     design = spec.design.read()
     experiments = [Experiment(design, table.read()) for table in spec.data]
-    tell(Progress(0, spec.generations, "generations"))
+    notify(Progress(0, spec.generations, "generations"))
 
     def report(event: CalibrationEvent) -> None:
-        tell(event)
+        notify(event)
         done = event.done if event.stage == "search" else spec.generations
         found = np.isfinite(event.mean_error)
         best = f"mean error {_length(event.mean_error)}" if found else ""
-        tell(Progress(done, spec.generations, "generations", event.stage, best))
+        notify(Progress(done, spec.generations, "generations", event.stage, best))
 
     answer = calibrate(
         experiments,
@@ -43,7 +43,7 @@ def run_calibration(spec: CalibrateSpec, folder: Path, tell: Listener) -> JobOut
     )
     write_job(spec, folder)
     written = files.write_calibration(answer, folder, spec.card_name)
-    tell(answer)
+    notify(answer)
     sentence = f"Mean error {_length(answer.mean_error)}, largest {_length(answer.max_error)}."
     return JobOutcome(folder, answer, sentence, tuple(written))
 

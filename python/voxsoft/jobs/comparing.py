@@ -17,7 +17,7 @@ from voxsoft.jobs.spec import CompareSpec
 REPORT: Final = "report.html"
 
 
-def run_comparison(spec: CompareSpec, folder: Path, tell: Listener) -> JobOutcome[Comparison]:
+def run_comparison(spec: CompareSpec, folder: Path, notify: Listener) -> JobOutcome[Comparison]:
     """Compare the answers to the design of a spec, and write the report."""
     found = compare(
         spec.design.read(),
@@ -27,7 +27,7 @@ def run_comparison(spec: CompareSpec, folder: Path, tell: Listener) -> JobOutcom
         splits=spec.splits,
         measured=[table.read() for table in spec.data],
         time_limit=spec.time_limit,
-        progress=lambda label, done, total: tell(
+        progress=lambda label, done, total: notify(
             Progress(100 * done // total, 100, "percent", label)
         ),
     )

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Final, TypeVar
 
 from voxsoft._folders import folder_name
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
-from voxsoft.files.whole import write_whole
 from voxsoft.jobs.spec import JobSpec
 
 #: The folder of the copies in that of a job.
@@ -58,5 +58,5 @@ def _copied(content: bytes, file: Path, inputs: Path) -> Path:
     target = inputs / f"{folder_name(stem, 'file')}-{digest}{file.suffix}"
     if not target.is_file() or target.read_bytes() != content:
         make_folder(inputs)
-        write_whole(target, content)
+        write_atomically(target, content)
     return target

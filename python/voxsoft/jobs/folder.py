@@ -14,10 +14,10 @@ from typing import Any, ClassVar, Final
 from pydantic import Field
 
 from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.run_folder import make_folder
 from voxsoft.files.toml_text import write_toml
-from voxsoft.files.whole import write_whole
 from voxsoft.jobs.copies import design_file
 from voxsoft.jobs.first_version import FIRST, read_first
 from voxsoft.jobs.spec import Spec, TaggedSpec
@@ -101,7 +101,7 @@ def write_job(spec: Spec, folder: Path) -> None:
     texts |= {_table_file(at): table.text for at, table in enumerate(spec.tables, start=1)}
     for name, text in texts.items():
         make_folder((folder / name).parent)
-        write_whole(folder / name, text)
+        write_atomically(folder / name, text)
     copies = [file for file in spec.design.files().values() if file.is_relative_to(folder)]
     digests = {name: _digest(text.encode()) for name, text in texts.items()}
     digests |= {
@@ -117,7 +117,7 @@ def write_job(spec: Spec, folder: Path) -> None:
         "job": _plain(spec),
         "files": digests,
     }
-    write_whole(folder / JOB, _HEAD + write_toml(document))
+    write_atomically(folder / JOB, _HEAD + write_toml(document))
 
 
 def load(folder: FilePath, *, check: bool = True) -> Job:

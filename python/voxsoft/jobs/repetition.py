@@ -78,7 +78,7 @@ class Repetition(Shown):
         }
 
 
-def again(folder: FilePath, out: FilePath | None = None, tell: Listener = nobody) -> Repetition:
+def again(folder: FilePath, out: FilePath | None = None, notify: Listener = nobody) -> Repetition:
     """Do the job of a folder again, in a new folder, and compare the results.
 
     Parameters
@@ -87,7 +87,7 @@ def again(folder: FilePath, out: FilePath | None = None, tell: Listener = nobody
         A folder that a run, study, calibration or comparison left. Nothing in it is changed.
     out
         The new folder, which must be empty; default: the same name with ``-again``.
-    tell
+    notify
         As for :func:`voxsoft.jobs.run_job`.
 
     Returns
@@ -121,7 +121,7 @@ def again(folder: FilePath, out: FilePath | None = None, tell: Listener = nobody
             f"solve its design, `voxsoft run {place / 'inputs' / 'design.toml'}`",
         )
     target = _free(place) if out is None else _empty(Path(out))
-    outcome = run_job(job.spec, target, tell)
+    outcome = run_job(job.spec, target, notify)
     return Repetition(job, place, outcome, tuple(differences(place, target)))
 
 

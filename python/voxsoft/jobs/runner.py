@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 
 
 @overload
-def run_job(spec: RunSpec, folder: FilePath, tell: Listener = ...) -> JobOutcome[Result]: ...
+def run_job(spec: RunSpec, folder: FilePath, notify: Listener = ...) -> JobOutcome[Result]: ...
 
 
 @overload
 def run_job(
     spec: StudySpec,
     folder: FilePath,
-    tell: Listener = ...,
+    notify: Listener = ...,
     *,
     gate: Gate | None = ...,
     scheduler: str | None = ...,
@@ -37,13 +37,13 @@ def run_job(
 
 @overload
 def run_job(
-    spec: CalibrateSpec, folder: FilePath, tell: Listener = ...
+    spec: CalibrateSpec, folder: FilePath, notify: Listener = ...
 ) -> JobOutcome[Calibration]: ...
 
 
 @overload
 def run_job(
-    spec: CompareSpec, folder: FilePath, tell: Listener = ...
+    spec: CompareSpec, folder: FilePath, notify: Listener = ...
 ) -> JobOutcome[Comparison]: ...
 
 
@@ -51,7 +51,7 @@ def run_job(
 def run_job(
     spec: Spec,
     folder: FilePath,
-    tell: Listener = ...,
+    notify: Listener = ...,
     *,
     gate: Gate | None = ...,
     scheduler: str | None = ...,
@@ -62,7 +62,7 @@ def run_job(
 def run_job(
     spec: Spec,
     folder: FilePath,
-    tell: Listener = nobody,
+    notify: Listener = nobody,
     *,
     gate: Gate | None = None,
     scheduler: str | None = None,
@@ -79,7 +79,7 @@ def run_job(
         What is to be done.
     folder
         Where; made if it does not exist. A study that the folder holds already goes on.
-    tell
+    notify
         Called with each :data:`voxsoft.jobs.events.JobEvent`. The job waits for it, and ends with
         what it raises; ``KeyboardInterrupt`` stops the job as Ctrl-C does.
     gate
@@ -117,14 +117,14 @@ def run_job(
         case RunSpec():
             from voxsoft.jobs.simulating import run_simulation
 
-            return run_simulation(with_copies(spec, place), place, tell)
+            return run_simulation(with_copies(spec, place), place, notify)
         case StudySpec():
             from voxsoft.jobs.studying import run_study
 
             return run_study(
                 with_copies(spec, place),
                 place,
-                tell,
+                notify,
                 gate=gate,
                 scheduler=scheduler,
                 storage=storage,
@@ -132,8 +132,8 @@ def run_job(
         case CalibrateSpec():
             from voxsoft.jobs.calibrating import run_calibration
 
-            return run_calibration(with_copies(spec, place), place, tell)
+            return run_calibration(with_copies(spec, place), place, notify)
         case CompareSpec():
             from voxsoft.jobs.comparing import run_comparison
 
-            return run_comparison(with_copies(spec, place), place, tell)
+            return run_comparison(with_copies(spec, place), place, notify)

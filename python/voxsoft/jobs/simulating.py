@@ -21,13 +21,13 @@ from voxsoft.units import format_percent
 _SAID_EVERY: Final = 0.25
 
 
-def run_simulation(spec: RunSpec, folder: Path, tell: Listener) -> JobOutcome[Result]:
+def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[Result]:
     """Simulate the design of a spec and write its run folder."""
     design = spec.design.read()
-    tell(Progress(0, 100, "percent", "meshing"))
+    notify(Progress(0, 100, "percent", "meshing"))
     nearness = Nearness(design.solver)
     settings: dict[str, Any] = dict(spec.solver)
-    result = simulation.simulate(design, progress=_reporting(nearness, tell), **settings)
+    result = simulation.simulate(design, progress=_reporting(nearness, notify), **settings)
     write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
     files.write_run(result, folder)
     save_thumbnail(result, folder)
@@ -35,12 +35,12 @@ def run_simulation(spec: RunSpec, folder: Path, tell: Listener) -> JobOutcome[Re
         from voxsoft.plot import plot_body
 
         save_figure(plot_body(result), folder / "body.png")
-    tell(Progress(100, 100, "percent"))
+    notify(Progress(100, 100, "percent"))
     sentence = f"{result.message[:1].upper()}{result.message[1:]}."
     return JobOutcome(folder, result, sentence)
 
 
-def _reporting(nearness: Nearness, tell: Listener) -> Callable[[int, float, float], None]:
+def _reporting(nearness: Nearness, notify: Listener) -> Callable[[int, float, float], None]:
     last = time.monotonic()
 
     def report(_: int, when: float, residual: float) -> None:
@@ -51,6 +51,6 @@ def _reporting(nearness: Nearness, tell: Listener) -> Callable[[int, float, floa
             return
         last = now
         left = f"residual {format_percent(residual)} of the load"
-        tell(Progress(min(99, int(100 * share)), 100, "percent", left))
+        notify(Progress(min(99, int(100 * share)), 100, "percent", left))
 
     return report

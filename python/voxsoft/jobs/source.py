@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import Steps, file_references, with_whole_paths
+from voxsoft.design.documents import Steps, file_references, with_absolute_paths
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_edits import with_document, with_value
@@ -70,7 +70,7 @@ class DesignSource(Record):
         DesignError
             It is no valid design.
         """
-        return Design.from_document(with_whole_paths(self._document(), Path(self.folder)))
+        return Design.from_document(with_absolute_paths(self._document(), Path(self.folder)))
 
     def files(self) -> dict[Steps, Path]:
         """The meshes and cards that the design names, by the keys that lead to their paths."""

@@ -28,7 +28,7 @@ _DESIGNS = "designs"
 def run_study(
     spec: StudySpec,
     folder: Path,
-    tell: Listener,
+    notify: Listener,
     *,
     gate: Gate | None = None,
     scheduler: str | None = None,
@@ -39,15 +39,15 @@ def run_study(
     spec = spec.replace(earlier=_earlier(spec, folder, study.begun))
     write_job(spec, folder)
     before = study.result()
-    tell(StudyStanding(study, before))
+    notify(StudyStanding(study, before))
     total = study.grid_size if spec.sampler == "grid" else spec.budget or 0
-    tell(Progress(len(before.trials), total, _DESIGNS))
+    notify(Progress(len(before.trials), total, _DESIGNS))
 
     def report(event: TrialEvent) -> None:
-        tell(event)
+        notify(event)
         best = "" if event.best is None else _in_words(study, event.best)
         doubtful = ", doubtful" if best and event.doubts else ""
-        tell(Progress(event.done, max(event.total, total), _DESIGNS, best=best + doubtful))
+        notify(Progress(event.done, max(event.total, total), _DESIGNS, best=best + doubtful))
 
     finished = False
     try:
@@ -59,10 +59,10 @@ def run_study(
         # What is finished is written, too, where the study was stopped or failed.
         if not finished:
             with suppress(VoxSoftError):
-                _write(study, folder, tell)
-    result, written = _write(study, folder, tell)
-    _draw_best(study, result, folder, tell)
-    confirmed = _confirmed(spec, study, result, tell)
+                _write(study, folder, notify)
+    result, written = _write(study, folder, notify)
+    _draw_best(study, result, folder, notify)
+    confirmed = _confirmed(spec, study, result, notify)
     if confirmed is not None:
         written = [*written, files.write_confirmation(confirmed, folder)]
     return JobOutcome(
@@ -137,25 +137,25 @@ def _search(
     )
 
 
-def _write(study: Study, folder: Path, tell: Listener) -> tuple[StudyResult, list[Path]]:
+def _write(study: Study, folder: Path, notify: Listener) -> tuple[StudyResult, list[Path]]:
     result = study.result()
-    tell(StudyStanding(study, result))
-    tell(_ended(study, result, "writing tables and figures"))
+    notify(StudyStanding(study, result))
+    notify(_ended(study, result, "writing tables and figures"))
     return result, files.write_study(result, folder)
 
 
-def _draw_best(study: Study, result: StudyResult, folder: Path, tell: Listener) -> None:
+def _draw_best(study: Study, result: StudyResult, folder: Path, notify: Listener) -> None:
     """Solve the best design once more, for its picture; a study does not fail for want of it."""
     if result.best is None or not isinstance(study.family, Design):
         return
-    tell(_ended(study, result, "drawing the best design"))
+    notify(_ended(study, result, "drawing the best design"))
     design = study.family.with_parameters(**result.best.parameters)
     with suppress(VoxSoftError):
         save_thumbnail(simulate(design), folder)
 
 
 def _confirmed(
-    spec: StudySpec, study: Study, result: StudyResult, tell: Listener
+    spec: StudySpec, study: Study, result: StudyResult, notify: Listener
 ) -> Confirmation | None:
     if not spec.confirm or not result.ranking or not isinstance(study.family, Design):
         return None
@@ -163,7 +163,7 @@ def _confirmed(
         study.family,
         result,
         count=spec.confirm,
-        progress=lambda done, total: tell(Progress(done, total, "confirmations")),
+        progress=lambda done, total: notify(Progress(done, total, "confirmations")),
     )
 
 

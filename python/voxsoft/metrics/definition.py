@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.errors import Problem
+from voxsoft.errors import ErrorDetail
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 
@@ -134,8 +134,8 @@ class Metric:
     takes: frozenset[Option] = frozenset()
     home: str = ""
 
-    def refusals(self, target: Target) -> Iterator[Problem]:
+    def refusals(self, target: Target) -> Iterator[ErrorDetail]:
         """Find the keys of a target that this metric would not use."""
         for option, lack in _LACKS.items():
             if getattr(target, option) is not None and option not in self.needs | self.takes:
-                yield Problem(option, f"{self.name} {lack}", f"leave {option} out")
+                yield ErrorDetail(option, f"{self.name} {lack}", f"leave {option} out")

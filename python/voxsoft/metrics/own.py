@@ -177,7 +177,7 @@ def _called(
     except Exception as error:
         what = f"failed: {type(error).__name__}: {error}"
         raise SimulationError(
-            f"metric {name}", what, "mend the function that computes it"
+            f"metric {name}", what, "fix the function that computes it"
         ) from error
 
 

@@ -143,15 +143,15 @@ def plot_profiles(calibration: Calibration) -> Figure:
 
 def _draw_shape(axes: Axes, fit: Fit) -> None:
     across, along, x_label, y_label = _planes(fit)
-    measured, simulated = fit.comparison.measured, fit.comparison.simulated
+    measured, simulated = fit.deviation.measured, fit.deviation.simulated
     x, y = _columns(fit, measured, across, along)
     u, v = _columns(fit, simulated, across, along)
     axes.plot([x, u], [y, v], color=GRAY, linewidth=0.9, zorder=1)
     axes.plot(x, y, "o", color=BLACK, markersize=5, label="measured")
     axes.plot(u, v, "-", color=BLUE, linewidth=1.6, marker=".", markersize=7, label="simulated")
     title = fit.experiment.name
-    if fit.comparison.scale != 1.0:
-        title += f", simulated × {fit.comparison.scale:.3f}"
+    if fit.deviation.scale != 1.0:
+        title += f", simulated × {fit.deviation.scale:.3f}"
     plain_axes(axes, x=x_label, y=y_label, title=title)
     if "arc" not in x_label:
         axes.set_aspect("equal", adjustable="datalim")

@@ -1,4 +1,4 @@
-"""Pictures of coupon fits: measured stress, all models, what they leave, what they foretell."""
+"""Pictures of coupon fits: measured stress, all models, what they leave, what they predict."""
 
 from __future__ import annotations
 

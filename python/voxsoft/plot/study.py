@@ -194,7 +194,7 @@ def plot_pareto(result: StudyResult, objectives: tuple[str, str] | None = None) 
     x, y = columns(front)
     axes.plot(x, y, "o-", color=RED, markersize=5, linewidth=1.2, label="Pareto front")
     across, along = (
-        f"{scale.label(name)}, {_wish(result, name)}"
+        f"{scale.label(name)}, {_goal(result, name)}"
         for name, scale in zip(names, scales, strict=True)
     )
     plain_axes(axes, x=across, y=along)
@@ -216,7 +216,7 @@ def _kind(result: StudyResult, objective: str) -> str:
     return "" if metric is None else metric.kind
 
 
-def _wish(result: StudyResult, objective: str) -> str:
+def _goal(result: StudyResult, objective: str) -> str:
     return f"to {result.objectives[objective].direction}"
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, get_args
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from voxsoft.errors import FormulaError, Problem, UnitError, VoxSoftError
+from voxsoft.errors import ErrorDetail, FormulaError, UnitError, VoxSoftError
 from voxsoft.records.places import closest, place
 
 if TYPE_CHECKING:
@@ -31,7 +31,7 @@ def plain_error(error: ValidationError, model: type[Record], document: object) -
 
 def problems_of(
     error: ValidationError, model: type[Record], document: object, told: Collection[Path] = ()
-) -> list[Problem]:
+) -> list[ErrorDetail]:
     """List what pydantic found wrong in `document`.
 
     Parameters
@@ -51,31 +51,33 @@ def problems_of(
     return [*_merged([problem for problem in problems if not _is_told(problem, known)])]
 
 
-def _is_told(problem: Problem, known: Collection[str]) -> bool:
+def _is_told(problem: ErrorDetail, known: Collection[str]) -> bool:
     """Whether a problem is at or below one of the places that are known."""
     where = problem.where
     return any(where == each or where.startswith((f"{each}.", f"{each}[")) for each in known)
 
 
-def _problems(details: ErrorDetails, model: type[Record], document: object) -> Iterator[Problem]:
+def _problems(
+    details: ErrorDetails, model: type[Record], document: object
+) -> Iterator[ErrorDetail]:
     path = list(_real_keys(details, document))
     where = place(path)
     cause = details.get("ctx", {}).get("error")
     if isinstance(cause, UnitError):
-        yield Problem(where, cause.what, cause.hint)
+        yield ErrorDetail(where, cause.what, cause.hint)
     elif isinstance(cause, VoxSoftError):
         for problem in cause.problems:
             joined = ".".join(part for part in (where, problem.where) if part)
-            yield Problem(joined.replace(".[", "["), problem.what, problem.hint)
+            yield ErrorDetail(joined.replace(".[", "["), problem.what, problem.hint)
     elif details["type"] == "extra_forbidden":
         hint = closest(str(path[-1]), _field_names(model, path[:-1], document))
-        yield Problem(where, "is not known here", hint)
+        yield ErrorDetail(where, "is not known here", hint)
     elif details["type"] == "missing":
-        yield Problem(where, "is missing")
+        yield ErrorDetail(where, "is missing")
     elif details["type"] in {"union_tag_invalid", "union_tag_not_found"}:
         yield _unknown_kind(details, where)
     else:
-        yield Problem(where, _in_words(details))
+        yield ErrorDetail(where, _in_words(details))
 
 
 def _real_keys(details: ErrorDetails, document: object) -> Iterator[str | int]:
@@ -101,16 +103,16 @@ def _child(table: object, step: str | int) -> object:
     return getattr(table, step) if step in getattr(type(table), "model_fields", ()) else _NOTHING
 
 
-def _unknown_kind(details: ErrorDetails, where: str) -> Problem:
+def _unknown_kind(details: ErrorDetails, where: str) -> ErrorDetail:
     context = details.get("ctx", {})
     tags = [tag.strip(" '") for tag in str(context.get("expected_tags", "")).split(",") if tag]
     key = str(context.get("discriminator", "kind")).strip("'")
     place_of_key = f"{where}.{key}" if where else key
     if details["type"] == "union_tag_not_found":
         what = "is missing" if isinstance(details["input"], Mapping) else "expected a table"
-        return Problem(place_of_key, what, closest("", tags) if tags else "")
+        return ErrorDetail(place_of_key, what, closest("", tags) if tags else "")
     came = str(context.get("tag", ""))
-    return Problem(place_of_key, f'"{came}" is not known', closest(came, tags))
+    return ErrorDetail(place_of_key, f'"{came}" is not known', closest(came, tags))
 
 
 _EXPECTED = {
@@ -179,9 +181,9 @@ def _echoes(
     return inside and details["type"] in {"string_type", "literal_error", "too_short"}
 
 
-def _merged(problems: Sequence[Problem]) -> Iterator[Problem]:
+def _merged(problems: Sequence[ErrorDetail]) -> Iterator[ErrorDetail]:
     """Say once what came where, with all that is expected: each branch of a union tells its own."""
-    by_place: dict[tuple[str, str], list[Problem]] = {}
+    by_place: dict[tuple[str, str], list[ErrorDetail]] = {}
     for problem in dict.fromkeys(problems):
         came = problem.what.partition(" came; ")[0] if " came; " in problem.what else problem.what
         by_place.setdefault((problem.where, came), []).append(problem)
@@ -190,7 +192,9 @@ def _merged(problems: Sequence[Problem]) -> Iterator[Problem]:
             yield same[0]
         else:
             expected = (p.what.removeprefix(f"{came} came; expected ") for p in same)
-            yield Problem(where, f"{came} came; expected {', or '.join(expected)}", same[0].hint)
+            yield ErrorDetail(
+                where, f"{came} came; expected {', or '.join(expected)}", same[0].hint
+            )
 
 
 def _field_names(model: type[Record], path: Sequence[str | int], document: object) -> set[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, Self
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from voxsoft.errors import DesignError, Problem, VoxSoftError
+from voxsoft.errors import DesignError, ErrorDetail, VoxSoftError
 from voxsoft.records.complaints import plain_error
 from voxsoft.records.places import closest
 from voxsoft.records.plain import plain_values
@@ -92,7 +92,7 @@ class Record(BaseModel, metaclass=RecordType):
         written = {name: info.alias or name for name, info in type(self).model_fields.items()}
         known = {**written, **{name: name for name in written.values()}}
         wrong = [
-            Problem(name, "is not known here", closest(name, written.values()))
+            ErrorDetail(name, "is not known here", closest(name, written.values()))
             for name in changes
             if name not in known
         ]

@@ -81,7 +81,7 @@ def sampler_named(
         raise StudyError("sampler", f'"{name}" is not known', closest(name, SAMPLERS))
     if name == "gradient":
         if answers is None:
-            what = '"gradient" needs trials that tell their slopes'
+            what = '"gradient" needs trials that report their slopes'
             raise StudyError("sampler", what, 'use it with Study.optimize("gradient", ...)')
         return GradientSampler(space, answers, seed=seed)
     with warnings.catch_warnings():

@@ -8,7 +8,7 @@ from voxsoft.simulation.gradient import gradient
 from voxsoft.simulation.many import Ensemble, Settled, simulate_many
 from voxsoft.simulation.observation import ChamberState, Observation
 from voxsoft.simulation.penetration import Overlap, Penetration, find_penetration
-from voxsoft.simulation.result import History, Result, Status
+from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
 from voxsoft.simulation.simulator import Simulator
@@ -19,12 +19,12 @@ __all__ = [
     "CheckReport",
     "Diagnostic",
     "Ensemble",
-    "History",
     "Observation",
     "Overlap",
     "Penetration",
     "Place",
     "ProgressCallback",
+    "Recording",
     "Result",
     "Settled",
     "Setup",

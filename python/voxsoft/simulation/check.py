@@ -1,4 +1,4 @@
-"""The doctor: what would go wrong with a design or a body of voxels, found before it is solved."""
+"""Checks: what would go wrong with a design or a body of voxels, found before it is solved."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def check(body: Design | Voxels) -> CheckReport:
     ----------
     body
         A design is checked for everything that would stop or spoil its simulation; voxels for
-        pieces, hinges, leaks and walls.
+        components, hinges, leaks and walls.
 
     Returns
     -------
@@ -311,16 +311,16 @@ def _findings_of_voxels(
     if len(voxels.hinges) > _LISTED:
         what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
         yield Diagnostic("warning", "voxels", what, hint)
-    pieces = voxels.components("face")
-    if len(pieces) > 1:
-        sizes = ", ".join(f"{piece.count:,}" for piece in pieces[:_LISTED])
+    components = voxels.components("face")
+    if len(components) > 1:
+        sizes = ", ".join(f"{component.count:,}" for component in components[:_LISTED])
         yield Diagnostic(
             "warning",
             "voxels",
-            f"the body is in {len(pieces)} pieces of {sizes} voxels"
-            + (" and more" if len(pieces) > _LISTED else ""),
+            f"the body is in {len(components)} components of {sizes} voxels"
+            + (" and more" if len(components) > _LISTED else ""),
             "join them by whole faces of voxels, or clamp each of them",
-            _middle(voxels, tuple(pieces[-1].cells[0].tolist())),
+            _middle(voxels, tuple(components[-1].cells[0].tolist())),
         )
     for leak in leaks[:_LISTED]:
         cells = ", ".join(str(cell) for cell in leak.openings[:3])

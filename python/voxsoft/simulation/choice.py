@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from voxsoft.design import Design, Solver
-from voxsoft.errors import Problem, SimulationError
+from voxsoft.errors import ErrorDetail, SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
 from voxsoft.simulation.dynamics import Dynamics, DynamicsToEnd, DynamicsToRest
 from voxsoft.simulation.equilibrium import (
@@ -144,7 +144,7 @@ def method_of(design: Design, solver: Solver) -> Method:
 
 def unused_settings(
     design: Design, solver: Solver, extra: Mapping[str, object] | None = None
-) -> Iterator[Problem]:
+) -> Iterator[ErrorDetail]:
     """Find the settings that would not be used.
 
     Parameters
@@ -165,7 +165,7 @@ def unused_settings(
         where = name if extra and name in extra else f"solver.{name}"
         instead = _ASKING.get(name, _ASKING_FOR_DYNAMICS)
         what = f"is a setting of {_together(users)}, and {_because(name, kind, solver)}"
-        yield Problem(where, what, f"{instead}, or leave {name} out")
+        yield ErrorDetail(where, what, f"{instead}, or leave {name} out")
 
 
 def check_solver(
@@ -263,7 +263,7 @@ def check_settings_of(design: Design, used: frozenset[str], by: str) -> None:
         Naming each setting that is not used.
     """
     problems = [
-        Problem(f"solver.{name}", f"is not used by {by}", "leave it out of the design")
+        ErrorDetail(f"solver.{name}", f"is not used by {by}", "leave it out of the design")
         for name in given_settings(design.solver)
         if name not in used
     ]

@@ -13,10 +13,10 @@ NONE = 1e-6
 
 
 def moves_freely(setup: Setup) -> bool:
-    """Whether a piece of the body has a rigid motion that no clamp stops.
+    """Whether a component of the body has a rigid motion that no clamp stops.
 
     Pieces are what shares vertices; hinges between voxels on one edge are not looked at. Where
-    there is a floor or a layer, which may hold a piece as well, the answer is no.
+    there is a floor or a layer, which may hold a component as well, the answer is no.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def moves_freely(setup: Setup) -> bool:
 
 
 def _joined(setup: Setup) -> list[NDArray[np.intp]]:
-    """Vertices of each piece."""
+    """Vertices of each component."""
     from scipy.sparse import coo_array  # slow to load
     from scipy.sparse.csgraph import connected_components
 

@@ -28,7 +28,7 @@ from voxsoft.simulation.places import voxel_size
 
 Floats = NDArray[np.float64]
 
-#: Depths below this part of a voxel are not told: solvers leave positions at rest open by about as
+#: Depths below this part of a voxel are left out: solvers leave positions at rest open by about as
 #: much (a residual of 1e-6 of the load moves a body by 1e-6 of its displacement, which is of the
 #: size of a voxel or more), and what merely touches is then in each other by it.
 TOLD: Final = 1e-6
@@ -82,12 +82,12 @@ def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
     for region in penetration_of(design, mesh, positions).regions:
         if region.inverted or region.depth > least:
             groups.setdefault((region.inverted, frozenset(region.parts)), []).append(region)
-    for (inverted, _), told in groups.items():
-        deepest = told[0]
+    for (inverted, _), reported in groups.items():
+        deepest = reported[0]
         where, what = _turned(design, deepest) if inverted else overlapping(design, deepest)
         what += f" {near(deepest.at_rest)}"
-        if len(told) > 1:
-            what += f" and at {len(told) - 1} more place{'s' if len(told) > 2 else ''}"
+        if len(reported) > 1:
+            what += f" and at {len(reported) - 1} more place{'s' if len(reported) > 2 else ''}"
         hint = "lower the load"
         if not inverted:
             what += "; contact is not simulated"

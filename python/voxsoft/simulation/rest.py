@@ -3,7 +3,7 @@
 A step of relaxation is cheap, and how many it takes grows with the slenderness of the body: 100 for
 a squat cylinder, 30,000 for a thin plate. Statics costs about as much as some thousand steps of
 relaxation on any body (`benchmarks/time_to_rest.py`). So relaxation begins, and what is left of the
-forces after `TRIAL_STEPS` foretells how long it would take.
+forces after `TRIAL_STEPS` predicts how long it would take.
 """
 
 from __future__ import annotations

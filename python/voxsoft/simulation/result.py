@@ -34,7 +34,7 @@ Status = Literal["ok", "no-cavity", "disconnected", "diverged", "not-at-rest", "
 
 
 @dataclass(frozen=True)
-class History:
+class Recording:
     """What was recorded over time.
 
     Attributes
@@ -116,7 +116,7 @@ class Result(Shown):
     back_offs: int
     time: float
     seconds: float
-    history: History = field(repr=False)
+    history: Recording = field(repr=False)
     load_factor: float = 1.0
     limit_factor: float | None = None
     stable: bool | None = None

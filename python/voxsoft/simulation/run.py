@@ -15,7 +15,7 @@ from voxsoft.simulation.choice import check_solver, method_of
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.method import Watch
 from voxsoft.simulation.places import voxel_size
-from voxsoft.simulation.result import History, Result, Status
+from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_percent, si_value
 
@@ -89,7 +89,7 @@ def simulate(
         setup = design
         _check_refinement(setup, settings)
     else:
-        setup = Setup.of(design, may_fly=not method.to_rest, refine=solver.refine)
+        setup = Setup.of(design, allow_loose=not method.to_rest, refine=solver.refine)
     started = time.perf_counter()
     used, report = method.solve(setup, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
@@ -169,7 +169,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], second
     rest = setup.mesh.vertices
     still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
     records = report["records"]
-    history = History(
+    history = Recording(
         times=report["record_times"],
         probes={
             name: records[:, index] - still[index] if len(records) else np.zeros((0, 3))

@@ -63,14 +63,16 @@ class Setup:
         object.__setattr__(self, "mesh", with_chamber_names(self.design, closed))
 
     @classmethod
-    def of(cls, design: Design, *, may_fly: bool | None = None, refine: int | None = None) -> Setup:
+    def of(
+        cls, design: Design, *, allow_loose: bool | None = None, refine: int | None = None
+    ) -> Setup:
         """Voxelize and mesh a design and check that it can be loaded.
 
         Parameters
         ----------
         design
             The design.
-        may_fly
+        allow_loose
             Whether nothing needs to hold the body; default: if the design's solver has an end
             time, because a run over time need not come to rest.
         refine
@@ -81,7 +83,7 @@ class Setup:
         DesignError
             Nothing holds the body, or a clamp, load or probe catches nothing.
         DisconnectedError
-            A piece of the body is held by no clamp.
+            A component of the body is held by no clamp.
         NoCavityError
             A pressure is asked for, or a chamber named, and there is no such cavity.
         SimulationError
@@ -92,16 +94,16 @@ class Setup:
         if short := shortage(voxels * BYTES_PER_VOXEL):
             what = f"the problem of {voxels:,} voxels {short}"
             raise SimulationError("voxel_size", what, "make the voxels larger")
-        setup.check(may_fly=may_fly)
+        setup.check(allow_loose=allow_loose)
         return setup
 
-    def check(self, *, may_fly: bool | None = None) -> None:
+    def check(self, *, allow_loose: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
         check_chambers(self.design, self.mesh)
         self._check_cavities()
         timed = self.design.solver.is_timed
-        if not (timed if may_fly is None else may_fly):
+        if not (timed if allow_loose is None else allow_loose):
             self._check_support()
         _ = self.places
 
@@ -200,7 +202,7 @@ class Setup:
             self.load(index)
 
     def _check_support(self) -> None:
-        """Every piece must be held, unless it may lie on a floor."""
+        """Every component must be held, unless it may lie on a floor."""
         if self.design.floor is not None:
             return
         if not self.design.clamps:
@@ -216,7 +218,7 @@ class Setup:
             center = self.mesh.vertices[loose].mean(axis=0) * 1e3
             raise DisconnectedError(
                 "parts",
-                f"a piece of {len(loose)} vertices around "
+                f"a component of {len(loose)} vertices around "
                 f"({center[0]:.1f}, {center[1]:.1f}, {center[2]:.1f}) mm touches no clamp",
                 "join it to the rest by whole faces of voxels, or clamp it",
             )
@@ -242,10 +244,10 @@ def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
 
 
 def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | None:
-    """Vertices of the largest piece of which none is held, if there is one.
+    """Vertices of the largest component of which none is held, if there is one.
 
-    Tetrahedra joined by whole faces make a piece; those that share only an edge or a vertex hinge
-    on it and count as separate pieces.
+    Tetrahedra joined by whole faces make a component; those that share only an edge or a vertex
+    hinge on it and count as separate components.
     """
     labels = _core.mesh_pieces(mesh.tets)
     count = int(labels.max()) + 1

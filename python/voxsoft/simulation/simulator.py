@@ -94,7 +94,7 @@ class Simulator:
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)
-        self._setup = Setup.of(design, may_fly=True)
+        self._setup = Setup.of(design, allow_loose=True)
         self._pressed = self._commands.pressures(self._setup)
         self._of_size_one = Setup(self._commands.of_size_one(design), self._setup.mesh)
         self._cores = self._commands.core_loads(self._of_size_one)

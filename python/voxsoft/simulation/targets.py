@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.errors import DesignError, Problem
+from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.units import KINDS, describe_dimension
@@ -42,13 +42,13 @@ did you mean "displacement"?
         raise DesignError.listing(problems)
 
 
-def _problems_of_objectives(design: Design) -> Iterator[Problem]:
+def _problems_of_objectives(design: Design) -> Iterator[ErrorDetail]:
     for name, objective in design.objectives.items():
         where = f"objectives.{name}"
         yield from _problems(objective, where, objective.direction, design)
 
 
-def _problems_of_constraints(design: Design) -> Iterator[Problem]:
+def _problems_of_constraints(design: Design) -> Iterator[ErrorDetail]:
     for name, constraint in design.constraints.items():
         where = f"constraints.{name}"
         yield from _problems(constraint, where, "metric", design)
@@ -57,7 +57,7 @@ def _problems_of_constraints(design: Design) -> Iterator[Problem]:
         due = KINDS[METRICS[constraint.metric].kind]
         came = KINDS[constraint.kind].dimension
         if came != due.dimension and any((constraint.min, constraint.max)):
-            yield Problem(
+            yield ErrorDetail(
                 where,
                 f"the bounds are {describe_dimension(came)}; {constraint.metric} is "
                 f"{describe_dimension(due.dimension)}",
@@ -67,17 +67,19 @@ def _problems_of_constraints(design: Design) -> Iterator[Problem]:
 
 def _problems(
     target: Objective | Constraint, where: str, key: str, design: Design
-) -> Iterator[Problem]:
+) -> Iterator[ErrorDetail]:
     name = target.metric
     if name not in METRICS:
-        yield Problem(f"{where}.{key}", f'"{name}" is not a metric', closest(name, METRICS))
+        yield ErrorDetail(f"{where}.{key}", f'"{name}" is not a metric', closest(name, METRICS))
         return
     metric, probes = METRICS[name], design.probes
     if target.probe is not None and target.probe not in probes:
         hint = closest(target.probe, probes)
-        yield Problem(f"{where}.probe", f'"{target.probe}" is not a probe', hint)
+        yield ErrorDetail(f"{where}.probe", f'"{target.probe}" is not a probe', hint)
     if "probe" in metric.needs and target.probe is None and len(probes) != 1:
         known = f"one of {', '.join(probes)}" if probes else "a probe, under [probes]"
-        yield Problem(f"{where}.probe", f"is missing: where is {name} measured?", f"name {known}")
+        yield ErrorDetail(
+            f"{where}.probe", f"is missing: where is {name} measured?", f"name {known}"
+        )
     for problem in metric.refusals(target):
-        yield Problem(f"{where}.{problem.where}", problem.what, problem.hint)
+        yield ErrorDetail(f"{where}.{problem.where}", problem.what, problem.hint)

@@ -185,7 +185,7 @@ class _Pages:
         tabs.join(tab)
         pump = asyncio.create_task(tab.pump())
         try:
-            await self._aside_in_order(self._session.welcome, tab)
+            await self._aside_in_order(self._session.send_snapshot, tab)
             await self._listen(socket, tab)
         except (WebSocketDisconnect, RuntimeError):
             pass  # the tab was closed

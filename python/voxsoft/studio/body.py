@@ -135,7 +135,7 @@ class StudioBody:
         return pack_surface(self.surface, self.mesh, self.topology)
 
     def report(self) -> CheckReport:
-        """What a doctor says of it; slower than the mesh itself."""
+        """What the checks report of it; slower than the mesh itself."""
         setup = self.setup
         return examine(setup.design, self.voxels, self.mesh, self.lost, setup)
 

@@ -51,8 +51,8 @@ def calibrated_event(job: str, answer: Calibration, card: str) -> events.Calibra
             events.StationError(
                 experiment=fit.experiment.name,
                 station=station,
-                measured=fit.comparison.measured[at].tolist(),
-                simulated=fit.comparison.simulated[at].tolist(),
+                measured=fit.deviation.measured[at].tolist(),
+                simulated=fit.deviation.simulated[at].tolist(),
                 error=float(fit.errors[at]),
                 percent=float(fit.percent[at]),
             )

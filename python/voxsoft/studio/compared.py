@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import Any
 
 from voxsoft.design import Design
-from voxsoft.design.documents import with_whole_paths
+from voxsoft.design.documents import with_absolute_paths
 from voxsoft.errors import VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.records import place
@@ -45,12 +45,12 @@ def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
         trial = stored_trial(folder, number)
         parameters, status = dict(trial.parameters), trial.status
         metrics = {**trial.objectives, **trial.metrics}
-        design = Design.from_document(with_whole_paths(document, folder))
+        design = Design.from_document(with_absolute_paths(document, folder))
         text = design.with_parameters(**parameters).to_toml()
         document = tomllib.loads(text)
     else:
         with suppress(VoxSoftError):
-            design = Design.from_document(with_whole_paths(document, folder))
+            design = Design.from_document(with_absolute_paths(document, folder))
             parameters = {key: each.value for key, each in design.parameters.items()}
         with suppress(OSError, VoxSoftError):
             told = read_summary(folder)

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.design import Design
-from voxsoft.design.documents import with_whole_paths
+from voxsoft.design.documents import with_absolute_paths
 from voxsoft.design.formula import is_formula
 from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import LARGEST_FILE, read_document, read_text
 from voxsoft.files.toml_edits import with_value
-from voxsoft.files.whole import write_whole
 from voxsoft.studio import events
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.uploads import safe_name
@@ -203,7 +203,7 @@ class DesignDocument:
             raise FileError("save", "the document has no file yet", 'give a name like "arm.toml"')
         if target.suffix.lower() != ".toml":
             raise FileError(str(path), "is no name of a design file", 'end it with ".toml"')
-        write_whole(target, self.text)
+        write_atomically(target, self.text)
         self.path, self.folder, self.name, self.saved = (
             target,
             target.parent,
@@ -256,7 +256,7 @@ class DesignDocument:
         try:
             document = read_document(self.text, self.name)
             self.source = document
-            self.design = Design.from_document(with_whole_paths(document, self.folder))
+            self.design = Design.from_document(with_absolute_paths(document, self.folder))
             if self._former is None:
                 self._former = self._values()
         except VoxSoftError as error:

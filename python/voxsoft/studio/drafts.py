@@ -10,8 +10,8 @@ from typing import Final
 import msgspec
 
 from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
-from voxsoft.files.whole import write_whole
 
 #: Name of the file.
 DRAFT: Final = "draft.json"
@@ -93,7 +93,7 @@ class Drafts:
             try:
                 if draft is not None:
                     make_folder(self._file.parent)
-                    write_whole(self._file, msgspec.json.encode(draft))
+                    write_atomically(self._file, msgspec.json.encode(draft))
                 else:
                     self._file.unlink(missing_ok=True)
             except OSError as error:

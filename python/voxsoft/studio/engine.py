@@ -10,9 +10,9 @@ from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.event_bus import EventBus
 from voxsoft.studio.execute import execute
 from voxsoft.studio.exports import Shown
-from voxsoft.studio.outlet import Outlet
 from voxsoft.studio.stage import Stage
 from voxsoft.studio.tab import Tab
 
@@ -22,15 +22,15 @@ class Engine(threading.Thread):
 
     Parameters
     ----------
-    outlet
+    bus
         Where events and frames go.
     """
 
-    def __init__(self, outlet: Outlet) -> None:
+    def __init__(self, bus: EventBus) -> None:
         super().__init__(name="studio-engine", daemon=True)
-        self._outlet = outlet
+        self._bus = bus
         self._inbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
-        self._stage = Stage(outlet, self._inbox.put)
+        self._stage = Stage(bus, self._inbox.put)
 
     def run(self) -> None:
         """Do what is asked, and move the body meanwhile, until the end."""
@@ -59,17 +59,17 @@ class Engine(threading.Thread):
         """Say why the body that was being meshed does not come."""
         self._inbox.put(lambda: self._stage.stay(sentence))
 
-    def tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the doctor says of a body, if it is still the one that is shown."""
-        self._inbox.put(lambda: self._stage.tell_report(body, report, smooth))
+    def publish_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
+        """Pass on what the checks report of a body, if it is still the one that is shown."""
+        self._inbox.put(lambda: self._stage.publish_report(body, report, smooth))
 
     def forget(self) -> None:
         """Stop time, as another document is opened."""
         self._inbox.put(self._stage.forget)
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Show a new tab what there is."""
-        self._inbox.put(lambda: self._stage.welcome(tab))
+        self._inbox.put(lambda: self._stage.send_snapshot(tab))
 
     def repaint(self, tab: Tab) -> None:
         """Give a tab that took a frame the picture as it is now, if it has changed since."""
@@ -85,7 +85,7 @@ class Engine(threading.Thread):
                 said = events.Error(
                     seq=command.seq, where=error.where, what=error.what, hint=error.hint
                 )
-                self._outlet.tell_one(tab, said)
+                self._bus.send_to(tab, said)
 
         self._inbox.put(task)
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from voxsoft import files
 from voxsoft.errors import FileError
-from voxsoft.files.whole import write_whole
+from voxsoft.files.atomic import write_atomically
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.result import Status
 from voxsoft.simulation.state import result_at
@@ -119,7 +119,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     if format == "toml":
         resolved = bool(options.get("resolved", False))
         design = shown.body.setup.design
-        write_whole(target, design.to_toml(resolved=True) if resolved else shown.text)
+        write_atomically(target, design.to_toml(resolved=True) if resolved else shown.text)
     elif format in _SURFACES:
         meter = parse(f"1 {options.get('unit', 'mm')}", "length", where="unit")
         mesh = shown.body.mesh
@@ -130,9 +130,9 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
     elif format == "npy":
         array = io.BytesIO()
         np.save(array, shown.body.voxels.array)
-        write_whole(target, array.getvalue())
+        write_atomically(target, array.getvalue())
     elif format == "csv":
-        write_whole(target, _table(shown))
+        write_atomically(target, _table(shown))
     elif format == "run":
         target = target.with_suffix(".zip")
         _write_run(shown, target)

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import FileError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load
-from voxsoft.files.whole import write_whole
 from voxsoft.simulation import Result
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
@@ -79,7 +79,7 @@ class LivePage:
         FileError
             It cannot be written.
         """
-        write_whole(path, self.text)
+        write_atomically(path, self.text)
 
 
 def page_of_body(

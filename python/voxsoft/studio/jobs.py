@@ -19,8 +19,8 @@ from voxsoft.jobs.copies import with_copies
 from voxsoft.jobs.folder import write_job
 from voxsoft.records import closest
 from voxsoft.studio import events
+from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.job_journal import FINISHED, JobJournal
-from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.tab import Tab
 
 #: What a process wrote on its standard error.
@@ -128,7 +128,7 @@ class Jobs:
             )
             job = Job(folder, state, process)
             self._jobs[folder.name] = job
-        self._tabs.tell(state)
+        self._tabs.publish(state)
         threading.Thread(target=self._listen, args=(job,), daemon=True).start()
         return job
 
@@ -157,12 +157,12 @@ class Jobs:
         """Whether a job works in a folder."""
         return any(job.running and job.folder == folder for job in self._jobs.values())
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Tell a new tab of all jobs."""
         for job in list(self._jobs.values()):
-            self._tabs.tell_one(tab, job.state)
+            self._tabs.send_to(tab, job.state)
             for event in [*job.kept, *job.trials.values()]:
-                self._tabs.tell_one(tab, event)
+                self._tabs.send_to(tab, event)
 
     def end(self) -> None:
         """Stop all jobs, and wait until they have put away what is finished."""
@@ -212,7 +212,7 @@ class Jobs:
             job.kept = [each for each in job.kept if type(each) is not type(event)] + [event]
         else:
             job.kept.append(event)
-        self._tabs.tell(event)
+        self._tabs.publish(event)
 
     def _died(self, job: Job, code: int) -> str:
         """Say in words how a process ended that did not say so itself."""

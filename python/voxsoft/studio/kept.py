@@ -60,12 +60,12 @@ def with_live_loads(shown: Shown) -> str:
 
 def _under(shown: Shown) -> str:
     """What holds the state there beside the design."""
-    told = []
+    phrases = []
     for load, factor in zip(shown.body.loads, shown.factors, strict=True):
         if factor != 1.0:
-            told.append(f"{load.label} {format_quantity(factor * load.value, load.quantity)}")
+            phrases.append(f"{load.label} {format_quantity(factor * load.value, load.quantity)}")
     if shown.pulls:
         total = sum(sum(part**2 for part in pull.force) ** 0.5 for pull in shown.pulls)
         count = "1 pull" if len(shown.pulls) == 1 else f"{len(shown.pulls)} pulls"
-        told.append(f"{count} by hand, {format_quantity(float(f'{total:.3g}'), 'force')}")
-    return f" under {', '.join(told)}" if told else ""
+        phrases.append(f"{count} by hand, {format_quantity(float(f'{total:.3g}'), 'force')}")
+    return f" under {', '.join(phrases)}" if phrases else ""

@@ -1,4 +1,4 @@
-"""The thread that meshes: of several wishes only the newest is fulfilled."""
+"""The thread that meshes: of several requests only the newest is fulfilled."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from voxsoft.simulation.check import CheckReport
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
 
-#: The doctor looks at a body when nothing was wished for so long [s].
+#: The checks of a body begin when nothing was requested so long [s].
 IDLE: Final = 0.15
 #: A body that takes longer than this is announced [s].
 SLOW: Final = 0.25
 
 
-class _Wish(NamedTuple):
+class _Request(NamedTuple):
     design: Design
     rev: int
 
@@ -33,8 +33,8 @@ class Mesher(threading.Thread):
     done
         Called with each body.
     examined
-        Called with a body, what the doctor says of it, and its smooth surface if it has one, unless
-        a newer wish came meanwhile.
+        Called with a body, what the checks report of it, and its smooth surface if it has one,
+        unless a newer request came meanwhile.
     failed
         Called with the revision of a design that could not be meshed, and the reason.
     """
@@ -48,15 +48,15 @@ class Mesher(threading.Thread):
     ) -> None:
         super().__init__(name="studio-mesher", daemon=True)
         self._slow, self._done, self._examined, self._failed = slow, done, examined, failed
-        self._wish: _Wish | None = None
+        self._request: _Request | None = None
         self._changed = threading.Condition()
         self._ended = False
         self._count = 0
 
     def ask(self, design: Design, rev: int) -> None:
-        """Ask for a body; an older wish that has not been begun is dropped."""
+        """Ask for a body; an older request that has not been begun is dropped."""
         with self._changed:
-            self._wish = _Wish(design, rev)
+            self._request = _Request(design, rev)
             self._changed.notify()
 
     def end(self) -> None:
@@ -66,26 +66,26 @@ class Mesher(threading.Thread):
             self._changed.notify()
 
     def run(self) -> None:
-        """Fulfill wishes until the end."""
-        while (wish := self._next()) is not None:
+        """Answer requests until the end."""
+        while (request := self._next()) is not None:
             self._count += 1
             announcement = threading.Timer(SLOW, self._slow)
             announcement.daemon = True
             announcement.start()
-            body = self._body_of(wish)
+            body = self._body_of(request)
             announcement.cancel()
             if body is None:
                 continue
             self._done(body)
             if self._idle():
                 self._examined(
-                    body, body.report(), pack_smooth(wish.design, body.voxels, body.topology)
+                    body, body.report(), pack_smooth(request.design, body.voxels, body.topology)
                 )
 
-    def _body_of(self, wish: _Wish) -> StudioBody | None:
+    def _body_of(self, request: _Request) -> StudioBody | None:
         """Make a body; None where that fails, which is told."""
         try:
-            return StudioBody.of(wish.design, wish.rev, self._count)
+            return StudioBody.of(request.design, request.rev, self._count)
         except VoxSoftError as error:
             failure = error
         except MemoryError:
@@ -93,19 +93,19 @@ class Mesher(threading.Thread):
             failure = VoxSoftError("voxel_size", what, "make the voxels larger")
         except BaseException as error:  # a panic of the core too: the thread must live on
             failure = VoxSoftError("design", f"{type(error).__name__}: {error}")
-        self._failed(wish.rev, failure)
+        self._failed(request.rev, failure)
         return None
 
     def _idle(self) -> bool:
-        """Wait a little; whether nothing was wished for meanwhile."""
+        """Wait a little; whether nothing was requested meanwhile."""
         with self._changed:
-            if self._wish is None and not self._ended:
+            if self._request is None and not self._ended:
                 self._changed.wait(IDLE)
-            return self._wish is None and not self._ended
+            return self._request is None and not self._ended
 
-    def _next(self) -> _Wish | None:
+    def _next(self) -> _Request | None:
         with self._changed:
-            while self._wish is None and not self._ended:
+            while self._request is None and not self._ended:
                 self._changed.wait()
-            wish, self._wish = self._wish, None
-            return None if self._ended else wish
+            request, self._request = self._request, None
+            return None if self._ended else request

@@ -7,7 +7,7 @@ from typing import Final
 
 from voxsoft.studio import events
 from voxsoft.studio.canvas import Moment
-from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.event_bus import EventBus
 from voxsoft.studio.overlap_event import overlap_of
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.tab import Tab
@@ -24,12 +24,12 @@ class OverlapWatch:
     ----------
     playback
         What is shown.
-    outlet
+    bus
         Where events go.
     """
 
-    def __init__(self, playback: Playback, outlet: Outlet) -> None:
-        self._playback, self._outlet = playback, outlet
+    def __init__(self, playback: Playback, bus: EventBus) -> None:
+        self._playback, self._bus = playback, bus
         self._seen: tuple[int, int] | None = None
         self._next = 0.0
         self._told: events.Overlap | None = None
@@ -53,12 +53,12 @@ class OverlapWatch:
         before = self._told
         if before is None or before.topology != found.topology or before.places or found.places:
             self._told = found
-            self._outlet.tell(found)
+            self._bus.publish(found)
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Tell a new tab what the others know."""
         if self._told is not None:
-            self._outlet.tell_one(tab, self._told)
+            self._bus.send_to(tab, self._told)
 
 
 def _number(playback: Playback, moment: Moment) -> int:

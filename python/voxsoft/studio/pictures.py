@@ -5,7 +5,7 @@ from __future__ import annotations
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.event_bus import EventBus
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.tab import Tab
 
@@ -17,58 +17,58 @@ class Pictures:
     ----------
     playback
         What is shown.
-    outlet
+    bus
         Where events and frames go.
     """
 
-    def __init__(self, playback: Playback, outlet: Outlet) -> None:
+    def __init__(self, playback: Playback, bus: EventBus) -> None:
         self._playback = playback
-        self._outlet = outlet
+        self._bus = bus
         self._report: CheckReport | None = None
         self._smooth: bytes | None = None
 
     def begin(self, body: StudioBody) -> None:
-        """Give every tab another body, of which the doctor has said nothing yet."""
+        """Give every tab another body, of which the checks have reported nothing yet."""
         self._report = self._smooth = None
         # The shape first: what there is to say of it takes as long again.
         canvas = self._playback.require_canvas()
-        for mode in {tab.view.mode for tab in self._outlet.tabs()}:
+        for mode in {tab.view.mode for tab in self._bus.tabs()}:
             if mode == "tets":  # hands and tapes hold on to the surface, also where it is not drawn
-                self._outlet.topology(canvas.topology("surface"), mode)
-            self._outlet.topology(canvas.topology(mode), mode)
-        self._outlet.tell(body.event())
+                self._bus.topology(canvas.topology("surface"), mode)
+            self._bus.topology(canvas.topology(mode), mode)
+        self._bus.publish(body.event())
         self.forget()
 
     def examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the doctor says of the body, and its smooth surface if it has one."""
+        """Pass on what the checks report of the body, and its smooth surface if it has one."""
         self._report, self._smooth = report, smooth
-        self._outlet.tell(self._event(body))
+        self._bus.publish(self._event(body))
         if smooth is not None:
-            for tab in self._outlet.tabs():
-                self._outlet.smooth_for(tab, smooth)
+            for tab in self._bus.tabs():
+                self._bus.smooth_for(tab, smooth)
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Give a new tab all there is of the body."""
         body, canvas = self._playback.body, self._playback.canvas
         if body is None or canvas is None:
             return
-        self._outlet.tell_one(tab, self._event(body))
+        self._bus.send_to(tab, self._event(body))
         if tab.view.mode == "tets":
-            self._outlet.topology_for(tab, canvas.topology("surface"))
-        self._outlet.topology_for(tab, canvas.topology(tab.view.mode))
+            self._bus.topology_for(tab, canvas.topology("surface"))
+        self._bus.topology_for(tab, canvas.topology(tab.view.mode))
         if self._smooth is not None:
-            self._outlet.smooth_for(tab, self._smooth)
-        self._outlet.tell_one(tab, self._playback.plots.whole())
+            self._bus.smooth_for(tab, self._smooth)
+        self._bus.send_to(tab, self._playback.plots.whole())
         self.repaint(tab)
 
     def change_mode(self, tab: Tab) -> None:
         """Give a tab the topology of the mode that it has turned to."""
         if self._playback.canvas is not None:
-            self._outlet.topology_for(tab, self._playback.canvas.topology(tab.view.mode))
+            self._bus.topology_for(tab, self._playback.canvas.topology(tab.view.mode))
 
     def forget(self) -> None:
         """Paint anew for every tab, though the frame has the number of the one before."""
-        for tab in self._outlet.tabs():
+        for tab in self._bus.tabs():
             tab.painted = None
 
     def repaint(self, tab: Tab) -> None:
@@ -78,20 +78,20 @@ class Pictures:
 
     def paint_all(self) -> None:
         """Paint for every tab."""
-        for tab in self._outlet.tabs():
+        for tab in self._bus.tabs():
             self.paint(tab)
 
     def paint(self, tab: Tab) -> None:
         """Pack what a tab shows, if it can take it and has not got it."""
         playback, view = self._playback, tab.view
         body, canvas = playback.body, playback.canvas
-        if body is None or canvas is None or not tab.hungry:
+        if body is None or canvas is None or not tab.ready:
             return
         number = playback.frame if playback.shown is None else -playback.shown.number
         key = (body.topology, number, view.field, view.mode, playback.state)
         if tab.painted != key:
             tab.painted = key
-            self._outlet.frame(tab, canvas.frame(playback.moment, view.field, view.mode, tab.seq))
+            self._bus.frame(tab, canvas.frame(playback.moment, view.field, view.mode, tab.seq))
 
     def _event(self, body: StudioBody) -> events.Body:
         event = body.event(self._report)

@@ -21,7 +21,7 @@ from voxsoft.studio.mover import Mover
 from voxsoft.studio.pace import Pace, RealTimeFactor
 from voxsoft.studio.past import Past, StoredFrame
 from voxsoft.studio.plots import Plots
-from voxsoft.studio.sentences import at_rest, diverged, said_time
+from voxsoft.studio.sentences import at_rest, diverged, time_text
 from voxsoft.studio.wire import FrameFlag
 
 #: How a search for rest may have ended, in the words of the page.
@@ -202,7 +202,7 @@ class Playback:
         self.result, self.progress = result, None
         self.state = _STATES.get(result.status, "paused")
         said = f"{result.message[:1].upper()}{result.message[1:]}"
-        self.sentence = f"{said}, in {said_time(result.seconds)}."
+        self.sentence = f"{said}, in {time_text(result.seconds)}."
         mover = self.require_mover()
         for pull in mover.grabs():  # no solver knows of them
             mover.release(pull.id)
@@ -307,10 +307,10 @@ class Playback:
     def _standing(self) -> str:
         """How the shown state came about, in words."""
         if self.state == "at-rest":
-            return f"at rest after {said_time(self.time)}"
+            return f"at rest after {time_text(self.time)}"
         if self._mover is None or self._mover.unloaded:
             return "the unloaded shape"
-        return f"as it stood at {said_time(self.time)}, not at rest"
+        return f"as it stood at {time_text(self.time)}, not at rest"
 
     def require_body(self) -> StudioBody:
         """The body.
@@ -321,7 +321,7 @@ class Playback:
             There is none.
         """
         if self.body is None:
-            raise SimulationError("view", "there is no body yet", "mend the design first")
+            raise SimulationError("view", "there is no body yet", "fix the design first")
         return self.body
 
     def require_canvas(self, vertex: int = 0) -> Canvas:

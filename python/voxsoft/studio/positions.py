@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from voxsoft.errors import Problem, VoxSoftError
+from voxsoft.errors import ErrorDetail, VoxSoftError
 from voxsoft.files.toml_text import line_of
 from voxsoft.records import steps_of
 from voxsoft.studio.events import Diagnostic
@@ -70,7 +70,7 @@ def diagnostics_of(error: VoxSoftError, text: str, severity: str = "error") -> l
     return [_diagnostic(problem, text) for problem in error.problems]
 
 
-def _diagnostic(problem: Problem, text: str) -> Diagnostic:
+def _diagnostic(problem: ErrorDetail, text: str) -> Diagnostic:
     lines = text.splitlines() or [""]
     if found := _IN_FILE.search(problem.where):
         number = min(int(found[1]), len(lines))

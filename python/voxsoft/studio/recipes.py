@@ -36,14 +36,14 @@ def recipe_of(folder: Path) -> events.Recipe:
     job = load(folder, check=False)
     kept = isinstance(job.spec, RunSpec) and job.spec.kept
     design = str(folder / design_file("run"))
-    told: Mapping[str, Any] = {}
+    summary: Mapping[str, Any] = {}
     with suppress(OSError, VoxSoftError):  # not ended yet, or not well
-        told = read_summary(folder)
+        summary = read_summary(folder)
     return events.Recipe(
         job=folder.name,
         python=_SCRIPT.format(folder=str(folder), again=f"{folder.name}-again"),
         # What was kept from the screen no job repeats: its design can be solved.
         command=shlex.join(["voxsoft", *(["run", design] if kept else ["again", str(folder)])]),
         seed=getattr(job.spec, "seed", None),
-        version=str(told.get("versions", {}).get("voxsoft", job.version)),
+        version=str(summary.get("versions", {}).get("voxsoft", job.version)),
     )

@@ -120,11 +120,11 @@ class RunList:
         return sorted(rows, key=lambda row: row.when, reverse=True)
 
     def _row(self, folder: Path) -> events.RunRow:
-        kind, told, message = _content(folder)
+        kind, summary, message = _content(folder)
         status, best, seconds, trials = "broken", "", None, None
         if not message:
             try:
-                status, best, seconds, trials = _summed_up(kind, told, folder)
+                status, best, seconds, trials = _summed_up(kind, summary, folder)
             except (KeyError, TypeError, ValueError, AttributeError) as error:
                 message = f"the summary is damaged: {error}"
         if self._busy(folder):
@@ -135,7 +135,7 @@ class RunList:
             name=folder.name,
             status=status,
             best=best,
-            when=_when(folder, told),
+            when=_when(folder, summary),
             seconds=seconds,
             folder=str(folder),
             thumbnail=f"/thumbnail/{folder.name}" if _picture(folder) else None,
@@ -158,11 +158,11 @@ class RunList:
 
 def kind_of(folder: Path) -> Kind:
     """What a folder holds, judged by the files in it."""
-    told = kind_of_job(folder)
-    if told == "compare":
+    kind = kind_of_job(folder)
+    if kind == "compare":
         return "unknown"
-    if told in _DONE_HERE:
-        return told
+    if kind in _DONE_HERE:
+        return kind
     if (folder / "study.json").is_file() or (folder / "study.journal").is_file():
         return "study"
     if (folder / "shapes.csv").is_file():
@@ -191,12 +191,12 @@ def read_summary(folder: Path) -> dict[str, Any]:
     if file.stat().st_size > _LARGEST:
         raise FileError(str(file), "is too large for a summary")
     try:
-        told = json.loads(file.read_text(encoding="utf-8"))
+        summary = json.loads(file.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise FileError(str(file), f"is damaged: {error}") from None
-    if not isinstance(told, dict):
+    if not isinstance(summary, dict):
         raise FileError(str(file), "is damaged: expected an object")
-    return told
+    return summary
 
 
 def _content(folder: Path) -> tuple[Kind, dict[str, Any], str]:
@@ -215,25 +215,30 @@ def _content(folder: Path) -> tuple[Kind, dict[str, Any], str]:
 
 
 def _summed_up(
-    kind: Kind, told: dict[str, Any], folder: Path
+    kind: Kind, summary: dict[str, Any], folder: Path
 ) -> tuple[str, str, float | None, int | None]:
     """Status, best value, seconds and number of trials."""
-    if not told:
+    if not summary:
         return "interrupted", "", None, None
     if kind == "run":
-        return str(told["status"]), _best_of_run(told, folder), float(told["seconds"]), None
+        return (
+            str(summary["status"]),
+            _best_of_run(summary, folder),
+            float(summary["seconds"]),
+            None,
+        )
     if kind == "study":
-        best = told["best"]
+        best = summary["best"]
         shown = "" if best is None else _with_units(best["objectives"], folder)
-        return "ok" if best else "no design", shown, None, int(told["trials"])
-    return "ok", f"mean error {_length(told['mean_error'])}", None, int(told["evaluations"])
+        return "ok" if best else "no design", shown, None, int(summary["trials"])
+    return "ok", f"mean error {_length(summary['mean_error'])}", None, int(summary["evaluations"])
 
 
-def _best_of_run(told: dict[str, Any], folder: Path) -> str:
-    own = {name: value for name, value in told["metrics"].items() if name not in METRICS}
+def _best_of_run(summary: dict[str, Any], folder: Path) -> str:
+    own = {name: value for name, value in summary["metrics"].items() if name not in METRICS}
     if own:
         return _with_units(own, folder)
-    return f"largest displacement {_length(told['metrics']['max_displacement'])}"
+    return f"largest displacement {_length(summary['metrics']['max_displacement'])}"
 
 
 def _with_units(values: dict[str, float], folder: Path) -> str:
@@ -241,10 +246,10 @@ def _with_units(values: dict[str, float], folder: Path) -> str:
     kinds: dict[str, str] = {}
     with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):
         if (folder / "study.json").is_file():
-            told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+            summary = json.loads((folder / "study.json").read_text(encoding="utf-8"))
         else:
-            told = tomllib.loads((folder / "design.toml").read_text(encoding="utf-8"))
-        for name, target in told["objectives"].items():
+            summary = tomllib.loads((folder / "design.toml").read_text(encoding="utf-8"))
+        for name, target in summary["objectives"].items():
             kinds[name] = METRICS[target.get("maximize") or target["minimize"]].kind
     return ", ".join(
         f"{name} {format_quantity(float(f'{value:.4g}'), kinds.get(name, 'number'))}"
@@ -256,8 +261,8 @@ def _length(value: float) -> str:
     return format_quantity(float(f"{value:.3g}"), "length")
 
 
-def _when(folder: Path, told: dict[str, Any]) -> str:
-    written = told.get("written")
+def _when(folder: Path, summary: dict[str, Any]) -> str:
+    written = summary.get("written")
     if isinstance(written, str):
         return written
     with suppress(OSError):

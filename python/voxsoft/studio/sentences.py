@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from voxsoft.units import format_percent, format_quantity
 
 
-def said_time(seconds: float) -> str:
+def time_text(seconds: float) -> str:
     """Say a time with three digits.
 
     Examples
     --------
-    >>> said_time(0.81234)
+    >>> time_text(0.81234)
     '0.812 s'
     """
     return format_quantity(float(f"{seconds:.3g}"), "time") if seconds else "0 s"
@@ -27,7 +27,7 @@ def at_rest(seconds: float, tolerance: float) -> str:
     'At rest after 0.8 s: forces balance within 0.001 % of the load.'
     """
     share = format_percent(tolerance)
-    return f"At rest after {said_time(seconds)}: forces balance within {share} of the load."
+    return f"At rest after {time_text(seconds)}: forces balance within {share} of the load."
 
 
 def slowed(factor: float, rest_in: float | None) -> str:
@@ -40,7 +40,7 @@ def slowed(factor: float, rest_in: float | None) -> str:
     >>> slowed(0.5, None)
     'Shown 2 times slower than real time.'
     """
-    why = "" if rest_in is None else f", as it comes to rest within {said_time(rest_in)}"
+    why = "" if rest_in is None else f", as it comes to rest within {time_text(rest_in)}"
     return f"Shown {1 / factor:.3g} times slower than real time{why}."
 
 
@@ -57,6 +57,6 @@ Try a smaller load, a stiffer material or thicker walls, then reset.'
     if place is not None:
         near = f" near ({', '.join(f'{1e3 * value:.1f}' for value in place)}) mm"
     return (
-        f"Diverged at {said_time(seconds)}{near}: the material cannot carry the load there. "
+        f"Diverged at {time_text(seconds)}{near}: the material cannot carry the load there. "
         "Try a smaller load, a stiffer material or thicker walls, then reset."
     )

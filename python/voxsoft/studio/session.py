@@ -15,10 +15,10 @@ from typing import Any, Final
 
 from voxsoft._folders import folder_name
 from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import card_name, load_card_file, save_card
 from voxsoft.files.figures import save_thumbnail
 from voxsoft.files.run_folder import make_folder
-from voxsoft.files.whole import write_whole
 from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, load
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
@@ -29,6 +29,7 @@ from voxsoft.studio.compared import compared
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
+from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
@@ -39,7 +40,6 @@ from voxsoft.studio.opening import (
     trial_document,
     uploaded_document,
 )
-from voxsoft.studio.outlet import Tabs
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.recipes import recipe_of
 from voxsoft.studio.runs import RunList, card_of, kind_of
@@ -109,17 +109,17 @@ class Session:
         self.engine.end()
         shutil.rmtree(self.own / "exports", ignore_errors=True)
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Tell a new tab all that it needs."""
         with self._lock:
-            self.tabs.tell_one(tab, hello(self.runs))
-            self.tabs.tell_one(tab, self.document.event())
+            self.tabs.send_to(tab, hello(self.runs))
+            self.tabs.send_to(tab, self.document.event())
             for note in self._notes:
-                self.tabs.tell_one(tab, events.Log(level="info", text=note))
+                self.tabs.send_to(tab, events.Log(level="info", text=note))
             self._notes.clear()
-        self.engine.welcome(tab)
-        self.jobs.welcome(tab)
-        self.tabs.tell_one(tab, self.list.event())
+        self.engine.send_snapshot(tab)
+        self.jobs.send_snapshot(tab)
+        self.tabs.send_to(tab, self.list.event())
 
     def left(self, tab: Tab) -> None:
         """Forget a tab that was closed."""
@@ -131,13 +131,13 @@ class Session:
         self.engine.repaint(tab)
 
     def handle(self, tab: Tab, command: commands.Command) -> None:
-        """Obey a command; what cannot be done is told to its tab."""
+        """Execute a command; what cannot be done is told to its tab."""
         try:
             with self._lock:
-                self._obey(command, tab)
+                self._execute(command, tab)
         except VoxSoftError as error:
             for problem in error.problems:
-                self.tabs.tell_one(
+                self.tabs.send_to(
                     tab,
                     events.Error(
                         seq=command.seq, where=problem.where, what=problem.what, hint=problem.hint
@@ -145,23 +145,23 @@ class Session:
                 )
         except BaseException as error:  # a panic of the core too: one command must not end all
             what = f"{type(error).__name__}: {error}"
-            self.tabs.tell_one(tab, events.Error(seq=command.seq, where="studio", what=what))
+            self.tabs.send_to(tab, events.Error(seq=command.seq, where="studio", what=what))
 
     @singledispatchmethod
-    def _obey(self, command: commands.Command, tab: Tab) -> None:
+    def _execute(self, command: commands.Command, tab: Tab) -> None:
         """Do what a command asks; the engine does what is about time and pictures."""
         self.engine.execute(command, tab)
 
-    @_obey.register
-    def _(self, command: commands.Hello, tab: Tab) -> None:
+    @_execute.register
+    def _on_hello(self, command: commands.Hello, tab: Tab) -> None:
         raise StudyError("hello", "was said already")
 
     # The document
 
-    @_obey.register
-    def _(self, command: commands.Text, tab: Tab) -> None:
+    @_execute.register
+    def _on_text(self, command: commands.Text, tab: Tab) -> None:
         if command.rev != self.document.rev and self._author not in (None, tab):
-            self.tabs.tell_one(tab, self.document.event())
+            self.tabs.send_to(tab, self.document.event())
             raise FileError(
                 "text",
                 "was changed in another tab meanwhile; what was typed here was not taken",
@@ -170,42 +170,42 @@ class Session:
         self._author = tab
         self._changed(self.document.replace(command.text, "text"))
 
-    @_obey.register
-    def _(self, command: commands.Edit, tab: Tab) -> None:
+    @_execute.register
+    def _on_edit(self, command: commands.Edit, tab: Tab) -> None:
         self._author = tab
         self._changed(self.document.edit(command.path, command.value))
 
-    @_obey.register
-    def _(self, command: commands.Undo, tab: Tab) -> None:
+    @_execute.register
+    def _on_undo(self, command: commands.Undo, tab: Tab) -> None:
         self._author = tab
         if self.document.undo():
             self._announce()
         elif self.document.before is not None:
             self._turn_to(self.document.before)
 
-    @_obey.register
-    def _(self, command: commands.Redo, tab: Tab) -> None:
+    @_execute.register
+    def _on_redo(self, command: commands.Redo, tab: Tab) -> None:
         self._author = tab
         if self.document.redo():
             self._announce()
         elif self.document.after is not None:
             self._turn_to(self.document.after)
 
-    @_obey.register
-    def _(self, command: commands.Save, tab: Tab) -> None:
+    @_execute.register
+    def _on_save(self, command: commands.Save, tab: Tab) -> None:
         path = None if command.path is None else Path(command.path)
         if path is not None and not command.overwrite:
             there = self.document.target(path)
             if there.exists() and there != self.document.path:
-                self.tabs.tell_one(tab, events.FileExists(path=str(there)))
+                self.tabs.send_to(tab, events.FileExists(path=str(there)))
                 return
         written = self.document.save(path)
         self._keep_draft(now=True)
-        self.tabs.tell(self.document.event())
-        self.tabs.tell(events.Saved(what="document", path=str(written)))
+        self.tabs.publish(self.document.event())
+        self.tabs.publish(events.Saved(what="document", path=str(written)))
 
-    @_obey.register
-    def _(self, command: commands.Open, tab: Tab) -> None:
+    @_execute.register
+    def _on_open(self, command: commands.Open, tab: Tab) -> None:
         self._author = tab
         match command.what:
             case "template":
@@ -260,12 +260,12 @@ class Session:
             if kind != "calibrate":
                 raise
             # One that `voxsoft calibrate` wrote: there is still its result to be shown.
-            self.tabs.tell(events.Log(level="info", text=str(error)))
+            self.tabs.publish(events.Log(level="info", text=str(error)))
 
     # Jobs
 
-    @_obey.register
-    def _(self, command: commands.Keep, tab: Tab) -> None:
+    @_execute.register
+    def _on_keep(self, command: commands.Keep, tab: Tab) -> None:
         shown = self._shown()
         folder = self._free_folder(command.name or f"{shown.body.setup.design.name}-run")
         try:
@@ -273,8 +273,8 @@ class Session:
         except VoxSoftError:
             shutil.rmtree(folder, ignore_errors=True)
             raise
-        self.tabs.tell(events.Saved(what="run", path=str(folder)))
-        self.tabs.tell(events.Log(level="info", text=f"kept {sentence}"))
+        self.tabs.publish(events.Saved(what="run", path=str(folder)))
+        self.tabs.publish(events.Log(level="info", text=f"kept {sentence}"))
         self._runs_changed()
         # The picture takes longer than the run: what is asked next must not wait for it.
         threading.Thread(target=self._draw, args=(shown, folder), daemon=True).start()
@@ -284,11 +284,11 @@ class Session:
             save_thumbnail(shown.measured(), folder)
             self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.JobStart, tab: Tab) -> None:
+    @_execute.register
+    def _on_job_start(self, command: commands.JobStart, tab: Tab) -> None:
         asked, document = command.spec, self.document
         if not document.valid or document.design is None:
-            raise StudyError("job", "the design is not valid", "mend what the editor underlines")
+            raise StudyError("job", "the design is not valid", "fix what the editor underlines")
         tables = []
         if isinstance(asked, commands.CalibrateSpec):
             tables = [self._table(each) for each in asked.data]
@@ -301,37 +301,37 @@ class Session:
         self.jobs.start(spec, folder)
         self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.JobPause, tab: Tab) -> None:
+    @_execute.register
+    def _on_job_pause(self, command: commands.JobPause, tab: Tab) -> None:
         self.jobs.pause(command.id)
 
-    @_obey.register
-    def _(self, command: commands.JobStop, tab: Tab) -> None:
+    @_execute.register
+    def _on_job_stop(self, command: commands.JobStop, tab: Tab) -> None:
         self.jobs.stop(command.id)
 
-    @_obey.register
-    def _(self, command: commands.JobResume, tab: Tab) -> None:
+    @_execute.register
+    def _on_job_resume(self, command: commands.JobResume, tab: Tab) -> None:
         if self.jobs.known(command.id) is not None and self.jobs.resume(command.id):
             return
         folder = self.list.folder_of(command.id)
         self.jobs.start(load(folder).spec, folder)
         self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.JobShow, tab: Tab) -> None:
+    @_execute.register
+    def _on_job_show(self, command: commands.JobShow, tab: Tab) -> None:
         if self.jobs.known(command.id) is None:  # all tabs know those of this studio
             for event in stored_job(self.list.folder_of(command.id)):
-                self.tabs.tell_one(tab, event)
+                self.tabs.send_to(tab, event)
 
-    @_obey.register
-    def _(self, command: commands.Recipe, tab: Tab) -> None:
-        self.tabs.tell_one(tab, recipe_of(self.list.folder_of(command.id)))
+    @_execute.register
+    def _on_recipe(self, command: commands.Recipe, tab: Tab) -> None:
+        self.tabs.send_to(tab, recipe_of(self.list.folder_of(command.id)))
 
-    @_obey.register
-    def _(self, command: commands.Measurement, tab: Tab) -> None:
+    @_execute.register
+    def _on_measurement(self, command: commands.Measurement, tab: Tab) -> None:
         event, _ = measured(command.name, command.text, command.columns, command.select)
         self._tables[command.name] = (command.text, command.columns)
-        self.tabs.tell_one(tab, event)
+        self.tabs.send_to(tab, event)
 
     def _table(self, data: commands.MeasuredData) -> MeasuredTable:
         """A table that was sent before, mapped."""
@@ -345,8 +345,8 @@ class Session:
         mapped = mapped_text(text, data.columns or columns or guessed_columns(text))
         return MeasuredTable(name=data.name, text=mapped, select=data.select)
 
-    @_obey.register
-    def _(self, command: commands.CardSave, tab: Tab) -> None:
+    @_execute.register
+    def _on_card_save(self, command: commands.CardSave, tab: Tab) -> None:
         folder = self.list.folder_of(command.job)
         card = card_of(folder)
         if card is None:
@@ -354,35 +354,35 @@ class Session:
         found = load_card_file(card).replace(name=command.name)
         target = self.document.folder / f"{safe_name(command.name + '.toml')}"
         save_card(found, target)
-        self.tabs.tell(events.Saved(what="card", path=str(target)))
+        self.tabs.publish(events.Saved(what="card", path=str(target)))
 
     # Runs
 
-    @_obey.register
-    def _(self, command: commands.Runs, tab: Tab) -> None:
-        self.tabs.tell_one(tab, self.list.event())
+    @_execute.register
+    def _on_runs(self, command: commands.Runs, tab: Tab) -> None:
+        self.tabs.send_to(tab, self.list.event())
 
-    @_obey.register
-    def _(self, command: commands.RunRename, tab: Tab) -> None:
+    @_execute.register
+    def _on_run_rename(self, command: commands.RunRename, tab: Tab) -> None:
         self.list.rename(command.id, command.name)
         self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.RunDelete, tab: Tab) -> None:
+    @_execute.register
+    def _on_run_delete(self, command: commands.RunDelete, tab: Tab) -> None:
         self.list.delete(command.id)
         self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.RunRestore, tab: Tab) -> None:
+    @_execute.register
+    def _on_run_restore(self, command: commands.RunRestore, tab: Tab) -> None:
         self.list.restore(command.id)
         self._runs_changed()
 
-    @_obey.register
-    def _(self, command: commands.Compare, tab: Tab) -> None:
-        self.tabs.tell_one(tab, compared(self.list, command.a, command.b))
+    @_execute.register
+    def _on_compare(self, command: commands.Compare, tab: Tab) -> None:
+        self.tabs.send_to(tab, compared(self.list, command.a, command.b))
 
     def _runs_changed(self) -> None:
-        self.tabs.tell(self.list.event())
+        self.tabs.publish(self.list.event())
 
     def _free_folder(self, name: str) -> Path:
         """A folder among the runs that is not there yet."""
@@ -399,7 +399,7 @@ class Session:
 
     def _announce(self) -> None:
         """Tell everyone of the document as it is now, and mesh it if it is good."""
-        self.tabs.tell(self.document.event())
+        self.tabs.publish(self.document.event())
         self._mesh()
         self._keep_draft()
 
@@ -414,7 +414,7 @@ class Session:
         try:
             self._drafts.keep(draft, now=now)
         except VoxSoftError as error:
-            self.tabs.tell(events.Log(level="warning", text=f"the draft is not kept: {error}"))
+            self.tabs.publish(events.Log(level="warning", text=f"the draft is not kept: {error}"))
 
     def _mesh(self) -> None:
         if self.document.valid and self.document.design is not None:
@@ -427,14 +427,14 @@ class Session:
         self.engine.show(body, loaded=body.rev == self._loaded_rev)
 
     def _examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        self.engine.tell_report(body, report, smooth)
+        self.engine.publish_report(body, report, smooth)
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
         self.engine.stay(str(error))
         with self._lock:
             if rev == self.document.rev:
                 self.document.diagnostics = diagnostics_of(error, self.document.text)
-                self.tabs.tell(self.document.event())
+                self.tabs.publish(self.document.event())
 
     # Files
 
@@ -447,7 +447,7 @@ class Session:
             It cannot be written.
         """
         folder = make_folder(self.own / "uploads")
-        write_whole(folder / safe_name(name), content)
+        write_atomically(folder / safe_name(name), content)
         return safe_name(name)
 
     def download(self, key: str) -> Path | None:

@@ -11,7 +11,7 @@ from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.equilibrium import Measurement
-from voxsoft.studio.outlet import Outlet
+from voxsoft.studio.event_bus import EventBus
 from voxsoft.studio.overlap import OverlapWatch
 from voxsoft.studio.pictures import Pictures
 from voxsoft.studio.playback import Playback
@@ -32,17 +32,17 @@ class Stage:
 
     Parameters
     ----------
-    outlet
+    bus
         Where events and frames go.
     later
         Does a task on the thread of the stage; may be called by any thread.
     """
 
-    def __init__(self, outlet: Outlet, later: Callable[[Callable[[], None]], None]) -> None:
-        self.outlet = outlet
+    def __init__(self, bus: EventBus, later: Callable[[Callable[[], None]], None]) -> None:
+        self.bus = bus
         self.playback = Playback()
-        self.pictures = Pictures(self.playback, outlet)
-        self.overlaps = OverlapWatch(self.playback, outlet)
+        self.pictures = Pictures(self.playback, bus)
+        self.overlaps = OverlapWatch(self.playback, bus)
         self._later = later
         self._search: RestSearch | None = None
         self._equilibrium: events.Equilibrium | None = None
@@ -56,7 +56,7 @@ class Stage:
         self._equilibrium = None
         self.playback.begin(body)
         self.pictures.begin(body)
-        self.outlet.tell(self.playback.plots.whole())
+        self.bus.publish(self.playback.plots.whole())
         if self.playback.wants_play:
             self.playback.play()
         self.painted()
@@ -67,7 +67,7 @@ class Stage:
         """Say that a body is being meshed, unless one is moving meanwhile."""
         if not self.playback.moving and self._search is None:
             self.playback.state, self.playback.sentence = "meshing", "Meshing"
-            self.tell_stat()
+            self.publish_stat()
 
     def stay(self, sentence: str) -> None:
         """Say why the body that was being meshed does not come."""
@@ -75,10 +75,10 @@ class Stage:
         if playback.state == "meshing":
             playback.state = "empty" if playback.body is None else "paused"
             playback.sentence = sentence
-            self.tell_stat()
+            self.publish_stat()
 
-    def tell_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
-        """Pass on what the doctor says of a body, if it is still the one that is shown."""
+    def publish_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
+        """Pass on what the checks report of a body, if it is still the one that is shown."""
         if body is self.playback.body:
             self.pictures.examined(body, report, smooth)
 
@@ -89,13 +89,13 @@ class Stage:
         if self.playback.moving:
             self.playback.state = "paused"
 
-    def welcome(self, tab: Tab) -> None:
+    def send_snapshot(self, tab: Tab) -> None:
         """Show a new tab what there is."""
-        self.pictures.welcome(tab)
-        self.outlet.tell_one(tab, self.playback.stat())
-        self.overlaps.welcome(tab)
+        self.pictures.send_snapshot(tab)
+        self.bus.send_to(tab, self.playback.stat())
+        self.overlaps.send_snapshot(tab)
         if self._equilibrium is not None:
-            self.outlet.tell_one(tab, self._equilibrium)
+            self.bus.send_to(tab, self._equilibrium)
 
     # Time
 
@@ -104,7 +104,7 @@ class Stage:
         self.playback.play()
         self.stop_search()
 
-    def stirred(self) -> None:
+    def invalidate(self) -> None:
         """Go on after a change of load or a grab, if time was running before it came to rest."""
         playback = self.playback
         playback.touched()
@@ -116,7 +116,7 @@ class Stage:
             self.play()
         if not playback.moving:
             self.pictures.paint_all()
-        self.tell_stat()
+        self.publish_stat()
 
     def advance(self) -> None:
         """Take one frame, tell of it, and wait until the next is due."""
@@ -128,9 +128,9 @@ class Stage:
         if self.playback.state == "at-rest":
             self.measure()
         if not moving or now - self._last_plot > PLOT_TIME:
-            self.tell_plot()
+            self.publish_plot()
         if not moving or now - self._last_stat > STAT_TIME:
-            self.tell_stat()
+            self.publish_stat()
         spare = FRAME_TIME - (time.perf_counter() - started)
         if moving and spare > 0:
             time.sleep(spare)
@@ -157,7 +157,7 @@ class Stage:
         )
         self._search = RestSearch(body, playback.factors, playback.method, self)
         self._search.start()
-        self.tell_stat()
+        self.publish_stat()
 
     def stop_search(self) -> None:
         """Give up the search that goes on, if one does."""
@@ -180,7 +180,7 @@ class Stage:
     def _searching(self, search: RestSearch, sentence: str, progress: float) -> None:
         if search is self._search:
             self.playback.sentence, self.playback.progress = sentence, progress
-            self.tell_stat()
+            self.publish_stat()
 
     def _found(self, search: RestSearch, result: Result) -> None:
         if search is self._search:
@@ -188,7 +188,7 @@ class Stage:
             self.playback.go_to_rest(result)
             self.pictures.forget()
             self.painted()
-            self.tell_plot()
+            self.publish_plot()
             self.measure()
 
     def _not_found(self, search: RestSearch, sentence: str) -> None:
@@ -197,7 +197,7 @@ class Stage:
             self.halt(sentence)
 
     def cancel_search(self) -> None:
-        """Give up the search at the user's wish, and say so."""
+        """Give up the search at the user's request, and say so."""
         if self._search is not None:
             self.stop_search()
             self.playback.state, self.playback.progress = "paused", None
@@ -217,28 +217,28 @@ class Stage:
         body = self.playback.body
         if body is not None and equilibrium.topology == body.topology:
             self._equilibrium = equilibrium
-            self.outlet.tell(equilibrium)
+            self.bus.publish(equilibrium)
 
     # Telling
 
     def halt(self, sentence: str) -> None:
         """Stop time, and say why."""
         self.playback.halt("paused", sentence)
-        self.tell_stat()
+        self.publish_stat()
 
     def painted(self) -> None:
         """Paint for every tab, and tell the numbers that go with it."""
         self.pictures.paint_all()
-        self.tell_stat()
+        self.publish_stat()
         self.overlaps.look()
 
-    def tell_plot(self) -> None:
+    def publish_plot(self) -> None:
         """Tell the rows of the plots that no tab has got yet."""
         if (news := self.playback.plots.news()) is not None:
-            self.outlet.tell(news)
+            self.bus.publish(news)
         self._last_plot = time.perf_counter()
 
-    def tell_stat(self) -> None:
+    def publish_stat(self) -> None:
         """Tell all numbers of the moment."""
         self._last_stat = time.perf_counter()
-        self.outlet.tell(self.playback.stat())
+        self.bus.publish(self.playback.stat())

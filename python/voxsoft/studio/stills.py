@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
-from voxsoft.design.documents import with_whole_paths
+from voxsoft.design.documents import with_absolute_paths
 from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.meshes import read_mesh_file
@@ -196,7 +196,7 @@ def design_in(folder: Path) -> Design:
         job = load(folder, check=False)
     except VoxSoftError:  # a folder that tells no job
         text = read_text(file) if file.is_file() else design_text_of(folder)
-        return Design.from_document(with_whole_paths(read_document(text, folder.name), folder))
+        return Design.from_document(with_absolute_paths(read_document(text, folder.name), folder))
     return job.spec.design.read()
 
 

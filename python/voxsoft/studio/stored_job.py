@@ -21,7 +21,7 @@ from voxsoft.units import format_quantity
 
 
 def stored_job(folder: Path) -> list[events.Event]:
-    """All that a tab must be told to show the study or calibration of a folder.
+    """All that a tab must be summary to show the study or calibration of a folder.
 
     Raises
     ------
@@ -68,17 +68,17 @@ def _from_summary(folder: Path) -> list[events.Event]:
     FileError
         They are damaged.
     """
-    told = read_summary(folder)
+    summary = read_summary(folder)
     try:
-        return [*_generations(folder.name, told), *_result(folder, told)]
+        return [*_generations(folder.name, summary), *_result(folder, summary)]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         if isinstance(error, VoxSoftError):
             raise
         raise FileError(str(folder), f"holds a damaged calibration: {error!r}") from None
 
 
-def _generations(job: str, told: dict[str, Any]) -> Iterator[events.Event]:
-    for index, each in enumerate(told["history"], start=1):
+def _generations(job: str, summary: dict[str, Any]) -> Iterator[events.Event]:
+    for index, each in enumerate(summary["history"], start=1):
         yield events.Generation(
             job=job,
             index=index,
@@ -89,8 +89,8 @@ def _generations(job: str, told: dict[str, Any]) -> Iterator[events.Event]:
         )
 
 
-def _result(folder: Path, told: dict[str, Any]) -> Iterator[events.Event]:
-    experiments = told["experiments"]
+def _result(folder: Path, summary: dict[str, Any]) -> Iterator[events.Event]:
+    experiments = summary["experiments"]
     file = card_of(folder)
     if file is None:
         raise FileError(str(folder), "holds no material card")
@@ -104,12 +104,12 @@ def _result(folder: Path, told: dict[str, Any]) -> Iterator[events.Event]:
                 value=value,
                 kind=kinds[name],
                 text=format_quantity(float(f"{value:.4g}"), kinds[name]),
-                low=told["bounds"][name][0],
-                high=told["bounds"][name][1],
-                identifiable=told["identifiable"].get(name),
-                sentence=told["intervals"].get(name, {}).get("sentence", "not asked"),
+                low=summary["bounds"][name][0],
+                high=summary["bounds"][name][1],
+                identifiable=summary["identifiable"].get(name),
+                sentence=summary["intervals"].get(name, {}).get("sentence", "not asked"),
             )
-            for name, value in told["parameters"].items()
+            for name, value in summary["parameters"].items()
         ],
         table=[
             events.StationError(
@@ -124,10 +124,10 @@ def _result(folder: Path, told: dict[str, Any]) -> Iterator[events.Event]:
             for at, station in enumerate(each["stations"])
         ],
         quantities=experiments[0]["quantities"],
-        identifiable=told["identifiable"],
-        fitness=told["fitness"],
-        mean_error=told["mean_error"],
-        max_error=told["max_error"],
+        identifiable=summary["identifiable"],
+        fitness=summary["fitness"],
+        mean_error=summary["mean_error"],
+        max_error=summary["max_error"],
         material=material.model_dump(mode="json", exclude_none=True),
         card=file.read_text(encoding="utf-8"),
     )

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from voxsoft.design import Constraint, Design, Objective
-from voxsoft.design.documents import with_whole_paths
+from voxsoft.design.documents import with_absolute_paths
 from voxsoft.errors import FileError, StudyError, VoxSoftError
 from voxsoft.files.toml_text import write_toml
 from voxsoft.metrics import METRICS
@@ -25,12 +25,12 @@ def design_text_of(folder: Path) -> str:
         The folder holds no study of a design.
     """
     try:
-        told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
-        family, targets = told["family"], ("objectives", "constraints")
+        summary = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        family, targets = summary["family"], ("objectives", "constraints")
         if "function" in family:
             raise FileError(str(folder), "varies a Python function, which has no design file")
-        asked = {name: told[name] for name in targets if told[name]}
-        return write_toml(with_whole_paths({**family, **asked}, folder))
+        asked = {name: summary[name] for name in targets if summary[name]}
+        return write_toml(with_absolute_paths({**family, **asked}, folder))
     except (OSError, ValueError, KeyError, TypeError) as error:
         if isinstance(error, VoxSoftError):
             raise
@@ -48,22 +48,22 @@ def stored_study(folder: Path) -> StudyResult:
         The study is one of a Python function, whose designs only Python can make.
     """
     try:
-        told = json.loads((folder / "study.json").read_text(encoding="utf-8"))
-        family = told["family"]
+        summary = json.loads((folder / "study.json").read_text(encoding="utf-8"))
+        family = summary["family"]
         if "function" in family:
             raise StudyError(str(folder), "varies a Python function", "open it from Python")
-        design = Design.from_document(with_whole_paths(family, folder))
+        design = Design.from_document(with_absolute_paths(family, folder))
         space: dict[str, object] = {
             name: Choices(**given) if "values" in given else Range(**given)
-            for name, given in told["space"].items()
+            for name, given in summary["space"].items()
         }
         return Study(
             design,
             space,
-            {name: Objective(**given) for name, given in told["objectives"].items()},
-            {name: Constraint(**given) for name, given in told["constraints"].items()},
+            {name: Objective(**given) for name, given in summary["objectives"].items()},
+            {name: Constraint(**given) for name, given in summary["constraints"].items()},
             folder=folder,
-            seed=told["seed"],
+            seed=summary["seed"],
         ).result()
     except OSError as error:
         raise FileError(str(folder), f"holds no study: {error.strerror}") from None

@@ -72,7 +72,7 @@ class Tab:
     _closing: asyncio.Future[None] | None = None
 
     @property
-    def hungry(self) -> bool:
+    def ready(self) -> bool:
         """Whether a frame that is packed now would be sent at once."""
         return self.credits > 0 and self._frame is None and self.view.visible and not self.closed
 

@@ -14,8 +14,8 @@ import numpy as np
 from voxsoft._folders import folder_name
 from voxsoft.errors import FileError
 from voxsoft.files import write_mesh
+from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
-from voxsoft.files.whole import write_whole
 from voxsoft.shapes import TriangleMesh
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Voxels
@@ -150,7 +150,7 @@ def unpack_folder(archive: Path, target: Path) -> Path:
                     raise FileError(archive.name, f"holds a file outside itself: {entry.filename}")
             for entry in entries:
                 make_folder((target / entry.filename).parent)
-                write_whole(target / entry.filename, packed.read(entry))
+                write_atomically(target / entry.filename, packed.read(entry))
     except (zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, RuntimeError) as error:
         raise FileError(archive.name, f"is no archive that can be unpacked: {error}") from None
     found = list(target.iterdir())

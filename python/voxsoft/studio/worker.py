@@ -20,7 +20,7 @@ from voxsoft.studio import events
 from voxsoft.studio.job_journal import JobJournal
 from voxsoft.studio.progress import Progress, Tell
 from voxsoft.studio.protocol import encode
-from voxsoft.studio.telling import listener_of
+from voxsoft.studio.reporting import listener_of
 
 
 def listen(lines: TextIO, progress: Progress) -> None:

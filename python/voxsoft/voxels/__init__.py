@@ -1,7 +1,7 @@
 """Grids of cubic cells, and the regions found in them.
 
 Enter here with a CT scan or any array of cells; a shape gives a grid by sampling. A grid says
-what a designer asks before simulating: is it one piece, which chambers does it enclose, where
+what a designer asks before simulating: is it one component, which chambers does it enclose, where
 do they leak, how thin are the walls. :meth:`Voxels.mesh` goes on to the solvers.
 
 Examples
@@ -17,6 +17,6 @@ Voxels(5 x 5 x 7 cells of 5 mm, 25 x 25 x 35 mm, 130 filled)
 """
 
 from voxsoft.voxels.grid import Voxels
-from voxsoft.voxels.regions import Cavity, Hinge, Leak, Region, Wall, WallThickness
+from voxsoft.voxels.regions import Cavity, Component, Hinge, Leak, Wall, WallThickness
 
-__all__ = ["Cavity", "Hinge", "Leak", "Region", "Voxels", "Wall", "WallThickness"]
+__all__ = ["Cavity", "Component", "Hinge", "Leak", "Voxels", "Wall", "WallThickness"]

@@ -32,9 +32,9 @@ from voxsoft.voxels.arguments import (
 )
 from voxsoft.voxels.regions import (
     Cavity,
+    Component,
     Hinge,
     Leak,
-    Region,
     Wall,
     WallThickness,
     region_fields,
@@ -470,8 +470,8 @@ class Voxels:
             cells = np.repeat(cells, times, axis=axis)
         return Voxels.from_array(cells, self.voxel_size / times, self.origin)
 
-    def components(self, contact: Contact = "face") -> tuple[Region, ...]:
-        """Return the connected pieces of the filled cells, largest first.
+    def components(self, contact: Contact = "face") -> tuple[Component, ...]:
+        """Return the connected components of the filled cells, largest first.
 
         Parameters
         ----------
@@ -487,8 +487,8 @@ class Voxels:
         """
         if contact not in _CONTACTS:
             raise VoxelError("contact", f"got {contact!r}; allowed are {', '.join(_CONTACTS)}")
-        pieces = self._grid.components(_CONTACTS[contact])
-        return tuple(Region(*self._region(*piece)) for piece in pieces)
+        components = self._grid.components(_CONTACTS[contact])
+        return tuple(Component(*self._region(*component)) for component in components)
 
     @cached_property
     def cavities(self) -> tuple[Cavity, ...]:
@@ -503,7 +503,8 @@ class Voxels:
         [[[1, 1, 1]]]
         """
         return tuple(
-            Cavity(*self._region(*piece), area=area) for piece, _, area in self._grid.cavities()
+            Cavity(*self._region(*component), area=area)
+            for component, _, area in self._grid.cavities()
         )
 
     @cached_property
@@ -526,8 +527,8 @@ class Voxels:
         [((1, 2, 2),)]
         """
         return tuple(
-            Leak(*self._region(*piece), width=width, openings=tuple(openings))
-            for piece, width, openings in self._grid.leaks(_WIDEST_LEAK)
+            Leak(*self._region(*component), width=width, openings=tuple(openings))
+            for component, width, openings in self._grid.leaks(_WIDEST_LEAK)
         )
 
     @cached_property

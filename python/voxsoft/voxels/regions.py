@@ -1,4 +1,4 @@
-"""What is found in a grid: pieces, cavities, leaks, hinges and walls."""
+"""What is found in a grid: components, cavities, leaks, hinges and walls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ Cell = tuple[int, int, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Region:
+class Component:
     """A connected set of cells.
 
     Attributes
@@ -40,8 +40,8 @@ class Region:
         Examples
         --------
         >>> from voxsoft.voxels import Voxels
-        >>> piece = Voxels.from_array([[[1, 1], [0, 1]]], voxel_size=0.005).components()[0]
-        >>> piece.cells.tolist()
+        >>> component = Voxels.from_array([[[1, 1], [0, 1]]], voxel_size=0.005).components()[0]
+        >>> component.cells.tolist()
         [[0, 0, 0], [0, 0, 1], [0, 1, 1]]
         """
         lengths = self.runs[:, 3] - self.runs[:, 2] + 1
@@ -53,7 +53,7 @@ class Region:
 
 
 @dataclass(frozen=True, eq=False)
-class Cavity(Region):
+class Cavity(Component):
     """An empty region that no path through faces connects with the outside.
 
     Attributes
@@ -66,7 +66,7 @@ class Cavity(Region):
 
 
 @dataclass(frozen=True, eq=False)
-class Leak(Region):
+class Leak(Component):
     """A chamber that is open to the outside by narrow openings.
 
     Its cells go up to the openings.
@@ -144,7 +144,7 @@ class WallThickness:
 def region_fields(
     runs: NDArray[np.uint32], count: int, voxel_size: float, origin: NDArray[np.float64]
 ) -> tuple[NDArray[np.int32], int, float, NDArray[np.float64]]:
-    """Return the fields of a :class:`Region` from its runs in the core's form."""
+    """Return the fields of a :class:`Component` from its runs in the core's form."""
     signed = runs.astype(np.int32)
     signed.setflags(write=False)
     lower = signed[:, [0, 1, 2]].min(axis=0)

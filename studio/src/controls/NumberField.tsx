@@ -31,7 +31,7 @@ export interface NumberFieldProps {
 /** A number with its unit: type "5 mm" or "2*0.5 cm", arrow keys, drag the label, or slide. */
 export function NumberField(props: NumberFieldProps) {
   const { label, min, max } = props;
-  const { value, change, settle } = useWish(props.value, props.onChange);
+  const { value, change, settle } = useRequested(props.value, props.onChange);
   const id = useId();
   const unit = shownUnit(props.unit ?? "1");
   const factor = factorOf(unit);
@@ -169,20 +169,20 @@ const PATIENCE = 800;
  * What was asked for last, until the owner of the value has answered: the answer may take a
  * moment, and a slider that jumps back meanwhile cannot be moved by keys.
  */
-function useWish(told: number, onChange: NumberFieldProps["onChange"]) {
-  const [wish, setWish] = useState<number | null>(null);
+function useRequested(told: number, onChange: NumberFieldProps["onChange"]) {
+  const [requested, setRequested] = useState<number | null>(null);
   const unsettled = useRef<number | null>(null);
   useEffect(() => {
-    if (wish === null) return;
-    if (wish === told) {
-      setWish(null);
+    if (requested === null) return;
+    if (requested === told) {
+      setRequested(null);
       return;
     }
-    const timer = setTimeout(() => setWish(null), PATIENCE);
+    const timer = setTimeout(() => setRequested(null), PATIENCE);
     return () => clearTimeout(timer);
-  }, [wish, told]);
+  }, [requested, told]);
   const change = (next: number, settled: boolean) => {
-    setWish(next);
+    setRequested(next);
     unsettled.current = settled ? null : next;
     onChange(next, settled);
   };
@@ -191,7 +191,7 @@ function useWish(told: number, onChange: NumberFieldProps["onChange"]) {
     unsettled.current = null;
     if (last !== null) onChange(last, true);
   };
-  return { value: wish ?? told, change, settle };
+  return { value: requested ?? told, change, settle };
 }
 
 function stepFor(

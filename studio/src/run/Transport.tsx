@@ -25,7 +25,7 @@ export function Transport() {
   const solving = stat?.state === "solving";
   const first = stat?.first_frame ?? 0;
   const last = stat?.last_frame ?? 0;
-  // Drags move faster than answers come: only the newest wish is sent, once for each picture.
+  // Drags move faster than answers come: only the newest requested is sent, once for each picture.
   const seek = (frame: number) => {
     wanted.current = frame;
     asked.current ??= requestAnimationFrame(() => {

@@ -23,7 +23,7 @@ import { type BodyLayer, CAVITY } from "../protocol";
 import type { View } from "../store/view";
 import { texels } from "./colormaps";
 import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
-import { type Sheet, sheetOn } from "./sheets";
+import { type Membrane, membraneOn } from "./membranes";
 import { stencilPair } from "./stencil";
 
 /** Colors of cavities, after Okabe and Ito; the same as in body.css. */
@@ -81,7 +81,7 @@ export class BodyMesh {
   private readonly ghost: LineSegments<BufferGeometry, ShaderMaterial>;
   private readonly geometries: BufferGeometry[] = [];
   private readonly rest: BufferAttribute;
-  private sheets: Sheet[] = [];
+  private membranes: Membrane[] = [];
   private readonly shared: Uniforms;
   private readonly lut: DataTexture;
   private readonly bounds = new Box3();
@@ -186,12 +186,12 @@ export class BodyMesh {
 
   /** Draws the layers of the body, if they are not there yet. */
   cover(layers: readonly BodyLayer[]): void {
-    if (this.sheets.length > 0) return;
-    this.sheets = layers.map((layer) => {
+    if (this.membranes.length > 0) return;
+    this.membranes = layers.map((layer) => {
       const index = new BufferAttribute(new Uint32Array(layer.triangles), 1);
-      return sheetOn(this.geometry(this.rest, index), this.shared);
+      return membraneOn(this.geometry(this.rest, index), this.shared);
     });
-    for (const sheet of this.sheets) this.group.add(sheet);
+    for (const membrane of this.membranes) this.group.add(membrane);
   }
 
   /** The map of colors, and the range of the field in the frame and in the map. */
@@ -277,7 +277,7 @@ export class BodyMesh {
     (ghost.uInk!.value as Vector4).set(colors.ink.r, colors.ink.g, colors.ink.b, 0.3);
     ghost.uFade!.value = 0;
     this.ghost.visible = visible && view.ghost;
-    for (const sheet of this.sheets) sheet.visible = visible && view.symbols;
+    for (const membrane of this.membranes) membrane.visible = visible && view.symbols;
   }
 
   /** Bounds as drawn. */
@@ -318,6 +318,6 @@ export class BodyMesh {
     }
     this.edges.material.dispose();
     this.ghost.material.dispose();
-    for (const sheet of this.sheets) sheet.material.dispose();
+    for (const membrane of this.membranes) membrane.material.dispose();
   }
 }

@@ -159,10 +159,10 @@ function drags(button: HTMLButtonElement, begin: () => (dx: number, dy: number) 
   button.addEventListener("pointercancel", end);
 }
 
-/** Keys that a grip obeys do not reach the page, which has other uses for them. */
-function keys(button: HTMLButtonElement, obey: (event: KeyboardEvent) => boolean): void {
+/** Keys that a grip handles do not reach the page, which has other uses for them. */
+function keys(button: HTMLButtonElement, handle: (event: KeyboardEvent) => boolean): void {
   button.addEventListener("keydown", (event) => {
-    if (!obey(event)) return;
+    if (!handle(event)) return;
     event.preventDefault();
     event.stopPropagation();
   });

@@ -18,7 +18,7 @@ import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
 import { type BodyMesh, CAVITY_COLORS } from "./body";
 import type { Label } from "./labels";
-import { LAYER_COLOR } from "./sheets";
+import { LAYER_COLOR } from "./membranes";
 
 const CLAMP_COLOR = "#98a1ab";
 const LOAD_COLOR = "#e8704a";

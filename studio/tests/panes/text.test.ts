@@ -106,7 +106,7 @@ it("orders shapes below what uses them, each once", () => {
     { name: "c", depth: 1, again: false },
     { name: "a", depth: 2, again: true },
   ]);
-  // A circle is shown too, so that it can be mended.
+  // A circle is shown too, so that it can be fixed.
   const circle = { a: { of: "b" }, b: { of: "a" } };
   expect(shapeTree(circle).filter((node) => !node.again)).toHaveLength(2);
 });

@@ -212,9 +212,7 @@ MEASURED = "s (mm),dz (mm)\n30,-10\n60,-30\n90,-52\n"
 
 class TestCalibrate:
     @pytest.mark.slow
-    def test_the_specimen_bends_beside_what_was_measured_while_it_is_fitted(
-        self, own_server, open_tab, tmp_path
-    ):
+    def test_the_specimen_bends_beside_its_measurement(self, own_server, open_tab, tmp_path):
         tab = open_tab(own_server.address, mode="calibrate")
         tab.page.get_by_role("button", name="Open the cantilever beam").click()
         tab.find("document-name").get_by_text("beam").wait_for()

@@ -29,9 +29,7 @@ value = ["50 mN", "0 N", "0 N"]
 VON_MISES = "5"
 
 
-def test_colors_end_before_a_lone_corner_and_the_legend_says_where_it_is(
-    tmp_path, serving, open_tab
-):
+def test_colors_leave_out_a_lone_corner_and_the_legend_names_it(tmp_path, serving, open_tab):
     server = serving(tmp_path, PULLED_AT_A_CORNER, "pulled.toml")
     try:
         tab = open_tab(server.address)

@@ -149,7 +149,7 @@ class TestDesign:
         has_text(design, 'shape = "bar"')
         assert design.find("faults").count() == 0
 
-    def test_an_error_in_the_text_is_underlined_and_the_last_good_body_stays(self, design):
+    def test_an_error_is_underlined_and_the_last_good_body_stays(self, design):
         design.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
         drawn = design.page.evaluate("voxsoft.triangles")
         line = design.find("text-editor").locator(".cm-line", has_text="material =")

@@ -70,7 +70,7 @@ def prepared(open_tab, swinging):
     return opening
 
 
-def test_where_graphics_are_slow_moving_pictures_are_coarse_and_still_ones_whole(prepared):
+def test_slow_graphics_coarsen_moving_pictures_only(prepared):
     tab = prepared(SLOW_GRAPHICS)
     width, whole = tab.page.evaluate(WIDTHS)
     assert width == whole

@@ -53,7 +53,7 @@ def test_keys_typed_into_a_field_start_nothing(tab):
     assert "expected a stiffness" in tab.find("pane-run").inner_text()
 
 
-def test_space_plays_after_a_click_and_presses_what_was_reached_by_keyboard(tab):
+def test_space_plays_after_a_click_and_presses_a_focused_button(tab):
     for clicked in ("mode-design", "ghost"):
         tab.find(clicked).click()
         tab.page.keyboard.press("Space")

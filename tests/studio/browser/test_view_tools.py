@@ -258,7 +258,7 @@ HANGING = """(() => {
 
 
 @pytest.mark.parametrize("steered", [False, pytest.param(True, marks=pytest.mark.slow)])
-def test_a_body_that_leaves_the_picture_is_followed_unless_a_hand_moved(
+def test_the_view_follows_a_body_unless_a_hand_moved_it(
     open_tab, serving, coarse, tmp_path, steered
 ):
     text = coarse

@@ -327,7 +327,7 @@ def _about_the_start(curve: Curve, toe: Toe | None, correction: ToeCorrection) -
     first = float(np.abs(curve.strain).min())
     found = []
     if toe is None:
-        found.append(f"{curve.name}: too few points below 30 % strain to tell the toe")
+        found.append(f"{curve.name}: too few points below 30 % strain to find the toe")
     elif correction != "off" and _SMALL_TOE < abs(toe.strain) < 2.0 * toe.uncertainty:
         found.append(
             f"{curve.name}: the toe of {toe.strain:.1%} strain is no larger than its own "

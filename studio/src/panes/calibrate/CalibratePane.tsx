@@ -52,7 +52,7 @@ export default function CalibratePane() {
   const help = helpOfModel(form.root, material?.model ?? "");
   const probes = Object.keys((form.source.probes as object | undefined) ?? {}).length;
   const trouble = !document.valid
-    ? "Mend the errors of the design first."
+    ? "Fix the errors of the design first."
     : obstacle(draft, measured, constants);
   const start = () => {
     expect();

@@ -19,16 +19,16 @@ export function PlaneOverlay(props: {
 }) {
   const { experiments } = props;
   const [box, { width, height }] = useSize<HTMLDivElement>();
-  const [wish, setWish] = useState<string | null>(null);
+  const [requested, setRequested] = useState<string | null>(null);
   const [pointed, point] = useState<readonly [number, number] | null>(null);
   const all = useMemo(
     () => experiments.flatMap((one) => [...one.measured, ...one.simulated]),
     [experiments],
   );
   const [h, v] = useMemo(() => {
-    if (wish !== null) return [Number(wish[0]), Number(wish[1])] as const;
+    if (requested !== null) return [Number(requested[0]), Number(requested[1])] as const;
     return bestPlane(all);
-  }, [wish, all]);
+  }, [requested, all]);
   const fitted = useMemo(
     () =>
       fitPlane(
@@ -56,7 +56,7 @@ export function PlaneOverlay(props: {
             { value: "01", label: "x and y" },
             { value: "12", label: "y and z" },
           ]}
-          onChange={setWish}
+          onChange={setRequested}
         />
       </div>
       <div className="chart" ref={box} data-testid="overlay-chart">

@@ -215,9 +215,9 @@ export function EntryMap(props: {
           what={props.what}
           schema={map}
           onAdd={(value) => {
-            const wish =
+            const requested =
               typeof props.first === "string" ? props.first : props.first(value as Table);
-            edit([section, freeName(wish, Object.keys(values))], value);
+            edit([section, freeName(requested, Object.keys(values))], value);
           }}
         />
       }

@@ -107,10 +107,10 @@ export function materialName(material: Readonly<Record<string, unknown>>): strin
 }
 
 /** A name that is still free: "part", "part-2", ... */
-export function freeName(wish: string, taken: Iterable<string>): string {
+export function freeName(requested: string, taken: Iterable<string>): string {
   const names = new Set(taken);
-  if (!names.has(wish)) return wish;
+  if (!names.has(requested)) return requested;
   let number = 2;
-  while (names.has(`${wish}-${number}`)) number += 1;
-  return `${wish}-${number}`;
+  while (names.has(`${requested}-${number}`)) number += 1;
+  return `${requested}-${number}`;
 }

@@ -21,8 +21,8 @@ export default function HistoryPane() {
 function History(props: { current: CurrentStudy }) {
   const { id, study, axes } = props.current;
   const { hovered, pinned, opened, brushes } = useSelection();
-  const [wish, setWish] = useState(0);
-  const objective = Math.min(wish, Math.max(0, study.objectives.length - 1));
+  const [requested, setRequested] = useState(0);
+  const objective = Math.min(requested, Math.max(0, study.objectives.length - 1));
   const axis = axes.find(
     (one) => one.role === "objective" && one.name === study.objectives[objective],
   );
@@ -57,7 +57,7 @@ function History(props: { current: CurrentStudy }) {
             label="Objective of the history"
             value={String(objective)}
             options={study.objectives.map((name, i) => ({ value: String(i), label: name }))}
-            onChange={(value) => setWish(Number(value))}
+            onChange={(value) => setRequested(Number(value))}
           />
         )}
         <span className="plot-key-static">

@@ -39,7 +39,7 @@ function Scatter(props: { current: CurrentStudy }) {
   const [box, { width, height }] = useSize<HTMLDivElement>();
   const canvas = useRef<HTMLCanvasElement>(null);
   const [turn, setTurn] = useState(START);
-  const [wishes, setWishes] = useState<Readonly<Record<string, string>>>({});
+  const [requested, setRequested] = useState<Readonly<Record<string, string>>>({});
   const [theme, retheme] = useState(0);
   const [inside, setInside] = useState(false);
   const places = useRef<readonly (Projected & { index: number; radius: number })[]>([]);
@@ -48,16 +48,16 @@ function Scatter(props: { current: CurrentStudy }) {
   const chosen = useMemo(() => {
     const usual = axes.filter((axis) => axis.role !== "metric");
     const pick = (slot: string, fallback: Axis | undefined) =>
-      axes.find((axis) => axis.key === wishes[slot]) ?? fallback;
+      axes.find((axis) => axis.key === requested[slot]) ?? fallback;
     const objectives = axes.filter((axis) => axis.role === "objective");
     return {
       x: pick("x", usual[0]),
       y: pick("y", usual[1] ?? usual[0]),
       z: pick("z", usual[2] ?? objectives[0] ?? usual[0]),
       color: pick("color", objectives[0]),
-      size: axes.find((axis) => axis.key === wishes.size) ?? objectives[1],
+      size: axes.find((axis) => axis.key === requested.size) ?? objectives[1],
     };
-  }, [axes, wishes]);
+  }, [axes, requested]);
 
   const colors = useMemo(() => coloring(study, axes, chosen.color), [study, axes, chosen.color]);
 
@@ -122,7 +122,7 @@ function Scatter(props: { current: CurrentStudy }) {
         label={`Design space ${label}`}
         value={chosen[name]?.key ?? ""}
         options={name === "size" ? [{ value: "", label: "equal" }, ...options] : options}
-        onChange={(value) => setWishes({ ...wishes, [name]: value })}
+        onChange={(value) => setRequested({ ...requested, [name]: value })}
       />
     </div>
   );

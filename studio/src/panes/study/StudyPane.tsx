@@ -76,7 +76,7 @@ export default function StudyPane() {
   const objectives = Object.keys((form.source.objectives as object | undefined) ?? {}).length;
   const trouble = document.valid
     ? obstacle(all, objectives, draft, samplers)
-    : "Mend the errors of the design first.";
+    : "Fix the errors of the design first.";
   const grid = gridSize(chosen);
   const sampler = samplerOf(chosen, draft);
   const designs = sampler === "grid" ? grid : draft.budget;

@@ -10,14 +10,14 @@ from voxsoft.studio import events
 from voxsoft.studio.tab import Tab
 
 
-class Outlet(Protocol):
+class EventBus(Protocol):
     """What the engine and the jobs need of the tabs; every method may be called by any thread."""
 
-    def tell(self, event: events.Event) -> None:
+    def publish(self, event: events.Event) -> None:
         """Send an event to all tabs."""
         ...
 
-    def tell_one(self, tab: Tab, event: events.Event) -> None:
+    def send_to(self, tab: Tab, event: events.Event) -> None:
         """Send an event to one tab."""
         ...
 
@@ -62,12 +62,12 @@ class Tabs:
         """All tabs that are open."""
         return self._open
 
-    def tell(self, event: events.Event) -> None:
+    def publish(self, event: events.Event) -> None:
         """Send an event to all tabs."""
         for tab in self._open:
             self._soon(tab.put, event)
 
-    def tell_one(self, tab: Tab, event: events.Event) -> None:
+    def send_to(self, tab: Tab, event: events.Event) -> None:
         """Send an event to one tab."""
         self._soon(tab.put, event)
 

@@ -39,7 +39,7 @@ def replace_whole(target: Path, write: Callable[[Path], object]) -> None:
             beside.unlink()
 
 
-def write_whole(path: str | os.PathLike[str], content: str | bytes) -> None:
+def write_atomically(path: str | os.PathLike[str], content: str | bytes) -> None:
     """Write a file whole; text as UTF-8 with plain line ends.
 
     Raises

@@ -12,10 +12,10 @@ import { BODY_VERTEX, SHEET_FRAGMENT } from "./shaders";
 
 export const LAYER_COLOR = "#c77dd6";
 
-export type Sheet = Mesh<BufferGeometry, ShaderMaterial>;
+export type Membrane = Mesh<BufferGeometry, ShaderMaterial>;
 
-/** A sheet on vertices of a body, whose uniforms place them. */
-export function sheetOn(geometry: BufferGeometry, placing: Record<string, IUniform>): Sheet {
+/** A membrane on vertices of a body, whose uniforms place them. */
+export function membraneOn(geometry: BufferGeometry, placing: Record<string, IUniform>): Membrane {
   const material = new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: BODY_VERTEX,
@@ -28,8 +28,8 @@ export function sheetOn(geometry: BufferGeometry, placing: Record<string, IUnifo
     polygonOffsetUnits: -1,
     uniforms: { ...placing, uOwn: { value: new Color(LAYER_COLOR) } },
   });
-  const sheet = new Mesh(geometry, material);
-  sheet.renderOrder = 3;
-  sheet.frustumCulled = false;
-  return sheet;
+  const membrane = new Mesh(geometry, material);
+  membrane.renderOrder = 3;
+  membrane.frustumCulled = false;
+  return membrane;
 }
