@@ -3,15 +3,20 @@
 python tests/architecture/test_words.py   # rewrites British spelling where it stands
 """
 
+import io
 import re
 import subprocess
 import sys
+import tokenize
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
 THIS = Path(__file__).name
+#: Tokens of Python that hold text for users; f-strings have kinds of their own from 3.12 on.
+READ = {tokenize.STRING, getattr(tokenize, "FSTRING_MIDDLE", tokenize.STRING)}
 
 # --- Spelling -------------------------------------------------------------------------------------
 
@@ -73,8 +78,9 @@ OTHERS = re.compile(
 )
 
 
+@cache
 def tracked():
-    """The files of the project that hold our own words."""
+    """The files of the project that hold our own words, each with its text."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT,
@@ -83,7 +89,11 @@ def tracked():
         check=False,
     ).stdout.splitlines()
     paths = [ROOT / name for name in listed if not OTHERS.search(name)]
-    return [path for path in paths if path.is_file() and not path.is_symlink()]
+    return {
+        path: path.read_text(encoding="utf-8")
+        for path in paths
+        if path.is_file() and not path.is_symlink()
+    }
 
 
 def american(text):
@@ -122,8 +132,7 @@ def like(old, new):
 
 def test_spelling_is_american():
     found = []
-    for path in tracked():
-        text = path.read_text(encoding="utf-8")
+    for path, text in tracked().items():
         if american(text) == text:
             continue
         lines = zip(text.splitlines(), american(text).splitlines(), strict=True)
@@ -151,10 +160,75 @@ def test_the_rewriting_keeps_capitals_and_names(british, expected):
     assert american(british) == (expected or british)
 
 
+# --- Retired words --------------------------------------------------------------------------------
+
+#: Where a retired word has its ordinary use: a file, and what stands around the word there.
+ORDINARY = {
+    # ask and tell are what Optuna, and any search like it, calls the two halves of a trial.
+    "tell": r"[\w.]*\btell\(|:meth:`tell`|_tell\b",
+}
+
+
+def rows():
+    """Each retired word of the table with what it is now, and where it is retired."""
+    page = (ROOT / "docs/reference/words.md").read_text(encoding="utf-8")
+    table = re.findall(r"^\| (`.*) \| (.*) \| (all|text) \|$", page, re.MULTILINE)
+    return [
+        pytest.param(re.findall(r"`([^`]+)`", words), now, scope, id=words.replace("`", ""))
+        for words, now, scope in table
+    ]
+
+
+@cache
+def apart(text):
+    """A text with the parts of its identifiers apart: `may_fly` and `mayFly` are two words."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", text)
+
+
+@cache
+def messages(path, text):
+    """What of a file a user may read: documents whole, of Python its text between quotes."""
+    if path.suffix == ".md":
+        return text
+    if path.suffix != ".py" or "python/voxsoft" not in path.as_posix():
+        return ""
+    kept = []
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        inner = token.type in READ and not re.match(r"\w*(\"\"\"|\'\'\')", token.string)
+        kept.append((token.start[0], token.string if inner else ""))
+    lines = [""] * (text.count("\n") + 2)
+    for number, part in kept:
+        lines[number - 1] += f" {part}"
+    return "\n".join(lines)
+
+
+@pytest.mark.parametrize(("words", "now", "scope"), rows())
+def test_a_retired_word_does_not_come_back(words, now, scope):
+    pattern = re.compile(rf"(?<![a-z])(?:{'|'.join(words)})(?![a-z])", re.IGNORECASE)
+    found = []
+    for path, text in tracked().items():
+        read = apart(text) if scope == "all" else messages(path, text)
+        lines = text.splitlines()
+        for match in pattern.finditer(read):
+            number = read.count("\n", 0, match.start())
+            line = lines[number] if number < len(lines) else ""
+            ordinary = ORDINARY.get(match[0].lower())
+            if ordinary is None or not re.search(ordinary, line):
+                found.append(f"{path.relative_to(ROOT)}:{number + 1}: {line.strip()[:80]}")
+    assert not found, "\n".join([f'"{words[0]}" is "{now}" now:', *found])
+
+
+def test_there_are_retired_words():
+    assert len(rows()) > 12
+
+
+def test_parts_of_identifiers_are_words():
+    assert apart("may_fly mayFly") == "may fly may Fly"
+
+
 def rewrite():
     """Rewrite British spelling in all files."""
-    for path in tracked():
-        text = path.read_text(encoding="utf-8")
+    for path, text in tracked().items():
         if american(text) != text:
             path.write_text(american(text), encoding="utf-8")
             print(path.relative_to(ROOT))
