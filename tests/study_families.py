@@ -4,6 +4,8 @@ import os
 import signal
 import time
 
+from waiting import until
+
 from voxsoft.design import Clamp, Design, Parameter, Part, Probe, Region
 from voxsoft.errors import DesignError
 from voxsoft.shapes import Box
@@ -91,7 +93,5 @@ def patient(mark, design):
     """Leaves a line when it begins, and ends once somebody has made the file beside."""
     with mark.open("a") as file:
         file.write("begun\n")
-    end = time.monotonic() + 60
-    while not mark.with_suffix(".go").exists() and time.monotonic() < end:
-        time.sleep(0.01)
+    until(mark.with_suffix(".go").exists, "leave to go on")
     return bowl(design)

@@ -6,7 +6,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import lattice_families as families
@@ -14,6 +13,7 @@ import meshio
 import numpy as np
 import pytest
 from typer.testing import CliRunner
+from waiting import until
 
 from voxsoft import jobs
 from voxsoft.cli.app import app
@@ -114,12 +114,13 @@ def test_a_study_that_was_interrupted_keeps_its_tables_and_is_repeated_once_it_i
     command = [sys.executable, "-c", SCRIPT, "sweep", str(CYLINDER)]
     command += ["--out", "s", "--workers", "1"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
-    end = time.monotonic() + 120
     journal = Path("s", "study.journal")
-    while not journal.is_file() or journal.read_text().count('"outcome"') < 3:
-        assert time.monotonic() < end
+
+    def has_stored_three():
         assert process.poll() is None, process.stderr.read()
-        time.sleep(0.01)
+        return journal.is_file() and journal.read_text().count('"outcome"') >= 3
+
+    until(has_stored_three, "three trials")
     os.killpg(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=120)
     assert process.returncode == INTERRUPTED, told

@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import meshio
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 from bad_designs import NO_DESIGN, NO_TEXT, NOT_SOLVABLE
 from typer.testing import CliRunner
+from waiting import until
 
 from voxsoft.cli.app import app
 
@@ -193,11 +193,13 @@ def test_interrupt_keeps_finished_trials_and_says_how_to_resume():
     command = [sys.executable, "-c", "from voxsoft.cli import main; main()", "sweep", str(CYLINDER)]
     command += ["--set", "voxel_size=2.5 mm", "--out", "s", "--workers", "2"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    journal, deadline = Path("s", "study.journal"), time.monotonic() + 60
-    while time.monotonic() < deadline and process.poll() is None:
-        if journal.exists() and journal.read_text().count("outcome") >= 5:
-            break
-        time.sleep(0.05)
+    journal = Path("s", "study.journal")
+
+    def has_stored_five():
+        stored = journal.exists() and journal.read_text().count("outcome") >= 5
+        return stored or process.poll() is not None
+
+    until(has_stored_five, "five trials")
     os.kill(process.pid, signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
     assert process.returncode == 130, stderr

@@ -5,22 +5,15 @@ import os
 import signal
 import sys
 import threading
-import time
 from functools import partial
 
 import pytest
 from study_families import FALL, block, patient
+from waiting import until
 
 from voxsoft.study import Gate, Study
 
 SPACE = {"x": (0.0, 0.2, 0.1), "y": (1, 6)}
-
-
-def until(condition):
-    end = time.monotonic() + 60
-    while not condition():
-        assert time.monotonic() < end, "never came"
-        time.sleep(0.01)
 
 
 class Running:

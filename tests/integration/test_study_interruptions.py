@@ -4,10 +4,10 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from waiting import until
 
 TESTS = Path(__file__).parents[1]
 
@@ -82,10 +82,7 @@ def test_the_workers_of_a_killed_study_end(start):
     wait_for(process, 5)
     process.kill()
     process.wait()
-    deadline = time.monotonic() + 15
-    while _session_lives(process.pid) and time.monotonic() < deadline:
-        time.sleep(0.1)
-    assert not _session_lives(process.pid)
+    until(lambda: not _session_lives(process.pid), "the end of the workers")
 
 
 def _session_lives(group):

@@ -5,12 +5,12 @@ import os
 import re
 import signal
 import sys
-import time
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 
 import pytest
 from study_families import FALL, block, counted, deadly, slow
+from waiting import until
 
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.study import Study
@@ -44,13 +44,10 @@ def test_a_worker_that_dies_fails_only_the_trial_that_kills_it_twice(make, mark)
 def test_workers_do_not_outlive_the_study(make, mark):
     make(partial(counted, mark)).grid(workers=2)
     assert len(mark.read_text().splitlines()) == 18
-    deadline = time.monotonic() + 10
-    while multiprocessing.active_children() and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert multiprocessing.active_children() == []
+    until(lambda: multiprocessing.active_children() == [], "the end of the workers")
 
 
-def test_a_broken_executor_of_the_user_ends_the_study_and_keeps_what_is_done(make, mark):
+def test_a_broken_executor_ends_the_study_and_keeps_its_trials(make, mark):
     context = multiprocessing.get_context("spawn")
     study = make(partial(deadly, mark))
     with (

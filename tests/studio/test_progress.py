@@ -2,10 +2,10 @@
 
 import multiprocessing
 import threading
-import time
 from pathlib import Path
 
 import pytest
+from waiting import until
 
 from voxsoft.studio.progress import Progress
 
@@ -22,10 +22,7 @@ class Told:
         return (self.said[-1].state, self.said[-1].stage)
 
     def until(self, *last):
-        end = time.monotonic() + 30
-        while self.last != last:
-            assert time.monotonic() < end, f"still {self.last}"
-            time.sleep(0.01)
+        until(lambda: self.last == last, lambda: f"{last} after {self.last}")
 
 
 @pytest.fixture

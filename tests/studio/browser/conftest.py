@@ -8,11 +8,11 @@ import socket
 import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from waiting import until
 
 # Software rendering, so that the tests run where there is no graphics card.
 FLAGS = [
@@ -170,11 +170,12 @@ class Tab:
 
     def until(self, condition, patience=PATIENCE, frame=None):
         """Wait for a condition in the page; its policy forbids Playwright's own way."""
-        end = time.monotonic() + patience
-        while not (value := (frame or self.page).evaluate(condition)):
-            assert time.monotonic() < end, f"never came: {condition}; logged: {self.errors}"
-            time.sleep(0.03)
-        return value
+        where = frame or self.page
+        return until(
+            lambda: where.evaluate(condition),
+            lambda: f"{condition} (logged: {self.errors})",
+            patience,
+        )
 
     def find(self, name):
         return self.page.locator(f"[data-testid='{name}']")

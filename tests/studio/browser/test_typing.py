@@ -3,16 +3,21 @@
 import json
 
 import pytest
+from waiting import until
 
 pytestmark = pytest.mark.browser
 
-TYPED = "# typed"
+
+@pytest.fixture
+def word(request):
+    """What a test types; tests share a document, so each has a word of its own."""
+    return f"# {request.node.name}"
 
 
 @pytest.fixture
-def typed(own_server, open_tab):
+def typed(served, open_tab, word):
     """The mode Design with a word typed into the text, which the server has not got yet."""
-    tab = open_tab(own_server.address, mode="design")
+    tab = open_tab(served.address, mode="design")
     tab.find("parameter-length").wait_for()
     content = tab.find("text-editor").locator(".cm-content")
     content.wait_for()
@@ -23,11 +28,11 @@ def typed(own_server, open_tab):
     tab.until("document.querySelector('.cm-content').innerText.includes('50 mm')")
     content.locator(".cm-line", has_text="[parameters]").click()
     tab.page.keyboard.press("End")
-    # What typing waits for never comes: only another wish can send the text.
+    # What typing waits for never comes: only another request can send the text.
     tab.page.evaluate(
         "window.setTimeout = ((set) => (f, ms) => ms === 700 ? 0 : set(f, ms))(setTimeout)"
     )
-    tab.page.keyboard.type(f" {TYPED}")
+    tab.page.keyboard.type(f" {word}")
     return tab
 
 
@@ -35,56 +40,54 @@ def text(tab):
     return tab.page.evaluate("document.querySelector('.cm-content').innerText")
 
 
-def draft_holds_it(server, tab):
+def draft_holds(word, server):
     draft = server.runs / ".studio" / "draft.json"
-    for _ in range(600):
-        if draft.exists() and TYPED in json.loads(draft.read_text())["text"]:
-            return
-        tab.page.wait_for_timeout(50)
-    raise AssertionError("the draft never held what was typed")
+    until(
+        lambda: draft.exists() and word in json.loads(draft.read_text())["text"],
+        "a draft with what was typed",
+    )
 
 
-def test_undo_of_the_top_bar_takes_back_what_was_typed_and_redo_gives_it_back(typed):
+def test_undo_and_redo_of_the_top_bar_cover_typed_text(typed, word):
     typed.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
-    typed.until(f"!document.querySelector('.cm-content').innerText.includes({TYPED!r})")
+    typed.until(f"!document.querySelector('.cm-content').innerText.includes({word!r})")
     assert "50 mm" in text(typed)
     typed.page.get_by_role("button", name="Redo").click()
-    typed.until(f"document.querySelector('.cm-content').innerText.includes({TYPED!r})")
+    typed.until(f"document.querySelector('.cm-content').innerText.includes({word!r})")
 
 
-def test_a_change_of_the_mode_sends_what_was_typed(typed, own_server):
+def test_a_change_of_the_mode_sends_what_was_typed(typed, served, word):
     typed.find("mode-runs").click()
-    draft_holds_it(own_server, typed)
+    draft_holds(word, served)
 
 
-def test_a_value_of_the_form_comes_on_top_of_what_was_typed(typed):
+def test_a_value_of_the_form_comes_on_top_of_what_was_typed(typed, word):
     size = typed.find("parameter-length").get_by_role("textbox", name="length", exact=True)
     size.fill("55 mm")
     size.press("Enter")
     typed.until("document.querySelector('.cm-content').innerText.includes('55 mm')")
-    assert TYPED in text(typed)
+    assert word in text(typed)
 
 
-def test_a_new_name_comes_on_top_of_what_was_typed(typed):
+def test_a_new_name_comes_on_top_of_what_was_typed(typed, word):
     typed.find("shapes-body").get_by_role("button", name="body", exact=False).first.click()
     name = typed.find("shapes-body").get_by_label("Name", exact=True)
     name.fill("bar")
     name.press("Enter")
     typed.find("shapes-bar").wait_for()
-    assert TYPED in text(typed)
+    assert word in text(typed)
 
 
-def test_opening_another_document_keeps_what_was_typed_for_undo(typed):
+def test_opening_another_document_keeps_what_was_typed_for_undo(typed, word):
     typed.find("templates").click()
     typed.find("template-sphere").click()
     typed.find("discard").click()
     typed.find("document-name").get_by_text("sphere").wait_for()
     typed.page.get_by_role("button", name="Undo (Ctrl+Z)").click()
     typed.find("document-name").get_by_text("finger").wait_for()
-    typed.until(f"document.querySelector('.cm-content').innerText.includes({TYPED!r})")
+    typed.until(f"document.querySelector('.cm-content').innerText.includes({word!r})")
 
 
-def test_closing_the_tab_sends_what_was_typed(typed, own_server, open_tab):
+def test_closing_the_tab_sends_what_was_typed(typed, served, word):
     typed.page.close()
-    other = open_tab(own_server.address, mode="design")
-    draft_holds_it(own_server, other)
+    draft_holds(word, served)

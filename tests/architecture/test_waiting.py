@@ -1,0 +1,26 @@
+"""Tests wait for conditions, never for time to pass."""
+
+import re
+from pathlib import Path
+
+TESTS = Path(__file__).parents[1]
+SLEEPS = re.compile(r"\bsleep\((?!0\))|wait_for_timeout\(")
+
+#: Files that may sleep, and why.
+ALLOWED = {
+    "waiting.py": "looks again at a condition",
+    "study_families.py": "trials that take their time, so that a study can be stopped",
+    "unit/test_shapes_errors.py": "a field that takes its time, so that it can be interrupted",
+    "studio/browser/test_pictures.py": "takes pictures for the documents, and checks nothing",
+    "studio/browser/test_view_and_run.py": "compares a picture with the one before it",
+}
+
+
+def test_no_test_waits_for_time_to_pass():
+    found = {
+        path.relative_to(TESTS).as_posix()
+        for path in TESTS.rglob("*.py")
+        if path != Path(__file__) and SLEEPS.search(path.read_text(encoding="utf-8"))
+    }
+    assert found <= ALLOWED.keys(), "use `until` of tests/waiting.py"
+    assert found == ALLOWED.keys(), "a file that may sleep does not any more"
