@@ -59,7 +59,7 @@ def tampered(file, before, after):
 @pytest.mark.parametrize(
     "job",
     [
-        pytest.param(["run", CYLINDER, "--set", "wall=10 mm", "--figure"], id="run"),
+        pytest.param(["run", CYLINDER, "--set", "wall=10 mm"], id="run"),
         pytest.param(
             ["run", BEAM, "--solver", "xpbd", "--set", "solver.end_time=0.05 s"], id="motion"
         ),
