@@ -23,7 +23,7 @@ struct Column {
 impl Layers {
     pub fn new(tables: &[Table], grid: &SampleGrid) -> Result<Self, FieldError> {
         let columns = tables.iter().map(|table| {
-            let points: Vec<_> = (0..lattice.shape[table.axis])
+            let points: Vec<_> = (0..grid.shape[table.axis])
                 .map(|index| [grid.center(table.axis, index); 3])
                 .collect();
             let mut values = vec![0.0; points.len()];
