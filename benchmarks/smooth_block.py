@@ -94,7 +94,7 @@ def error(cells: int, material: vs.NeoHookean) -> float:
         parts,
     )
     report = _core.equilibrium(problem, tolerance=1e-10)
-    if report["status"] != "at-rest":
-        raise SystemExit(f"wrong answer: the smooth block came to {report['status']}")
-    off = np.linalg.norm(report["positions"] - exact, axis=1)
+    if report.status != _core.Status.AT_REST:
+        raise SystemExit(f"wrong answer: the smooth block came to {report.status}")
+    off = np.linalg.norm(report.positions - exact, axis=1)
     return float(np.sqrt((off**2).sum() / ((exact - points) ** 2).sum()))

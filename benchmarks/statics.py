@@ -48,10 +48,10 @@ def solve(size: Size, across: int, way: str) -> tuple[int, float, int, float, fl
     start = time.process_time()
     report = _core.equilibrium(problem, tolerance=1e-8, linear=way)
     seconds = time.process_time() - start
-    if report["status"] != "at-rest":
-        raise SystemExit(f"wrong answer: {report['status']}")
-    moved = np.linalg.norm(report["positions"] - setup.mesh.vertices, axis=1).max()
-    return len(setup.mesh.vertices), float(moved), report["steps"], seconds, peak_bytes()
+    if report.status != _core.Status.AT_REST:
+        raise SystemExit(f"wrong answer: {report.status}")
+    moved = np.linalg.norm(report.positions - setup.mesh.vertices, axis=1).max()
+    return len(setup.mesh.vertices), float(moved), report.steps, seconds, peak_bytes()
 
 
 def main() -> None:

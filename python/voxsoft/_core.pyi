@@ -1,7 +1,7 @@
 """Types of the private Rust module."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ _Point = tuple[float, float, float]
 _Region = tuple[NDArray[np.uint32], int]
 _Wall = tuple[int, _Cells]
 
+@final
 class Grid:
     @staticmethod
     def empty(shape: _Cells, origin: _Point, voxel_size: float, memory_limit: int) -> Grid: ...
@@ -92,6 +93,7 @@ def penetration(
 
 _Ring = list[tuple[float, float]]
 
+@final
 class Shape:
     @staticmethod
     def cuboid(center: _Point, size: _Point) -> Shape: ...
@@ -170,8 +172,9 @@ _History = tuple[Sequence[float], Sequence[float]] | None
 
 def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...
 
+@final
 class ProblemParts:
-    def __init__(self) -> None: ...
+    def __new__(cls) -> ProblemParts: ...
     def clamp(
         self,
         vertices: NDArray[np.uint32],
@@ -209,6 +212,102 @@ class ProblemParts:
         self, fractions: NDArray[np.float64], moments: NDArray[np.float64] | None = None
     ) -> None: ...
 
+@final
+class Status:
+    """How a solution ended."""
+
+    AT_REST: ClassVar[Status]
+    END_TIME: ClassVar[Status]
+    SLOW: ClassVar[Status]
+    NOT_AT_REST: ClassVar[Status]
+    DIVERGED: ClassVar[Status]
+    LIMIT_REACHED: ClassVar[Status]
+    NOT_CONVERGED: ClassVar[Status]
+    MECHANISM: ClassVar[Status]
+    OUT_OF_MEMORY: ClassVar[Status]
+    CANCELLED: ClassVar[Status]
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+    def __int__(self, /) -> int: ...
+
+@final
+class LoadPath:
+    """How statics followed the loads; `points` has factor, iterations, residual, stability."""
+
+    @property
+    def factor(self) -> float: ...
+    @property
+    def reached(self) -> float: ...
+    @property
+    def limit(self) -> float | None: ...
+    @property
+    def stable(self) -> bool: ...
+    @property
+    def needed_bytes(self) -> int: ...
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+
+@final
+class Answer:
+    """The last good state, how it was reached and what was recorded on the way."""
+
+    @property
+    def status(self) -> Status: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def velocities(self) -> NDArray[np.float64]: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def back_offs(self) -> int: ...
+    @property
+    def substep(self) -> float: ...
+    @property
+    def breakdown(self) -> tuple[int, list[float], float] | None:
+        """Vertex, its place at rest in m, and when."""
+
+    @property
+    def reactions(self) -> NDArray[np.float64]: ...
+    @property
+    def reaction(self) -> list[float]: ...
+    @property
+    def reaction_moment(self) -> list[float]: ...
+    @property
+    def load(self) -> list[float]: ...
+    @property
+    def load_moment(self) -> list[float]: ...
+    @property
+    def elastic_energy(self) -> float: ...
+    @property
+    def record_times(self) -> NDArray[np.float64]: ...
+    @property
+    def records(self) -> NDArray[np.float64]: ...
+    @property
+    def frames(self) -> NDArray[np.float64]: ...
+    @property
+    def path(self) -> LoadPath | None: ...
+
+@final
+class Settlement:
+    """The equilibria of many candidates, one row for each."""
+
+    @property
+    def status(self) -> list[Status]: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def residual(self) -> NDArray[np.float64]: ...
+    @property
+    def iterations(self) -> NDArray[np.uint32]: ...
+    @property
+    def back_offs(self) -> NDArray[np.uint32]: ...
+
 def equilibrium(
     problem: Problem,
     *,
@@ -222,8 +321,9 @@ def equilibrium(
     start: NDArray[np.float64] | None = None,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
     progress: Callable[[int, float, float], None] | None = None,
-) -> dict[str, Any]: ...
+) -> Answer: ...
 
+@final
 class Ensemble:
     @staticmethod
     def of(problem: Problem) -> Ensemble | None: ...
@@ -233,7 +333,7 @@ class Ensemble:
     def bytes(self) -> int: ...
     @property
     def lanes(self) -> int: ...
-    def settle(self, factors: NDArray[np.float64], tolerance: float) -> dict[str, Any]: ...
+    def settle(self, factors: NDArray[np.float64], tolerance: float) -> Settlement: ...
 
 def adjoint(
     problem: Problem,
@@ -243,16 +343,17 @@ def adjoint(
     memory: int = ...,
 ) -> NDArray[np.float64]: ...
 
+@final
 class Problem:
-    def __init__(
-        self,
+    def __new__(
+        cls,
         vertices: NDArray[np.float64],
         tets: NDArray[np.uint32],
         tet_part: NDArray[np.uint8],
         tet_block: NDArray[np.uint32],
         materials: Sequence[_Material],
         parts: ProblemParts,
-    ) -> None: ...
+    ) -> Problem: ...
     def with_materials(self, materials: Sequence[_Material]) -> Problem: ...
     @property
     def mass(self) -> float: ...
@@ -269,7 +370,7 @@ class Problem:
         trial: tuple[int, float] | None = None,
         start: NDArray[np.float64] | None = None,
         progress: Callable[[int, float, float], None] | None = None,
-    ) -> dict[str, Any]: ...
+    ) -> Answer: ...
     def simulate(
         self,
         *,
@@ -285,12 +386,13 @@ class Problem:
         sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
         frames: bool = False,
         progress: Callable[[int, float, float], None] | None = None,
-    ) -> dict[str, Any]: ...
+    ) -> Answer: ...
 
+@final
 class Fields:
     """Stress and strain of a problem's body; `blocks` says which block each element is."""
 
-    def __init__(self, problem: Problem) -> None: ...
+    def __new__(cls, problem: Problem) -> Fields: ...
     @property
     def blocks(self) -> NDArray[np.uint32]: ...
     @property
@@ -305,6 +407,7 @@ class Fields:
         self, positions: NDArray[np.float64], element: int
     ) -> NDArray[np.float64]: ...
 
+@final
 class Display:
     """A surface or tetrahedra of a body, packed into the messages of the studio."""
 
@@ -334,6 +437,7 @@ class Display:
         velocities: NDArray[np.float64] | None = None,
     ) -> bytes: ...
 
+@final
 class Live:
     """A problem in motion between calls; any thread may call.
 
@@ -342,8 +446,8 @@ class Live:
     and seconds of the clock.
     """
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         problem: Problem,
         triangles: NDArray[np.uint32],
         tags: NDArray[np.uint8],
@@ -356,7 +460,7 @@ class Live:
         retardation: float = 0.0,
         tolerance: float = 1e-4,
         deterministic: bool = False,
-    ) -> None: ...
+    ) -> Live: ...
     @property
     def method(self) -> Literal["explicit", "implicit"]: ...
     @property

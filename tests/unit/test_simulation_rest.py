@@ -1,12 +1,16 @@
 """The choice between relaxation and statics on the way to rest."""
 
+from types import SimpleNamespace
+
 import lattice_families as families
 import numpy as np
 import pytest
 
 import voxsoft as vs
+from voxsoft._core import Status
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Setup, rest
+from voxsoft.simulation.method import Report
 from voxsoft.units import kPa, mm
 
 LATTICE = vs.Lattice(edge=60 * kPa, bulk=400 * kPa, density=1070.0)
@@ -75,7 +79,8 @@ def test_prescribed_motions_stay_with_relaxation():
 
 
 def unstable(setup, solver, progress):
-    return {}, {"status": "at-rest", "stable": False}
+    answer = SimpleNamespace(path=SimpleNamespace(stable=False))
+    return {}, Report(answer, Status.AT_REST, 0)
 
 
 def no_memory(setup, solver, progress):

@@ -3,11 +3,13 @@
 import itertools
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import voxsoft as vs
+from voxsoft._core import Status
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.design import Solver, families
 from voxsoft.errors import SimulationError
@@ -219,9 +221,9 @@ def test_defaults_are_used_by_every_way():
 
 
 @pytest.mark.parametrize("way", ["load", "arc-length", "volume"])
-@pytest.mark.parametrize("status", ["not-converged", "limit-reached"])
+@pytest.mark.parametrize("status", [Status.NOT_CONVERGED, Status.LIMIT_REACHED])
 def test_no_control_is_advised_that_was_used(way, status):
-    report = {"status": status, "way": way, "steps": 5, "residual": 1e-3, "factor": 0.2}
-    words = sentence({**report, "reached": 0.0, "limit": 0.3, "stable": True})
+    path = SimpleNamespace(factor=0.2, reached=0.0, limit=0.3, stable=True)
+    words = sentence(way, status, 5, 1e-3, path)
     assert f'"{way}"' not in words
     assert "Try" in words or "follow the path with" in words

@@ -2,12 +2,12 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray2};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use voxsoft_statics::{Ensemble, Variant};
 
+use crate::answer::PySettlement;
 use crate::gate;
 use crate::simulate::{PyProblem, rows};
 
@@ -42,12 +42,12 @@ impl PyEnsemble {
     }
 
     /// The equilibria of candidates with factors (n, 4) on edges, tetrahedra, gravity and other forces.
-    fn settle<'py>(
+    fn settle(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         factors: PyReadonlyArray2<'_, f64>,
         tolerance: f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<PySettlement> {
         let rows: Vec<[f64; 4]> = rows("factors", &factors)?;
         let mut variants = Vec::with_capacity(rows.len());
         for [edge, bulk, weight, forces] in rows {
@@ -69,27 +69,23 @@ impl PyEnsemble {
             let stop = || cancel.load(Ordering::Relaxed);
             ensemble.settle(&variants, tolerance, &stop)
         })?;
-        let report = PyDict::new(py);
-        let statuses: Vec<&str> = found.iter().map(|f| f.status.name()).collect();
-        report.set_item("status", statuses)?;
         let vertices = found.first().map_or(0, |f| f.positions.len());
         let flat: Vec<f64> = found
             .iter()
             .flat_map(|f| f.positions.as_flattened())
             .copied()
             .collect();
-        let positions: Bound<'py, PyArray3<f64>> =
-            PyArray1::from_vec(py, flat).reshape([found.len(), vertices, 3])?;
-        report.set_item("positions", positions)?;
-        let list = |value: fn(&voxsoft_statics::Settled) -> f64| {
-            PyArray1::from_vec(py, found.iter().map(value).collect())
-        };
-        report.set_item("residual", list(|f| f.residual))?;
         let counts = |value: fn(&voxsoft_statics::Settled) -> u32| {
-            PyArray1::from_vec(py, found.iter().map(value).collect())
+            PyArray1::from_vec(py, found.iter().map(value).collect()).unbind()
         };
-        report.set_item("iterations", counts(|f| f.iterations))?;
-        report.set_item("back_offs", counts(|f| f.back_offs))?;
-        Ok(report)
+        Ok(PySettlement {
+            status: found.iter().map(|f| f.status.into()).collect(),
+            positions: PyArray1::from_vec(py, flat)
+                .reshape([found.len(), vertices, 3])?
+                .unbind(),
+            residual: PyArray1::from_vec(py, found.iter().map(|f| f.residual).collect()).unbind(),
+            iterations: counts(|f| f.iterations),
+            back_offs: counts(|f| f.back_offs),
+        })
     }
 }

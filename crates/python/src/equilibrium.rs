@@ -7,12 +7,12 @@ use numpy::{
 };
 use pyo3::exceptions::{PyArithmeticError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, State};
 use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings};
 use voxsoft_xpbd::{Answer, Status};
 
+use crate::answer::{PyAnswer, PyPath};
 use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
 use crate::watch::{Watch, collect_sensors};
@@ -50,7 +50,9 @@ pub fn adjoint<'py>(
     })?
     .map_err(|error| match error {
         AdjointError::OutOfMemory(bytes) => PyMemoryError::new_err(bytes),
-        error => PyArithmeticError::new_err(error.to_string()),
+        AdjointError::Singular | AdjointError::Cancelled => {
+            PyArithmeticError::new_err(error.to_string())
+        }
     })?;
     let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
     PyArray1::from_vec(py, flat).reshape([states.len(), count, 3])
@@ -64,9 +66,9 @@ pub fn adjoint<'py>(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
 )]
-pub fn equilibrium<'py>(
-    problem: PyRef<'py, PyProblem>,
-    py: Python<'py>,
+pub fn equilibrium(
+    problem: PyRef<'_, PyProblem>,
+    py: Python<'_>,
     tolerance: f64,
     first_step: f64,
     control: &str,
@@ -77,7 +79,7 @@ pub fn equilibrium<'py>(
     start: Option<PyReadonlyArray2<'_, f64>>,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Bound<'py, PyDict>> {
+) -> PyResult<PyAnswer> {
     let inner = &problem.problem;
     let control = match control {
         "load" => Control::Load,
@@ -140,14 +142,27 @@ pub fn equilibrium<'py>(
         breakdown: None,
     };
     let factor_of = |load: &Load| answer.factor_of(load);
-    let report = problem.report(py, common, watch, &factor_of)?;
-    if let Status::OutOfMemory(bytes) = answer.status {
-        report.set_item("needed_bytes", bytes)?;
-    }
-    report.set_item("factor", factor)?;
-    report.set_item("reached", reached)?;
-    report.set_item("limit", limit)?;
-    report.set_item("stable", stable)?;
-    report.set_item("path", from_rows(py, &path))?;
-    Ok(report)
+    let needed_bytes = match answer.status {
+        Status::OutOfMemory(bytes) => bytes,
+        Status::AtRest
+        | Status::EndTime
+        | Status::Slow
+        | Status::NotAtRest
+        | Status::Diverged
+        | Status::LimitReached
+        | Status::NotConverged
+        | Status::Mechanism
+        | Status::Cancelled => 0,
+    };
+    let path = PyPath {
+        factor,
+        reached,
+        limit,
+        stable,
+        needed_bytes,
+        points: from_rows(py, &path).unbind(),
+    };
+    let path = Some(Py::new(py, path)?);
+    let found = problem.answer(py, common, watch, &factor_of)?;
+    Ok(PyAnswer { path, ..found })
 }

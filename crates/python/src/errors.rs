@@ -1,5 +1,6 @@
 //! Exceptions of `voxsoft.errors`, raised from Rust with place, problem and advice.
 use pyo3::prelude::*;
+use voxsoft_solid::ProblemError;
 
 /// An exception of the package's tree: `class(place, what, hint)`.
 ///
@@ -10,4 +11,18 @@ pub fn exception(py: Python<'_>, class: &str, place: &str, what: &str, hint: &st
         .and_then(|module| module.getattr(class))
         .and_then(|class| class.call1((place, what, hint)));
     made.map_or_else(|error| error, PyErr::from_value)
+}
+
+/// The exception for each way in which a problem is not one: all are bad input, and `ValueError`s too.
+pub fn to_python(error: ProblemError) -> PyErr {
+    let (class, place) = match error {
+        ProblemError::RestVolume { .. }
+        | ProblemError::NotCubes { .. }
+        | ProblemError::NotVoxels { .. } => ("MeshError", "mesh"),
+        ProblemError::FlatMembrane { .. } => ("DesignError", "layers"),
+        // Lengths, indices, constants, directions and histories; the message says which. The core keeps
+        // the right to add kinds, so these cannot be listed to the end.
+        _ => ("DesignError", ""),
+    };
+    Python::attach(|py| exception(py, class, place, &error.to_string(), ""))
 }

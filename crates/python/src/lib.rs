@@ -1,6 +1,7 @@
 //! Python binding: conversions, error mapping and the gate that frees the GIL. No numerics.
 use pyo3::prelude::*;
 
+mod answer;
 mod contact;
 mod ensemble;
 mod equilibrium;
@@ -19,6 +20,10 @@ mod watch;
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<answer::PyAnswer>()?;
+    module.add_class::<answer::PyPath>()?;
+    module.add_class::<answer::PySettlement>()?;
+    module.add_class::<answer::PyStatus>()?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;

@@ -14,8 +14,9 @@ use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, State, Stepper};
 use voxsoft_xpbd::{Damping, Dynamics};
 
+use crate::errors::to_python;
 use crate::gate;
-use crate::simulate::{PyProblem, from_rows, rows, to_python};
+use crate::simulate::{PyProblem, from_rows, rows};
 
 /// A surface or tetrahedra of a body, to be packed into frames.
 #[pyclass(frozen, name = "Display", module = "voxsoft._core")]

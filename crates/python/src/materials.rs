@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model};
 
-use crate::simulate::to_python;
+use crate::errors::to_python;
 
 /// The model's name, its constants, the bulk modulus (Pa) and the density (kg/m³); families of fibers
 /// as (direction, modulus in Pa, whether they carry compression) and Prony branches may follow.

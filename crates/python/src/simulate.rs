@@ -1,10 +1,9 @@
 //! `_core.Problem` and its two ways to an answer.
 use std::sync::Arc;
 
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -13,14 +12,11 @@ use voxsoft_solid::{
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
+use crate::answer::PyAnswer;
+use crate::errors::to_python;
 use crate::gate;
 use crate::materials::{MaterialArgument, material};
 use crate::watch::{Watch, collect_sensors};
-
-/// The Python class for each error; every variant is bad input to a constructor.
-pub(crate) fn to_python(error: ProblemError) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
     what: &str,
@@ -326,15 +322,15 @@ impl PyProblem {
 
     /// A trial is a number of steps and the residual above which the run then ends.
     #[pyo3(signature = (*, tolerance, max_steps, trial=None, start=None, progress=None))]
-    fn relax<'py>(
+    fn relax(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         tolerance: f64,
         max_steps: u64,
         trial: Option<(u64, f64)>,
         start: Option<PyReadonlyArray2<'_, f64>>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<PyAnswer> {
         let settings = Relaxation {
             tolerance,
             max_steps,
@@ -350,7 +346,7 @@ impl PyProblem {
                 watch.see(now, cancel)
             })
         })?;
-        self.report(py, answer, watch, &|load| load.history.at(f64::INFINITY))
+        self.answer(py, answer, watch, &|load| load.history.at(f64::INFINITY))
     }
 
     #[pyo3(signature = (*, time_step, substeps, iterations, damping, retardation, end_time, max_time, tolerance,
@@ -359,9 +355,9 @@ impl PyProblem {
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
     )]
-    fn simulate<'py>(
+    fn simulate(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         time_step: f64,
         substeps: Option<u32>,
         iterations: u32,
@@ -374,7 +370,7 @@ impl PyProblem {
         sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
         frames: bool,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<PyAnswer> {
         let damping = damping.map_or(Damping::Critical, Damping::Rate);
         let settings = Dynamics {
             time_step,
@@ -396,7 +392,7 @@ impl PyProblem {
             })
         })?;
         let time = answer.state.time;
-        self.report(py, answer, watch, &|load| load.history.at(time))
+        self.answer(py, answer, watch, &|load| load.history.at(time))
     }
 }
 
@@ -433,53 +429,46 @@ impl PyProblem {
     }
 
     /// What Python is told of an answer, its reactions under loads with these factors.
-    pub(crate) fn report<'py>(
+    pub(crate) fn answer(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         answer: Answer,
         watch: Watch,
         factor_of: &dyn Fn(&Load) -> f64,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<PyAnswer> {
         if let Some(raised) = watch.raised {
             return Err(raised);
         }
         let positions = &answer.state.positions;
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
-        let report = PyDict::new(py);
-        report.set_item("status", answer.status.name())?;
-        report.set_item("positions", from_rows(py, positions))?;
-        report.set_item("velocities", from_rows(py, &answer.state.velocities))?;
-        report.set_item("time", answer.state.time)?;
-        report.set_item("residual", answer.residual)?;
-        report.set_item("steps", answer.steps)?;
-        report.set_item("back_offs", answer.back_offs)?;
-        report.set_item("substep", answer.substep)?;
-        report.set_item(
-            "breakdown",
-            answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
-        )?;
-        report.set_item("reactions", from_rows(py, &balance.reactions))?;
-        report.set_item("reaction", balance.total_reaction())?;
-        report.set_item("reaction_moment", balance.total_moment(positions))?;
-        report.set_item("load", load)?;
-        report.set_item("load_moment", load_moment)?;
-        report.set_item(
-            "elastic_energy",
-            elastic::energy(self.problem.body(), positions),
-        )?;
-        report.set_item("record_times", PyArray1::from_vec(py, watch.times))?;
         let sensors = watch.sensors.len();
-        let records =
-            PyArray1::from_vec(py, watch.records).reshape([watch.recorded, sensors, 3])?;
-        report.set_item("records", records)?;
-        let frames: Bound<'py, PyArray3<f64>> = PyArray1::from_vec(py, watch.frames).reshape([
-            if watch.keep_frames { watch.recorded } else { 0 },
-            positions.len(),
-            3,
-        ])?;
-        report.set_item("frames", frames)?;
-        Ok(report)
+        let frames = if watch.keep_frames { watch.recorded } else { 0 };
+        Ok(PyAnswer {
+            status: answer.status.into(),
+            positions: from_rows(py, positions).unbind(),
+            velocities: from_rows(py, &answer.state.velocities).unbind(),
+            time: answer.state.time,
+            residual: answer.residual,
+            steps: answer.steps,
+            back_offs: answer.back_offs,
+            substep: answer.substep,
+            breakdown: answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+            reactions: from_rows(py, &balance.reactions).unbind(),
+            reaction: balance.total_reaction(),
+            reaction_moment: balance.total_moment(positions),
+            load,
+            load_moment,
+            elastic_energy: elastic::energy(self.problem.body(), positions),
+            record_times: PyArray1::from_vec(py, watch.times).unbind(),
+            records: PyArray1::from_vec(py, watch.records)
+                .reshape([watch.recorded, sensors, 3])?
+                .unbind(),
+            frames: PyArray1::from_vec(py, watch.frames)
+                .reshape([frames, positions.len(), 3])?
+                .unbind(),
+            path: None,
+        })
     }
 }
 

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.method import Answer, Method, Watch
+from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
 
@@ -52,7 +52,7 @@ class Dynamics(Method):
             "damping": rate,
             "retardation": self.retardation,
         }
-        report = setup.problem.simulate(
+        answer = setup.problem.simulate(
             **asked,
             end_time=ends.get("end_time"),
             max_time=ends.get("max_time", DEFAULT_MAX_TIME),
@@ -62,8 +62,8 @@ class Dynamics(Method):
             frames=watch.frames,
             progress=watch.progress,
         )
-        used = {"method": "xpbd", "way": "dynamics", **asked, **ends, "substep": report["substep"]}
-        return used | {"damping": "critical" if rate is None else rate}, report
+        used = {"method": "xpbd", "way": "dynamics", **asked, **ends, "substep": answer.substep}
+        return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
     def _step(self, interval: float) -> float:
         """The length of a step in s: probes are recorded after whole steps."""

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, Final, Literal
+from typing import ClassVar, Final, Literal
 
 from voxsoft import _core
+from voxsoft._core import Status
 from voxsoft._memory import memory_limit
 from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.method import Answer, Method, Progress, Watch
+from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import format_percent
 
@@ -104,7 +105,7 @@ def find_equilibrium(
     """
     settings = statics.model_dump(exclude={"control"})
     asked = {"ratio" if key == "volume_ratio" else key: each for key, each in settings.items()}
-    report = _core.equilibrium(
+    answer = _core.equilibrium(
         problem or setup.problem,
         **asked,
         control=statics.control,
@@ -112,17 +113,24 @@ def find_equilibrium(
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         progress=progress,
     )
-    report["way"] = statics.control
-    if report["status"] == "not-converged" and report["factor"] == 0.0 and moves_freely(setup):
+    path, status = path_of(answer), answer.status
+    if status == Status.NOT_CONVERGED and path.factor == 0.0 and moves_freely(setup):
         # Singular up to rounding is all that the factor shows of it.
-        report["status"] = "mechanism"
-    if report["status"] == "out-of-memory":
+        status = Status.MECHANISM
+    if status == Status.OUT_OF_MEMORY:
         raise SimulationError(
             "solver.method",
-            too_large_a_tangent(len(setup.mesh.vertices), report["needed_bytes"]),
+            too_large_a_tangent(len(setup.mesh.vertices), path.needed_bytes),
             'use larger voxels, or method = "xpbd"',
         )
-    return {"method": "statics", "way": statics.control, **settings}, report
+    used = {"method": "statics", "way": statics.control, **settings}
+    return used, Report(answer, status, answer.steps)
+
+
+def path_of(answer: _core.Answer) -> _core.LoadPath:
+    """How the loads of an answer of statics were followed."""
+    assert answer.path is not None  # the core gives one with every answer of statics
+    return answer.path
 
 
 def too_large_a_tangent(vertices: int, needed: int) -> str:
@@ -132,49 +140,52 @@ def too_large_a_tangent(vertices: int, needed: int) -> str:
     return f"the tangent of {vertices} vertices {size} {free}"
 
 
-def sentence(report: dict[str, Any]) -> str:
-    """Say how statics ended."""
-    iterations = f"{report['steps']} Newton iterations"
-    residual = f"residual {format_percent(report['residual'])} of the load"
-    carried = f"{100 * report['factor']:.4g} % of the load"
-    match report["status"]:
-        case "at-rest":
+def sentence(
+    way: str, status: Status, steps: int, residual_left: float, path: _core.LoadPath
+) -> str:
+    """Say how statics ended: its control, how it ended, its iterations, its residual, its path."""
+    iterations = f"{steps} Newton iterations"
+    residual = f"residual {format_percent(residual_left)} of the load"
+    limit = "" if path.limit is None else f"{100 * path.limit:.4g} % of the load"
+    carried = f"{100 * path.factor:.4g} % of the load"
+    match status:
+        case Status.AT_REST:
             words = f"equilibrium after {iterations}, {residual}"
-            if report["limit"] is not None:
-                words += f"; the path has a limit at {100 * report['limit']:.4g} % of the load"
-            if report["stable"]:
+            if path.limit is not None:
+                words += f"; the path has a limit at {limit}"
+            if path.stable:
                 return words
-            if report["way"] == "load":
+            if way == "load":
                 words += ", and shorter load steps led past a point where the body can buckle"
             return f"{words}; under constant loads it is not stable"
-        case "limit-reached" if not report["stable"]:
+        case Status.LIMIT_REACHED if not path.stable:
             return (
-                f"the path has a limit at {100 * report['limit']:.4g} % of the load; its steps "
+                f"the path has a limit at {limit}; its steps "
                 f"ended past it, at {carried}. Raise steps to follow it further"
             )
-        case "limit-reached":
+        case Status.LIMIT_REACHED:
             return (
-                f"no equilibrium past {100 * report['limit']:.4g} % of the load, the limit of this "
+                f"no equilibrium past {limit}, the limit of this "
                 f"path; kept is the last stable state, at {carried}. Lower the load, or follow "
-                f"the path with {_PAST_A_LIMIT[report['way']]}"
+                f"the path with {_PAST_A_LIMIT[way]}"
             )
-        case "mechanism":
+        case Status.MECHANISM:
             return (
                 f"a part of the body moves freely (the tangent is singular) at {carried}; clamp "
                 "it, or join voxels that meet only along edges or corners (the check of the "
                 "design shows such hinges)"
             )
-        case _ if report["way"] == "volume" and report["reached"] > 0.0:
+        case _ if way == "volume" and path.reached > 0.0:
             words = (
-                f"followed for {100 * report['reached']:.4g} % of the growth in volume, to "
+                f"followed for {100 * path.reached:.4g} % of the growth in volume, to "
                 f"{carried}, and lost there after {iterations}; kept are the path so far and its "
                 "last state. Ask for more steps, or for a smaller volume_ratio"
             )
-            if report["limit"] is not None:
-                words += f"; the path has a limit at {100 * report['limit']:.4g} % of the load"
+            if path.limit is not None:
+                words += f"; the path has a limit at {limit}"
             return words
         case _:
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
-                f'Try {_OTHER_WAYS[report["way"]]}, smaller voxels, or method = "xpbd"'
+                f'Try {_OTHER_WAYS[way]}, smaller voxels, or method = "xpbd"'
             )

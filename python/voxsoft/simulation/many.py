@@ -157,10 +157,10 @@ class Ensemble:
             )
         report = self._core.settle(factors[fits], tolerance)
         found: list[Settled | None] = [None] * len(factors)
-        solved = zip(report["status"], report["positions"], report["residual"], strict=True)
+        solved = zip(report.status, report.positions, report.residual, strict=True)
         places = np.flatnonzero(fits).tolist()
         for place, (status, positions, residual) in zip(places, solved, strict=True):
-            if status == "at-rest":
+            if status == _core.Status.AT_REST:
                 words = f"equilibrium, residual {format_percent(residual)} of the load"
                 settled = Settled("ok", words, positions, float(residual), "lanes", self.setup)
                 found[place] = settled

@@ -4,16 +4,44 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
+from voxsoft import _core
 from voxsoft.errors import SimulationError, VoxSoftError
 from voxsoft.records import Record
 from voxsoft.simulation.setup import Setup
 
 #: Called now and then with (steps, time in s, residual).
 Progress = Callable[[int, float, float], None] | None
-#: Settings as used, and the core's report.
-Answer = tuple[dict[str, Any], dict[str, Any]]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a solver found.
+
+    Attributes
+    ----------
+    answer
+        What the core says.
+    status
+        How it ended, as far as the core can tell and beyond.
+    steps
+        Steps of all attempts.
+    """
+
+    answer: _core.Answer
+    status: _core.Status
+    steps: int
+
+    @classmethod
+    def of(cls, answer: _core.Answer, earlier: int = 0) -> Report:
+        """An answer as it is, after so many steps of earlier attempts."""
+        return cls(answer, answer.status, earlier + answer.steps)
+
+
+#: Settings as used, and what was found.
+Answer = tuple[dict[str, Any], Report]
 
 
 class Watch(NamedTuple):
@@ -66,5 +94,5 @@ class Method(Record):
         Returns
         -------
         used, report
-            The settings as used, as ``result.solver`` tells them, and the core's report.
+            The settings as used, as ``result.solver`` tells them, and what was found.
         """

@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Final, Literal
 
+from voxsoft import _core
 from voxsoft.design.solver import Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium
-from voxsoft.simulation.method import Answer, Method, Progress, Watch
+from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.setup import Setup
 
 #: With 1e-4 the rises of 2 of the paper's 45 closed cylinders, small beside the bulge of their
@@ -44,17 +45,16 @@ class Relaxation(Method):
         """Bring a setup to rest."""
         return self.go_on(setup, watch.progress, None)
 
-    def go_on(self, setup: Setup, progress: Progress, report: dict[str, Any] | None) -> Answer:
-        """Bring a setup to rest from where a report ended."""
-        taken = report["steps"] if report else 0
+    def go_on(self, setup: Setup, progress: Progress, trial: _core.Answer | None) -> Answer:
+        """Bring a setup to rest from where a trial ended."""
+        taken = trial.steps if trial else 0
         later = setup.problem.relax(
             tolerance=self.tolerance,
             max_steps=DEFAULT_MAX_STEPS - taken,
-            start=report["positions"] if report else None,
+            start=trial.positions if trial else None,
             progress=_counted_from(taken, progress),
         )
-        later["steps"] += taken
-        return _used(self.tolerance), later
+        return _used(self.tolerance), Report.of(later, taken)
 
 
 class QuickestRest(Method):
@@ -84,15 +84,16 @@ class QuickestRest(Method):
             trial=(TRIAL_STEPS, SLOW_RESIDUAL),
             progress=progress,
         )
-        if trial["status"] != "slow":
-            return _used(relaxation.tolerance), trial
-        counted = _counted_from(trial["steps"], progress)
+        if trial.status != _core.Status.SLOW:
+            return _used(relaxation.tolerance), Report.of(trial)
+        counted = _counted_from(trial.steps, progress)
         try:
             used, report = find_equilibrium(setup, LoadControl(**given), counted)
         except SimulationError:  # its tangent does not fit in memory
             return relaxation.go_on(setup, progress, trial)
-        if report["status"] == "at-rest" and report["stable"]:
-            return {**used, "trial_steps": trial["steps"]}, report
+        path = report.answer.path
+        if report.status == _core.Status.AT_REST and path is not None and path.stable:
+            return {**used, "trial_steps": trial.steps}, report
         return relaxation.go_on(setup, progress, trial)
 
 

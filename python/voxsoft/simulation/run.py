@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from voxsoft import _core
+from voxsoft._core import Status as Ended
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
-from voxsoft.simulation.method import Watch
+from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.setup import Setup
@@ -112,8 +113,8 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     """
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
-    report = problem.relax(tolerance=tolerance, max_steps=max_steps)
-    return result_of(setup, used, report, time.perf_counter() - started)
+    answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
+    return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
 
 
 def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
@@ -153,76 +154,86 @@ def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:
         )
 
 
-_STATUSES: dict[str, Status] = {
-    "at-rest": "ok",
-    "end-time": "ok",
-    "not-at-rest": "not-at-rest",
-    "diverged": "diverged",
-    "limit-reached": "not-at-rest",
-    "not-converged": "not-at-rest",
-    "mechanism": "not-at-rest",
+_STATUSES: dict[_core.Status, Status] = {
+    Ended.AT_REST: "ok",
+    Ended.END_TIME: "ok",
+    Ended.NOT_AT_REST: "not-at-rest",
+    Ended.DIVERGED: "diverged",
+    Ended.LIMIT_REACHED: "not-at-rest",
+    Ended.NOT_CONVERGED: "not-at-rest",
+    Ended.MECHANISM: "not-at-rest",
 }
 
 
-def result_of(setup: Setup, used: dict[str, Any], report: dict[str, Any], seconds: float) -> Result:
-    """Wrap the core's report in a :class:`Result`."""
+def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float) -> Result:
+    """Wrap what was found in a :class:`Result`."""
+    answer, path = report.answer, report.answer.path
     rest = setup.mesh.vertices
     still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
-    records = report["records"]
+    records = answer.records
     history = Recording(
-        times=report["record_times"],
+        times=answer.record_times,
         probes={
             name: records[:, index] - still[index] if len(records) else np.zeros((0, 3))
             for index, name in enumerate(setup.places)
         },
-        frames=report["frames"],
+        frames=answer.frames,
     )
     return Result(
         design=setup.design,
         mesh=setup.mesh,
         places=setup.places,
-        status=_STATUSES[report["status"]],
-        message=sentence(report) if used["method"] == "statics" else _sentence(report),
-        positions=report["positions"],
-        velocities=report["velocities"],
-        residual=report["residual"],
-        reactions=report["reactions"],
-        reaction=tuple(report["reaction"]),
-        reaction_moment=tuple(report["reaction_moment"]),
-        load=tuple(report["load"]),
-        load_moment=tuple(report["load_moment"]),
-        elastic_energy=report["elastic_energy"],
+        status=_STATUSES[report.status],
+        message=_sentence(report, used["way"]),
+        positions=answer.positions,
+        velocities=answer.velocities,
+        residual=answer.residual,
+        reactions=answer.reactions,
+        reaction=_triple(answer.reaction),
+        reaction_moment=_triple(answer.reaction_moment),
+        load=_triple(answer.load),
+        load_moment=_triple(answer.load_moment),
+        elastic_energy=answer.elastic_energy,
         mass=setup.problem.mass,
         solver=used,
-        steps=report["steps"],
-        back_offs=report["back_offs"],
-        time=report["time"],
+        steps=report.steps,
+        back_offs=answer.back_offs,
+        time=answer.time,
         seconds=seconds,
         history=history,
-        load_factor=report.get("factor", 1.0),
-        limit_factor=report.get("limit"),
-        stable=report.get("stable"),
+        load_factor=1.0 if path is None else path.factor,
+        limit_factor=None if path is None else path.limit,
+        stable=None if path is None else path.stable,
     )
 
 
-def _sentence(report: dict[str, Any]) -> str:
-    residual = f"residual {format_percent(report['residual'])} of the load"
-    steps = f"{report['steps']} steps"
-    match report["status"]:
-        case "at-rest":
+def _sentence(report: Report, way: str) -> str:
+    answer = report.answer
+    if answer.path is not None:
+        return sentence(way, report.status, report.steps, answer.residual, answer.path)
+    residual = f"residual {format_percent(answer.residual)} of the load"
+    steps = f"{report.steps} steps"
+    match report.status:
+        case Ended.AT_REST:
             return f"at rest after {steps}, {residual}"
-        case "end-time":
+        case Ended.END_TIME:
             return f"reached the end time after {steps}, {residual}"
-        case "not-at-rest":
+        case Ended.NOT_AT_REST:
             return (
                 f"not at rest after {steps}, {residual}; raise max_time, or check that the body "
                 "is held well enough to find a rest"
             )
         case _:
-            _, place, when = report["breakdown"]
+            assert answer.breakdown is not None  # so it is where a body diverged
+            _, place, when = answer.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             return (
                 f"diverged at ({point}) mm, after {when:.6g} "
-                f"{'s' if report['substep'] else 'steps'} and {report['back_offs']} halvings of "
+                f"{'s' if answer.substep else 'steps'} and {answer.back_offs} halvings of "
                 "the step: the material cannot carry the load, or it is a mechanism"
             )
+
+
+def _triple(values: list[float]) -> tuple[float, float, float]:
+    x, y, z = values
+    return x, y, z

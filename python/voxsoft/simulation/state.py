@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.method import Report
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.run import result_of
 from voxsoft.simulation.setup import Setup
@@ -59,7 +60,7 @@ def result_at(
     """
     if not np.isfinite(positions).all():
         raise SimulationError("state", "holds positions that are not finite", "go back before it")
-    report = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
+    answer = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
     used = {"method": "none", "way": "as it stands"}
-    measured = result_of(setup, used, report, seconds=0.0)
+    measured = result_of(setup, used, Report.of(answer), seconds=0.0)
     return replace(measured, status=status, message=message, time=time)

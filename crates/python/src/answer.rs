@@ -1,0 +1,96 @@
+//! What solvers found, as Python sees it: frozen classes with typed attributes, and how a solution ended.
+use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::prelude::*;
+use voxsoft_solid::Status;
+use voxsoft_solid::vector::Vec3;
+
+/// How a solution ended.
+#[pyclass(
+    frozen,
+    eq,
+    hash,
+    name = "Status",
+    module = "voxsoft._core",
+    rename_all = "SCREAMING_SNAKE_CASE"
+)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PyStatus {
+    AtRest,
+    EndTime,
+    Slow,
+    NotAtRest,
+    Diverged,
+    LimitReached,
+    NotConverged,
+    Mechanism,
+    OutOfMemory,
+    Cancelled,
+}
+
+impl From<Status> for PyStatus {
+    fn from(status: Status) -> Self {
+        match status {
+            Status::AtRest => Self::AtRest,
+            Status::EndTime => Self::EndTime,
+            Status::Slow => Self::Slow,
+            Status::NotAtRest => Self::NotAtRest,
+            Status::Diverged => Self::Diverged,
+            Status::LimitReached => Self::LimitReached,
+            Status::NotConverged => Self::NotConverged,
+            Status::Mechanism => Self::Mechanism,
+            Status::OutOfMemory(_) => Self::OutOfMemory,
+            Status::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+/// The last good state, how it was reached and what was recorded on the way.
+#[pyclass(frozen, get_all, name = "Answer", module = "voxsoft._core")]
+pub struct PyAnswer {
+    pub status: PyStatus,
+    pub positions: Py<PyArray2<f64>>,
+    pub velocities: Py<PyArray2<f64>>,
+    pub time: f64,
+    pub residual: f64,
+    pub steps: u64,
+    pub back_offs: u32,
+    pub substep: f64,
+    pub breakdown: Option<(usize, Vec3, f64)>,
+    pub reactions: Py<PyArray2<f64>>,
+    pub reaction: Vec3,
+    pub reaction_moment: Vec3,
+    pub load: Vec3,
+    pub load_moment: Vec3,
+    pub elastic_energy: f64,
+    pub record_times: Py<PyArray1<f64>>,
+    pub records: Py<PyArray3<f64>>,
+    pub frames: Py<PyArray3<f64>>,
+    pub path: Option<Py<PyPath>>,
+}
+
+/// How statics followed the loads.
+#[pyclass(frozen, get_all, name = "LoadPath", module = "voxsoft._core")]
+pub struct PyPath {
+    /// The load factor of the answer.
+    pub factor: f64,
+    /// The part of what the control was asked to follow that was followed.
+    pub reached: f64,
+    /// The load factor at the first limit, if one was met.
+    pub limit: Option<f64>,
+    /// Whether the answer is stable under constant loads.
+    pub stable: bool,
+    /// The bytes that the tangent takes, where that is too many.
+    pub needed_bytes: u64,
+    /// Factor, iterations, residual and stability of each converged point.
+    pub points: Py<PyArray2<f64>>,
+}
+
+/// The equilibria of many candidates, one row for each.
+#[pyclass(frozen, get_all, name = "Settlement", module = "voxsoft._core")]
+pub struct PySettlement {
+    pub status: Vec<PyStatus>,
+    pub positions: Py<PyArray3<f64>>,
+    pub residual: Py<PyArray1<f64>>,
+    pub iterations: Py<PyArray1<u32>>,
+    pub back_offs: Py<PyArray1<u32>>,
+}
