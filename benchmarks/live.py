@@ -94,8 +94,10 @@ def page(
     """Seconds of a substep and of a frame in Node, after its positions were compared."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "scene").write_bytes(_core.pack_scene(*shown, tolerance=1e-30))
-        command = ["node", RUNNER, CORE, folder / "scene", folder / "positions", str(substeps)]
+        scene = _core.Scene(*shown, tolerance=1e-30)
+        (folder / "scene").write_bytes(scene.pack('[{"t": "pace", "factor": 1}, {"t": "play"}]'))
+        seconds = substeps * _core.Live(*shown).substep
+        command = ["node", RUNNER, CORE, folder / "scene", folder / "positions", str(seconds)]
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         if not (np.fromfile(folder / "positions").reshape(expected.shape) == expected).all():
             raise SystemExit(f"{body}: the page's core comes to other bits")

@@ -407,6 +407,65 @@ class Fields:
         self, positions: NDArray[np.float64], element: int
     ) -> NDArray[np.float64]: ...
 
+#: Marks of messages, and what players share with the page.
+MAGIC: int
+HEADER: int
+MESSAGE_KINDS: dict[str, int]
+FRAME_FLAGS: dict[str, int]
+TOPOLOGY_FLAGS: dict[str, int]
+PACES: tuple[float, ...]
+FRAME_TIME: float
+STIFFNESS: float
+#: Number, name, title, unit, and whether zero is in the middle.
+FIELDS: tuple[tuple[int, str, str, str, bool], ...]
+#: Name and unit of what is plotted before the probes.
+PLOT_COLUMNS: tuple[tuple[str, str], ...]
+
+def pack_smooth(
+    topology: int,
+    points: NDArray[np.float64],
+    triangles: NDArray[np.uint32],
+    parts: NDArray[np.uint8],
+) -> bytes: ...
+
+@final
+class Outline:
+    """A surface or tetrahedra of a mesh without fields, packed into the messages of the studio."""
+
+    @staticmethod
+    def surface(
+        vertices: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxel_size: float,
+    ) -> Outline: ...
+    @staticmethod
+    def tets(
+        vertices: NDArray[np.float64],
+        tets: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxel_size: float,
+    ) -> Outline: ...
+    @property
+    def vertices(self) -> NDArray[np.uint32]: ...
+    @property
+    def triangles(self) -> NDArray[np.uint32]: ...
+    @property
+    def edges(self) -> NDArray[np.uint32]: ...
+    def pack_topology(self, topology: int) -> bytes: ...
+    def pack_frame(
+        self,
+        positions: NDArray[np.float64],
+        *,
+        topology: int,
+        field: int,
+        values: NDArray[np.float64] | None = None,
+        frame: int = 0,
+        seq: int = 0,
+        flags: int = 0,
+        time: float = 0.0,
+    ) -> bytes: ...
+
 @final
 class Display:
     """A surface or tetrahedra of a body, packed into the messages of the studio."""
@@ -436,6 +495,8 @@ class Display:
         time: float = 0.0,
         velocities: NDArray[np.float64] | None = None,
     ) -> bytes: ...
+    def values(self, positions: NDArray[np.float64], field: int) -> NDArray[np.float64]:
+        """A field at each of the vertices that are shown."""
 
 @final
 class Live:
@@ -493,18 +554,67 @@ class Live:
         display: Display | None = None,
     ) -> bytes: ...
 
-def pack_scene(
-    problem: Problem,
-    triangles: NDArray[np.uint32],
-    tags: NDArray[np.uint8],
-    voxel_size: float,
-    *,
-    time_step: float = 0.01,
-    substeps: int | None = None,
-    iterations: int = 1,
-    damping: float | None = None,
-    retardation: float = 0.0,
-    tolerance: float = 1e-4,
-    notes: str = "",
-) -> bytes:
-    """The scene that the WebAssembly core opens; notes are for the page."""
+class Scene:
+    """A problem with all it takes to play it: in this process, or in a page that opens its bytes.
+
+    Each control is a value and the loads that it changes; each probe a name, vertices and weights.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        triangles: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxel_size: float,
+        *,
+        topology: int = 1,
+        controls: Sequence[tuple[float, Sequence[int]]] = ...,
+        probes: Sequence[tuple[str, Sequence[int], Sequence[float]]] = ...,
+        substeps: int | None = None,
+        damping: float | None = None,
+        retardation: float = 0.0,
+        tolerance: float = 1e-4,
+    ) -> None: ...
+    def pack(self, notes: str = "", positions: NDArray[np.float64] | None = None) -> bytes:
+        """The bytes that a page opens; it shows positions first where they are given."""
+
+    def play(self, *, deterministic: bool = False) -> Player: ...
+
+@final
+class Player:
+    """A problem that lives; any thread may call.
+
+    Commands and events are JSON, as the messages of the studio; a command that cannot be done
+    raises a ValueError of where, what and hint.
+    """
+
+    def command(self, command: bytes) -> bytes: ...
+    def advance(self, seconds: float, budget: float) -> bytes:
+        """Let time go on, within a budget of the clock in s."""
+
+    def go_to_rest(
+        self,
+        positions: NDArray[np.float64],
+        state: str,
+        sentence: str,
+        residual: float,
+        elastic: float,
+    ) -> bytes: ...
+    def hold(self, sentence: str = "") -> None: ...
+    def halt(self, sentence: str) -> None: ...
+    def resume(self) -> None: ...
+    @property
+    def state(self) -> Literal["paused", "playing", "at-rest", "diverged", "past"]: ...
+    @property
+    def frame(self) -> int: ...
+    @property
+    def moving(self) -> bool: ...
+    @property
+    def wants_play(self) -> bool: ...
+    @property
+    def unloaded(self) -> bool: ...
+    def stat(self) -> bytes: ...
+    def plot(self) -> bytes: ...
+    def shown(self) -> bytes: ...
+    def positions(self) -> NDArray[np.float64]: ...
+    def pack_frame(self, field: int, seq: int = 0, display: Display | None = None) -> bytes: ...

@@ -69,7 +69,9 @@ let shown: number;
 
 beforeEach(async () => {
   [events, frames, seq, shown] = [[], [], 0, 0];
-  const run = (await Core.load(file("../public/voxsoft.wasm"))).open(file("beam.scene"));
+  // The time that passes is that of the test: no turn is cut short.
+  clock = 0;
+  const run = await Core.open(file("../public/voxsoft.wasm"), file("beam.scene"), () => clock);
   player = new Player(run, NOTES, {
     event: (event) => events.push(event),
     binary(message) {
@@ -78,7 +80,6 @@ beforeEach(async () => {
     },
   });
   player.greet();
-  clock = performance.now() + 60_000; // ahead of the real one: no turn is cut short here
 });
 
 describe("a scene that plays in the page", () => {
@@ -188,6 +189,7 @@ describe("slow motion", () => {
   it("takes no more substeps than are due, and a single one by hand", () => {
     take({ t: "pace", factor: 1 / 1000 });
     take({ t: "step", n: 1 });
+    pass(1);
     const { frame, substeps } = stat();
     expect([frame, substeps]).toEqual([1, 1]);
     take({ t: "play" });
@@ -195,6 +197,7 @@ describe("slow motion", () => {
     // A second at 1/1000 is a millisecond of time, some 13 substeps.
     expect(stat().time).toBeLessThan(0.0012);
     expect(stat().time).toBeGreaterThan(0.0008);
+    take({ t: "pause" }); // tells the rows that wait
     expect(rows().length).toBe(stat().frames_stored);
   });
 
@@ -229,15 +232,17 @@ it("tells where the body is in itself as it is shown first, until it moves", asy
     ...{ t: "overlap", topology: 4, depth: 0.001, sentence: "walls overlap" },
     places: [{ depth: 0.001, rest: [0, 0, 0], now: [0, 0, 0] }],
   };
-  const run = (await Core.load(file("../public/voxsoft.wasm"))).open(file("beam.scene"));
+  const run = await Core.open(file("../public/voxsoft.wasm"), file("beam.scene"));
   const heard: AnyEvent[] = [];
   const notes = { ...NOTES, overlap };
   const shown = new Player(run, notes, { event: (one) => heard.push(one), binary() {} });
   const told = () => heard.filter((one) => one.t === "overlap");
   shown.greet();
   expect(told()).toEqual([overlap]);
-  shown.take({ t: "step", seq: 1 });
-  shown.take({ t: "step", seq: 2 });
+  for (const seq of [1, 2]) {
+    shown.take({ t: "step", seq });
+    shown.turn(1000 * seq);
+  }
   expect(told()).toHaveLength(2);
   expect(told()[1]).toMatchObject({ topology: 4, sentence: "", places: [] });
 });

@@ -9,19 +9,18 @@ import pytest
 
 from voxsoft.studio import mesher
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.canvas import Canvas, Moment
+from voxsoft.studio.canvas import Canvas
 from voxsoft.studio.catalog import FIELDS
 from voxsoft.studio.mesher import Mesher
-from voxsoft.studio.mover import Mover
 from voxsoft.studio.pictures import Pictures
 from voxsoft.studio.playback import Playback
+from voxsoft.studio.player import Player
 from voxsoft.studio.surface import Surface
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.wire import CAVITY
 from voxsoft.voxels import Voxels
 
 DISPLACEMENT = next(field.id for field in FIELDS if field.name == "displacement")
-UNMOVED = Moment(frame=0, flags=1, time=0.0, mover=None, positions=None)
 
 
 @pytest.fixture(scope="module")
@@ -112,10 +111,10 @@ def drawn(packed):
 @pytest.mark.parametrize("mode", ["surface", "tets"])
 def test_the_first_frame_equals_what_the_core_packs(body, mode, monkeypatch):
     canvas = Canvas(body)
-    of_core = canvas.frame(UNMOVED._replace(mover=Mover(body)), DISPLACEMENT, mode)
+    of_core = canvas.frame(Player(body), DISPLACEMENT, mode)
     monkeypatch.setattr(Canvas, "_surface", None)
     monkeypatch.setattr(Canvas, "_tets", None)
-    points, _, span = drawn(Canvas(body).frame(UNMOVED, DISPLACEMENT, mode))
+    points, _, span = drawn(Canvas(body).frame(None, DISPLACEMENT, mode))
     expected, step, expected_span = drawn(of_core)
     assert (np.abs(points - expected) <= 1.01 * step).all()
     assert span == expected_span == (0.0, 0.0)

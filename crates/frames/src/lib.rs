@@ -1,8 +1,9 @@
 //! What the studio shows of a body, packed into the bytes that its client hands to the graphics processor.
 //!
-//! A [`Display`] is chosen once: the surface of a body or its tetrahedra, shrunk. Its *topology* (points at
-//! rest, triangles, edges) is sent once, then a *frame* for every picture: positions and one field,
-//! quantized to 16 bits. All numbers are little-endian, after a header of [`HEADER`] bytes:
+//! A [`Display`] is chosen once: the surface of a body or its tetrahedra, shrunk; an [`Outline`] is one without
+//! fields, of any mesh. Its *topology* (points at rest, triangles, edges) is sent once, then a *frame* for every
+//! picture: positions and one field, quantized to 16 bits. A *smooth* surface of shapes (kind 3) is laid out as a
+//! topology is, without edges. All numbers are little-endian, after a header of [`HEADER`] bytes:
 //!
 //! | at | type | topology | frame |
 //! |---|---|---|---|
@@ -24,8 +25,12 @@
 //! `origin + scale q / 65535`, the value `smallest + (largest − smallest) q / 65535`.
 
 mod display;
+mod field;
+mod outline;
 mod pack;
 
 pub use display::Display;
-pub use pack::{FrameHead, HEADER};
+pub use field::{FieldName, name_of};
+pub use outline::Outline;
+pub use pack::{FrameHead, HEADER, MAGIC, MessageKind, TopologyFlag, frame_flag, pack_smooth};
 pub use voxsoft_solid::fields::Field;

@@ -4,7 +4,38 @@ use voxsoft_solid::vector::Vec3;
 /// Bytes before the payload.
 pub const HEADER: usize = 64;
 
-const MAGIC: u32 = u32::from_le_bytes(*b"VXF1");
+/// The first four bytes of a message.
+pub const MAGIC: u32 = u32::from_le_bytes(*b"VXF1");
+
+/// What a message holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MessageKind {
+    /// What is drawn.
+    Topology = 1,
+    /// Where it is, with one field.
+    Frame = 2,
+    /// The smooth surface of shapes.
+    Smooth = 3,
+}
+
+/// What a topology describes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TopologyFlag {
+    /// A surface.
+    Surface = 1,
+    /// Tetrahedra, each drawn smaller than it is.
+    ShrunkTets = 2,
+}
+
+/// The bits of [`FrameHead::flags`].
+pub mod frame_flag {
+    /// Time stands still.
+    pub const PAUSED: u8 = 1;
+    /// The body could not be followed.
+    pub const DIVERGED: u8 = 2;
+    /// Nothing moves until something is changed.
+    pub const AT_REST: u8 = 4;
+}
 
 /// What the sender says with a frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -15,7 +46,7 @@ pub struct FrameHead {
     pub frame: u32,
     /// The number of the last input that was applied.
     pub seq: u32,
-    /// 1 paused, 2 diverged, 4 at rest.
+    /// Bits of [`frame_flag`].
     pub flags: u8,
 }
 
@@ -30,9 +61,9 @@ impl Bytes {
         self.0.extend_from_slice(&bytes);
     }
 
-    fn start(&mut self, kind: u8, flags: u8, field: u16, topology: u32, frame: u32) {
+    fn start(&mut self, kind: MessageKind, flags: u8, field: u16, topology: u32, frame: u32) {
         self.put(MAGIC.to_le_bytes());
-        self.put([kind, flags]);
+        self.put([kind as u8, flags]);
         self.put(field.to_le_bytes());
         self.put(topology.to_le_bytes());
         self.put(frame.to_le_bytes());
@@ -41,30 +72,53 @@ impl Bytes {
     fn pad(&mut self, length: usize) {
         self.0.resize(length, 0);
     }
+
+    /// Points, lists of corners, and a byte for each triangle.
+    fn mesh(&mut self, points: &[Vec3], corners: &[&[u32]], tags: &[u8]) {
+        self.pad(HEADER);
+        for value in points.as_flattened() {
+            self.put((*value as f32).to_le_bytes());
+        }
+        for corner in corners.iter().copied().flatten() {
+            self.put(corner.to_le_bytes());
+        }
+        self.0.extend_from_slice(tags);
+        self.pad(self.0.len().next_multiple_of(4));
+    }
 }
 
 pub(crate) fn pack_topology(
-    flag: u8,
+    flag: TopologyFlag,
     number: u32,
     voxel_size: f64,
     points: &[Vec3],
     (triangles, edges, tags): (&[[u32; 3]], &[[u32; 2]], &[u8]),
 ) -> Vec<u8> {
     let mut bytes = Bytes::new(12 * points.len() + 13 * triangles.len() + 8 * edges.len() + 4);
-    bytes.start(1, flag, 0, number, 0);
+    bytes.start(MessageKind::Topology, flag as u8, 0, number, 0);
     bytes.put(voxel_size.to_le_bytes());
     for count in [points.len(), triangles.len(), edges.len()] {
         bytes.put((count as u32).to_le_bytes());
     }
-    bytes.pad(HEADER);
-    for value in points.as_flattened() {
-        bytes.put((*value as f32).to_le_bytes());
+    let corners = [triangles.as_flattened(), edges.as_flattened()];
+    bytes.mesh(points, &corners, tags);
+    bytes.0
+}
+
+/// The message of the smooth surface of shapes at rest: its points (m), its triangles, and the part of each.
+pub fn pack_smooth(
+    topology: u32,
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    parts: &[u8],
+) -> Vec<u8> {
+    let mut bytes = Bytes::new(12 * points.len() + 13 * triangles.len() + 4);
+    bytes.start(MessageKind::Smooth, 0, 0, topology, 0);
+    bytes.put(0f64.to_le_bytes());
+    for count in [points.len(), triangles.len()] {
+        bytes.put((count as u32).to_le_bytes());
     }
-    for corner in triangles.as_flattened().iter().chain(edges.as_flattened()) {
-        bytes.put(corner.to_le_bytes());
-    }
-    bytes.0.extend_from_slice(tags);
-    bytes.pad(bytes.0.len().next_multiple_of(4));
+    bytes.mesh(points, &[triangles.as_flattened()], parts);
     bytes.0
 }
 
@@ -76,7 +130,13 @@ pub(crate) fn pack_frame(
     values: &[f64],
 ) -> Vec<u8> {
     let mut bytes = Bytes::new(8 * points.len());
-    bytes.start(2, head.flags, field as u16, head.topology, head.frame);
+    bytes.start(
+        MessageKind::Frame,
+        head.flags,
+        field as u16,
+        head.topology,
+        head.frame,
+    );
     bytes.put(time.to_le_bytes());
     bytes.put((points.len() as u32).to_le_bytes());
     bytes.put(head.seq.to_le_bytes());

@@ -1,4 +1,4 @@
-//! `_core.Live` and `_core.Display`: a run that goes on between calls, and what is shown of it.
+//! `_core.Live`: a run that goes on between calls.
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
@@ -8,124 +8,17 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::{PyBytes, PyDict};
-use voxsoft_frames::{Display, Field, FrameHead};
-use voxsoft_scene::{Scene, stepper};
+use voxsoft_frames::FrameHead;
+use voxsoft_player::stepper;
 use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, State, Stepper};
-use voxsoft_xpbd::{Damping, Dynamics};
+use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, Stepper};
+use voxsoft_xpbd::Dynamics;
 
+use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
+use crate::player::dynamics;
 use crate::simulate::{PyProblem, from_rows, rows};
-
-/// A surface or tetrahedra of a body, to be packed into frames.
-#[pyclass(frozen, name = "Display", module = "voxsoft._core")]
-pub struct PyDisplay {
-    problem: Arc<Problem>,
-    display: Display,
-}
-
-fn field(id: u16) -> PyResult<Field> {
-    let last = Field::ALL.len() - 1;
-    let message = || PyValueError::new_err(format!("no field {id}: there are 0 to {last}"));
-    Field::from_id(id).ok_or_else(message)
-}
-
-#[pymethods]
-impl PyDisplay {
-    /// Triangles of vertices, each with a tag for the client; a voxel size (m) above zero leaves face
-    /// diagonals out of the edges.
-    #[staticmethod]
-    fn surface(
-        problem: PyRef<'_, PyProblem>,
-        triangles: PyReadonlyArray2<'_, u32>,
-        tags: PyReadonlyArray1<'_, u8>,
-        voxel_size: f64,
-    ) -> PyResult<Self> {
-        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
-        let tags = tags.as_array().to_vec();
-        let problem = Arc::clone(&problem.problem);
-        let display = Display::surface(problem.body(), &triangles, &tags, voxel_size);
-        let display = display.map_err(to_python)?;
-        Ok(Self { problem, display })
-    }
-
-    /// Tetrahedra of vertices, drawn a little smaller than they are.
-    #[staticmethod]
-    fn tets(
-        problem: PyRef<'_, PyProblem>,
-        tets: PyReadonlyArray2<'_, u32>,
-        tags: PyReadonlyArray1<'_, u8>,
-        voxel_size: f64,
-    ) -> PyResult<Self> {
-        let tets: Vec<[u32; 4]> = rows("tets", &tets)?;
-        let tags = tags.as_array().to_vec();
-        let problem = Arc::clone(&problem.problem);
-        let display = Display::tets(problem.body(), &tets, &tags, voxel_size);
-        let display = display.map_err(to_python)?;
-        Ok(Self { problem, display })
-    }
-
-    /// The body vertices that are shown, in ascending order: those of the points of a surface.
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, self.display.vertices())
-    }
-
-    #[getter]
-    fn points(&self) -> usize {
-        self.display.points()
-    }
-
-    fn pack_topology<'py>(&self, py: Python<'py>, topology: u32) -> Bound<'py, PyBytes> {
-        let bytes = py.detach(|| self.display.topology(self.problem.body(), topology));
-        PyBytes::new(py, &bytes)
-    }
-
-    /// The frame of positions (m) that come from elsewhere.
-    #[pyo3(signature = (positions, *, topology, frame, field, seq=0, flags=0, time=0.0, velocities=None))]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "keyword arguments of one Python call"
-    )]
-    fn pack_frame<'py>(
-        &self,
-        py: Python<'py>,
-        positions: PyReadonlyArray2<'_, f64>,
-        topology: u32,
-        frame: u32,
-        field: u16,
-        seq: u32,
-        flags: u8,
-        time: f64,
-        velocities: Option<PyReadonlyArray2<'_, f64>>,
-    ) -> PyResult<Bound<'py, PyBytes>> {
-        let body = self.problem.body();
-        let mut state = State::at_rest(body);
-        let read = |what: &str, array: &PyReadonlyArray2<'_, f64>| {
-            let read: Vec<Vec3> = rows(what, array)?;
-            let (got, expected) = (read.len(), body.rest().len());
-            let message = || format!("{what}: {got} rows, expected {expected}");
-            (got == expected)
-                .then_some(read)
-                .ok_or_else(|| PyValueError::new_err(message()))
-        };
-        state.positions = read("positions", &positions)?;
-        if let Some(velocities) = velocities {
-            state.velocities = read("velocities", &velocities)?;
-        }
-        state.time = time;
-        let head = FrameHead {
-            topology,
-            frame,
-            seq,
-            flags,
-        };
-        let field = self::field(field)?;
-        let bytes = py.detach(|| self.display.frame(body, &state, field, head));
-        Ok(PyBytes::new(py, &bytes))
-    }
-}
 
 /// A problem in motion. Any thread may call any method; they take turns.
 #[pyclass(frozen, name = "Live", module = "voxsoft._core")]
@@ -232,13 +125,9 @@ impl PyLive {
     ) -> PyResult<Self> {
         let settings = Dynamics {
             time_step,
-            substeps,
             iterations,
-            damping: damping.map_or(Damping::Critical, Damping::Rate),
-            retardation,
-            tolerance,
             deterministic,
-            ..Dynamics::default()
+            ..dynamics(substeps, damping, retardation, tolerance)
         };
         let surface = PyDisplay::surface(problem, triangles, tags, voxel_size)?;
         let problem = Arc::clone(&surface.problem);
@@ -382,7 +271,7 @@ impl PyLive {
             let message = "display: it belongs to another problem";
             return Err(PyValueError::new_err(message));
         }
-        let field = self::field(field)?;
+        let field = field_of(field)?;
         let head = FrameHead {
             topology,
             frame,
@@ -395,49 +284,4 @@ impl PyLive {
         let bytes = py.detach(|| shown.display.frame(body, &state, field, head));
         Ok(PyBytes::new(py, &bytes))
     }
-}
-
-/// A problem with how it runs and what is shown, as the bytes that a page without a server opens.
-#[pyfunction]
-#[pyo3(signature = (problem, triangles, tags, voxel_size, *, time_step=0.01, substeps=None, iterations=1,
-    damping=None, retardation=0.0, tolerance=1e-4, notes=""))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "keyword arguments of one Python call"
-)]
-pub fn pack_scene<'py>(
-    py: Python<'py>,
-    problem: PyRef<'_, PyProblem>,
-    triangles: PyReadonlyArray2<'_, u32>,
-    tags: PyReadonlyArray1<'_, u8>,
-    voxel_size: f64,
-    time_step: f64,
-    substeps: Option<u32>,
-    iterations: u32,
-    damping: Option<f64>,
-    retardation: f64,
-    tolerance: f64,
-    notes: &str,
-) -> PyResult<Bound<'py, PyBytes>> {
-    let scene = Scene {
-        notes: notes.to_owned(),
-        settings: Dynamics {
-            time_step,
-            substeps,
-            iterations,
-            damping: damping.map_or(Damping::Critical, Damping::Rate),
-            retardation,
-            tolerance,
-            ..Dynamics::default()
-        },
-        mesh: problem.mesh.clone(),
-        materials: problem.materials.clone(),
-        clamps: problem.problem.clamps().to_vec(),
-        loads: problem.problem.loads().to_vec(),
-        floor: problem.problem.floor(),
-        voxel_size,
-        triangles: rows("triangles", &triangles)?,
-        tags: tags.as_array().to_vec(),
-    };
-    Ok(PyBytes::new(py, &py.detach(|| scene.write())))
 }

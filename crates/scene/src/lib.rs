@@ -1,38 +1,48 @@
-//! A problem with all it takes to run and show it, as bytes: what a page without a server opens.
+//! A problem with all it takes to play it, as bytes: what a page without a server opens.
 //!
-//! All numbers are little-endian. A list is its length (u32) and its entries.
-//!
-//! | part | content |
-//! |---|---|
-//! | head | magic `VXSC`, version u32 |
-//! | notes | list of bytes, UTF-8, of the writer's (the studio's names and units, JSON) |
-//! | settings | time step f64, substeps u32 (0: as many as needed), iterations u32, damping rate f64 (below zero: critical), retardation f64, tolerance f64 |
-//! | mesh | lists: vertices f64×3, tetrahedra u32×4, their parts u8, their blocks u32, filled parts of blocks f64, fillings f64×6 |
-//! | membranes | list: vertices u32×3, Young, Poisson, thickness, density f64 |
-//! | materials | list: kind u8, bulk, density f64, list of constants f64, list of fibers (direction f64×3, modulus f64, compression u8), list of Prony branches f64×2 |
-//! | clamps | list: vertices, axes u8×3, moves u8, then displacement, axis, angle, center f64×10 and a history |
-//! | loads | list: kind u8, its content, a history |
-//! | floor | u8, f64 |
-//! | shown | voxel size f64, list of triangles u32×3, list of their tags u8 |
-//!
-//! A history is two lists of f64, times and factors. [`Scene::read`] checks every length before it allocates;
-//! [`Scene::problem`] checks the mechanics.
+//! The magic `VXSC` and a version (u32, little-endian), then the scene in the format of the `postcard` crate,
+//! laid out as in `forms.rs`. [`Scene::read`] lets every material, clamp and load be checked by its own rules,
+//! and [`Scene::problem`] checks the mechanics.
 
-mod read;
-mod write;
+mod forms;
 
-use voxsoft_solid::{Body, Clamp, Floor, Load, Material, Mesh, Problem, ProblemError, Stepper};
-use voxsoft_statics::{Implicit, ImplicitSettings};
-use voxsoft_xpbd::{Dynamics, Live};
-
-pub use read::SceneError;
+use thiserror::Error;
+use voxsoft_frames::Display;
+use voxsoft_player::{Cast, Player};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Body, Clamp, Floor, Load, Material, Mesh, Problem, ProblemError};
+use voxsoft_xpbd::Dynamics;
 
 const MAGIC: [u8; 4] = *b"VXSC";
 
 /// The version that is written and read.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
-/// A problem with what it takes to run and show it.
+/// Why bytes are no scene.
+#[derive(Debug, Error, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum SceneError {
+    /// They do not begin as a scene does.
+    #[error("this is no scene of VoxSoft")]
+    NotAScene,
+    /// Another version wrote them.
+    #[error("the scene has the version {0}, this reads {VERSION}: export it again")]
+    Version(u32),
+    /// They end too early, or something between is not what it should be.
+    #[error("the scene is cut off or damaged")]
+    CutOff,
+    /// There is more after the end.
+    #[error("the scene has {0} bytes too many")]
+    TooLong(usize),
+    /// A value has no meaning.
+    #[error("the scene is damaged: {0}")]
+    Value(&'static str),
+    /// What is described cannot be.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+}
+
+/// A problem with what it takes to play it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Text of the writer's, which no one reads here.
@@ -55,30 +65,60 @@ pub struct Scene {
     pub triangles: Vec<[u32; 3]>,
     /// A tag for each triangle.
     pub tags: Vec<u8>,
-}
-
-/// What moves a problem live.
-///
-/// Bodies with hyperelastic voxels take implicit steps: their stiff change of volume would ask for explicit ones of
-/// microseconds. Bodies of springs and layers alone take the substeps that their frequency allows, and so does any
-/// body whose substeps are asked for.
-pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
-    if problem.body().bricks().is_empty() || settings.substeps.is_some() {
-        return Box::new(Live::new(problem, settings));
-    }
-    let settings = ImplicitSettings {
-        damping: settings.damping,
-        retardation: settings.retardation,
-        tolerance: settings.tolerance,
-        ..ImplicitSettings::default()
-    };
-    Box::new(Implicit::new(problem, settings))
+    /// What can be changed and what is plotted.
+    pub cast: Cast,
+    /// Where the vertices are shown first in m; `None`: unloaded.
+    pub positions: Option<Vec<Vec3>>,
 }
 
 impl Scene {
+    /// The scene as bytes.
+    pub fn write(&self) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&VERSION.to_le_bytes());
+        postcard::to_extend(&forms::Scene::from(self), bytes)
+            .expect("memory takes all bytes, and all lists have lengths")
+    }
+
+    /// Reads what [`Scene::write`] wrote. No list is allocated much beyond the bytes that are there.
+    pub fn read(bytes: &[u8]) -> Result<Self, SceneError> {
+        let (magic, bytes) = bytes.split_first_chunk().ok_or(SceneError::NotAScene)?;
+        if *magic != MAGIC {
+            return Err(SceneError::NotAScene);
+        }
+        let (version, bytes) = bytes.split_first_chunk().ok_or(SceneError::CutOff)?;
+        let version = u32::from_le_bytes(*version);
+        if version != VERSION {
+            return Err(SceneError::Version(version));
+        }
+        let (form, more): (forms::Scene, _) =
+            postcard::take_from_bytes(bytes).map_err(|_| SceneError::CutOff)?;
+        match more.len() {
+            0 => form.try_into(),
+            more => Err(SceneError::TooLong(more)),
+        }
+    }
+
     /// Builds the problem.
     pub fn problem(&self) -> Result<Problem, ProblemError> {
         let body = Body::new(&self.mesh, &self.materials)?;
         Problem::new(body, self.clamps.clone(), self.loads.clone(), self.floor)
+    }
+
+    /// Gets the problem ready to be played: with the same bits everywhere, if explicit steps move it and
+    /// `deterministic` is asked for.
+    pub fn play(&self, deterministic: bool) -> Result<Player, ProblemError> {
+        let problem = self.problem()?;
+        let (triangles, tags) = (&self.triangles, &self.tags);
+        let surface = Display::surface(problem.body(), triangles, tags, self.voxel_size)?;
+        let settings = Dynamics {
+            deterministic,
+            ..self.settings.clone()
+        };
+        let mut player = Player::new(problem, settings, surface, self.cast.clone());
+        if let Some(positions) = &self.positions {
+            player.show_first(positions.clone())?;
+        }
+        Ok(player)
     }
 }

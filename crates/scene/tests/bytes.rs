@@ -1,7 +1,7 @@
 //! What is written is read again, and no bytes make the reader fall over.
 
 use proptest::prelude::*;
-use voxsoft_frames::Display;
+use voxsoft_player::{Cast, Control, Probe};
 use voxsoft_scene::{Scene, SceneError};
 use voxsoft_solid::{
     Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, Material,
@@ -100,20 +100,26 @@ fn full() -> Scene {
         voxel_size: SIDE,
         tags: vec![0; triangles.len()],
         triangles,
+        cast: Cast {
+            topology: 4,
+            controls: vec![Control {
+                value: 300.0,
+                loads: vec![1, 2],
+            }],
+            probes: vec![Probe {
+                name: "tip".into(),
+                vertices: vec![3, 4],
+                weights: vec![0.25, 0.75],
+            }],
+        },
+        positions: Some(mesh.vertices.clone()),
         mesh,
     }
 }
 
 /// Reads, builds and shows; only errors may come.
 fn open(bytes: &[u8]) -> Result<(), SceneError> {
-    let scene = Scene::read(bytes)?;
-    let problem = scene.problem()?;
-    Display::surface(
-        problem.body(),
-        &scene.triangles,
-        &scene.tags,
-        scene.voxel_size,
-    )?;
+    Scene::read(bytes)?.play(true)?;
     Ok(())
 }
 
@@ -156,10 +162,30 @@ fn what_is_cut_off_or_too_long_is_told() {
     let mut newer = bytes.clone();
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
-    // A list that says to be longer than all there is is refused before it is read.
-    let endless = b"VXSC\x01\0\0\0\xff\xff\xff\xffab";
-    assert_eq!(Scene::read(endless), Err(SceneError::CutOff(8)));
+    // A list that says to be longer than all there is is refused once the bytes are used up.
+    let endless = b"VXSC\x02\0\0\0\xff\xff\xff\xff\x0fab";
+    assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
+}
+
+#[test]
+fn what_could_not_be_is_told() {
+    let spoilt = |spoil: fn(&mut Scene)| {
+        let mut scene = full();
+        spoil(&mut scene);
+        Scene::read(&scene.write())
+    };
+    let what = |told| Err(SceneError::Value(told));
+    let found = spoilt(|scene| scene.cast.controls[0].loads.push(3));
+    assert_eq!(found, what("a control"));
+    let found = spoilt(|scene| scene.cast.probes[0].vertices[0] = 999);
+    assert_eq!(found, what("a probe"));
+    let found = spoilt(|scene| scene.cast.probes[0].weights.truncate(1));
+    assert_eq!(found, what("a probe"));
+    let found = spoilt(|scene| scene.settings.tolerance = f64::NAN);
+    assert_eq!(found, what("settings of the run"));
+    let found = spoilt(|scene| scene.floor = Some(Floor { z: f64::INFINITY }));
+    assert_eq!(found, what("height of the floor"));
 }
 
 proptest! {
@@ -169,7 +195,7 @@ proptest! {
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = open(&bytes);
         // The same behind a good head, so that lengths and kinds are reached.
-        let _ = open(&[b"VXSC\x01\0\0\0", &bytes[..]].concat());
+        let _ = open(&[b"VXSC\x02\0\0\0", &bytes[..]].concat());
     }
 
     #[test]

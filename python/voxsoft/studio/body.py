@@ -27,7 +27,7 @@ from voxsoft.simulation.loads import read
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
-from voxsoft.studio.surface import Surface, pack_surface
+from voxsoft.studio.surface import Surface
 from voxsoft.units import format_quantity, parse
 from voxsoft.voxels import Voxels
 
@@ -130,10 +130,6 @@ class StudioBody:
         )
         return Setup(design.replace(loads=loads), self.mesh)
 
-    def packed(self) -> bytes:
-        """The surface as the page reads it."""
-        return pack_surface(self.surface, self.mesh, self.topology)
-
     def report(self) -> CheckReport:
         """What the checks report of it; slower than the mesh itself."""
         setup = self.setup
@@ -158,7 +154,7 @@ class StudioBody:
             vertices=len(rest),
             tets=len(mesh.tets),
             surface_vertices=len(self.surface.vertices),
-            triangles=len(self.surface.triangles),
+            triangles=len(mesh.triangles),
             voxel_size=mesh.voxel_size or 0.0,
             cavities=[
                 events.Cavity(

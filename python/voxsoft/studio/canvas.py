@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +12,12 @@ from voxsoft import _core
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
-from voxsoft.studio.frames import pack_points, value_at
-from voxsoft.studio.mover import Mover
-from voxsoft.studio.surface import ShrunkTets, pack_tets
+from voxsoft.studio.message import Triple
+from voxsoft.studio.player import Player
+from voxsoft.studio.surface import tets_to_draw
+from voxsoft.studio.wire import FrameFlag
 
-
-class Moment(NamedTuple):
-    """What is shown of a body: the present of its mover, or positions [m] of another time [s]."""
-
-    frame: int
-    flags: int
-    time: float
-    mover: Mover | None
-    positions: NDArray[np.float64] | None
+_STILL: Final = FrameFlag.PAUSED
 
 
 class Canvas:
@@ -41,73 +34,38 @@ class Canvas:
 
     def topology(self, mode: str) -> bytes:
         """The surface, or the tetrahedra, as the page reads them."""
-        body = self._body
-        if mode == "surface":
-            return body.packed()
-        return pack_tets(self._shrunk, body.mesh, body.topology)
+        outline = self._body.surface.outline if mode == "surface" else self._outline_of_tets
+        return outline.pack_topology(self._body.topology)
 
-    def frame(self, moment: Moment, field: int, mode: str, seq: int = 0) -> bytes:
-        """A moment as the page reads it."""
+    def frame(self, player: Player | None, field: int, mode: str, seq: int = 0) -> bytes:
+        """What a player looks at as the page reads it; without one, the body as it was made."""
         body, tets = self._body, mode == "tets"
-        frame, seq = moment.frame & 0xFFFF_FFFF, seq & 0xFFFF_FFFF
-        unmoved = moment.mover is None and moment.positions is None
-        if body.refusal is not None or (unmoved and field == DISPLACEMENT):
+        if player is not None:
+            return player.packed(field, seq, self._tets if tets else None)
+        rest, topology, seq = body.mesh.vertices, body.topology, seq & 0xFFFF_FFFF
+        if body.refusal is not None or field == DISPLACEMENT:
             # Nothing moves what cannot be solved, and the core holds no such problem. And a shape
             # that has only just come is shown before the core gets ready for its fields.
-            rest = body.mesh.vertices
-            points = self._shrunk.points(rest) if tets else rest[body.surface.vertices]
-            return pack_points(
-                points,
-                np.zeros(len(points)),
-                topology=body.topology,
-                frame=frame,
-                time=0.0,
-                seq=seq,
-                field=field,
-                flags=moment.flags,
-            )
-        if moment.positions is None and moment.mover is not None:
-            display = self._tets if tets else None
-            return moment.mover.packed(frame, field, seq, moment.flags, display)
-        return (self._tets if tets else self._surface).pack_frame(
-            self.positions(moment),
-            topology=body.topology,
-            frame=frame,
-            field=field,
-            seq=seq,
-            flags=moment.flags,
-            time=moment.time,
+            outline = self._outline_of_tets if tets else body.surface.outline
+            return outline.pack_frame(rest, topology=topology, field=field, seq=seq, flags=_STILL)
+        display = self._tets if tets else self._surface
+        return display.pack_frame(
+            rest, topology=topology, frame=0, field=field, seq=seq, flags=_STILL
         )
 
-    def positions(self, moment: Moment) -> NDArray[np.float64]:
+    def positions(self, player: Player | None) -> NDArray[np.float64]:
         """Where the vertices of the mesh are [m]."""
-        if moment.positions is not None:
-            return moment.positions
-        return self._body.mesh.vertices if moment.mover is None else moment.mover.positions()
+        return self._body.mesh.vertices if player is None else player.positions()
 
-    def picked(self, moment: Moment, shown: int) -> events.Picked:
-        """All that is known of a vertex of the surface, fields to the 16 bits of a frame."""
-        body = self._body
-        vertex = int(body.surface.vertices[shown])
-        rest, now = body.mesh.vertices[vertex], self.positions(moment)[vertex]
-        values = []
-        for field in FIELDS:
-            value = None
-            if body.refusal is None:
-                value = value_at(self.frame(moment, field.id, "surface"), shown)
-            values.append(
-                events.Value(field=field.id, name=field.name, value=value, unit=field.unit)
-            )
-        return events.Picked(
-            vertex=shown,
-            rest=(float(rest[0]), float(rest[1]), float(rest[2])),
-            position=(float(now[0]), float(now[1]), float(now[2])),
-            values=values,
-        )
-
-    @cached_property
-    def _shrunk(self) -> ShrunkTets:
-        return ShrunkTets.of(self._body.mesh, self._body.surface)
+    def picked(self, shown: int) -> events.Picked:
+        """Where a vertex of the surface is on a body that has no fields."""
+        x, y, z = self._body.mesh.vertices[self._body.surface.vertices[shown]].tolist()
+        at: Triple = (x, y, z)
+        values = [
+            events.Value(field=field.id, name=field.name, value=None, unit=field.unit)
+            for field in FIELDS
+        ]
+        return events.Picked(vertex=shown, rest=at, position=at, values=values)
 
     @cached_property
     def _surface(self) -> _core.Display:
@@ -116,7 +74,13 @@ class Canvas:
         return _core.Display.surface(body.setup.problem, triangles, body.surface.tags, size)
 
     @cached_property
+    def _outline_of_tets(self) -> _core.Outline:
+        mesh = self._body.mesh
+        tets, tags = tets_to_draw(mesh, self._body.surface)
+        return _core.Outline.tets(mesh.vertices, tets, tags, mesh.voxel_size or 0.0)
+
+    @cached_property
     def _tets(self) -> _core.Display:
-        body, shrunk = self._body, self._shrunk
-        tags, size = shrunk.tags[::4].copy(), body.mesh.voxel_size or 0.0
-        return _core.Display.tets(body.setup.problem, shrunk.corners, tags, size)
+        body = self._body
+        tets, tags = tets_to_draw(body.mesh, body.surface)
+        return _core.Display.tets(body.setup.problem, tets, tags, body.mesh.voxel_size or 0.0)

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from msgspec import Meta, field
 
+from voxsoft._core import STIFFNESS
 from voxsoft.studio.message import Entry, Json, Message, Triple
 
 Count = Annotated[int, Meta(ge=0)]
@@ -116,7 +117,7 @@ class Grab(Command):
     id: Count
     vertex: Count
     target: Triple
-    stiffness: Positive = 50.0
+    stiffness: Positive = STIFFNESS
 
 
 class Release(Command):

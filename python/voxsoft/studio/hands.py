@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.message import Triple
-from voxsoft.studio.mover import Mover
+from voxsoft.studio.player import Player
 
 
 @dataclass(frozen=True)
@@ -38,15 +39,14 @@ class _Pull:
 class Hands:
     """Loads by their place in the design, those that are as written being None, and pulls."""
 
-    loads: tuple[_Load | None, ...]
-    pulls: tuple[_Pull, ...]
+    loads: tuple[_Load | None, ...] = ()
+    pulls: tuple[_Pull, ...] = ()
 
     @classmethod
-    def on(cls, mover: Mover) -> Hands:
-        """See what hands have done to a body in motion."""
-        body = mover.body
+    def on(cls, body: StudioBody, stat: events.Stat) -> Hands:
+        """See what hands have done to a body that is played."""
         rest = body.mesh.vertices[body.surface.vertices]
-        pairs = zip(body.loads, mover.loads, strict=True)
+        pairs = zip(body.loads, stat.loads, strict=True)
         return cls(
             tuple(
                 None if now == load.value else _Load(load.kind, load.value, now)
@@ -54,7 +54,7 @@ class Hands:
             ),
             tuple(
                 _Pull(pull.id, rest[pull.vertex], pull.target, pull.stiffness)
-                for pull in mover.grabs()
+                for pull in stat.grabs
             ),
         )
 
@@ -63,15 +63,19 @@ class Hands:
         """Whether they have done nothing."""
         return not self.pulls and not any(self.loads)
 
-    def lay_on(self, body: StudioBody) -> Mover:
+    def lay_on(self, body: StudioBody, player: Player) -> None:
         """Do the same to another body; a load that was written anew is left as it is written."""
-        mover = Mover(body)
         for index, (load, held) in enumerate(zip(body.loads, self.loads, strict=False)):
             if held is not None and (load.kind, load.value) == (held.kind, held.written):
-                mover.set_load(index, value=held.now, factor=None)
+                player.do(commands.Load(seq=0, index=index, value=held.now))
         rest = body.mesh.vertices[body.surface.vertices]
         for pull in self.pulls:
-            shown = int(np.linalg.norm(rest - pull.at, axis=1).argmin())
-            vertex = int(body.surface.vertices[shown])
-            mover.grab(pull.number, vertex, pull.target, pull.stiffness, shown=shown)
-        return mover
+            player.do(
+                commands.Grab(
+                    seq=0,
+                    id=pull.number,
+                    vertex=int(np.linalg.norm(rest - pull.at, axis=1).argmin()),
+                    target=pull.target,
+                    stiffness=pull.stiffness,
+                )
+            )

@@ -22,9 +22,9 @@ from voxsoft.simulation import Result
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
-from voxsoft.studio.mover import TOLERANCE, inner_loads
 from voxsoft.studio.overlap_event import overlap_of
 from voxsoft.studio.page import page_file
+from voxsoft.studio.scene import scene_of
 
 #: The page without a scene, built with the studio's page.
 TEMPLATE: Final = "viewer.html"
@@ -42,10 +42,7 @@ class Notes(msgspec.Struct):
     sentence: str
     fields: list[events.Field]
     body: events.Body
-    #: Where the page shows the vertices first: x, y, z of each in m, as little-endian float64 in
-    #: base64; None: unloaded.
-    positions: str | None = None
-    #: Where the body is in itself there; None: nowhere, or unloaded.
+    #: Where the body is in itself as it is shown first; None: nowhere, or unloaded.
     overlap: events.Overlap | None = None
 
 
@@ -115,30 +112,18 @@ def page_of_body(
     """
     if body.refusal is not None:
         raise body.refusal
-    setup = body.under(factors) if factors else body.setup
-    design = setup.design
-    solver = design.solver
+    body = replace(body, setup=body.under(factors)) if factors else body
+    design = body.setup.design
     notes = Notes(
         version=_core.__version__,
         name=design.name,
         text=text or design.to_toml(),
         sentence=sentence or "Press play, pull on the body, change the loads.",
         fields=list(FIELDS),
-        body=_event(replace(body, setup=setup)),
-        positions=None if positions is None else _packed(positions),
+        body=body.event(),
         overlap=None if positions is None else _overlap(body, design, positions),
     )
-    scene = _core.pack_scene(
-        setup.problem,
-        body.mesh.triangles.astype(np.uint32),
-        body.surface.tags,
-        body.mesh.voxel_size or 0.0,
-        substeps=solver.substeps,
-        damping=solver.damping if isinstance(solver.damping, float) else None,
-        retardation=solver.retardation or 0.0,
-        tolerance=TOLERANCE,
-        notes=msgspec.json.encode(notes).decode(),
-    )
+    scene = scene_of(body).pack(msgspec.json.encode(notes).decode(), positions)
     return LivePage(_filled(scene, design.name))
 
 
@@ -147,17 +132,6 @@ def _overlap(
 ) -> events.Overlap | None:
     found = overlap_of(design, body.mesh, positions, body.topology)
     return found if found.places else None
-
-
-def _event(body: StudioBody) -> events.Body:
-    """What the page is told of a body; a load of several cavities counts once for each."""
-    event = body.event()
-    event.loads = [
-        msgspec.structs.replace(told, index=inner)
-        for told in event.loads
-        for inner in inner_loads(body, told.index)
-    ]
-    return event
 
 
 def page_of(shown: Design | Result) -> LivePage:
@@ -193,10 +167,6 @@ def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] =
     if not file.is_file():
         raise FileError(str(origin), "is no run folder: it holds no design.toml")
     page_of(load(file, assignments=assignments)).save(target)
-
-
-def _packed(positions: NDArray[np.float64]) -> str:
-    return base64.b64encode(positions.astype("<f8").tobytes()).decode("ascii")
 
 
 def _filled(scene: bytes, name: str) -> str:

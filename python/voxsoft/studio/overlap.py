@@ -6,7 +6,6 @@ import time
 from typing import Final
 
 from voxsoft.studio import events
-from voxsoft.studio.canvas import Moment
 from voxsoft.studio.event_bus import EventBus
 from voxsoft.studio.overlap_event import overlap_of
 from voxsoft.studio.playback import Playback
@@ -30,7 +29,7 @@ class OverlapWatch:
 
     def __init__(self, playback: Playback, bus: EventBus) -> None:
         self._playback, self._bus = playback, bus
-        self._seen: tuple[int, int] | None = None
+        self._seen: tuple[int, int, bool] | None = None
         self._next = 0.0
         self._told: events.Overlap | None = None
 
@@ -40,12 +39,11 @@ class OverlapWatch:
         body = playback.body
         if body is None or body.refusal is not None or (playback.moving and started < self._next):
             return
-        moment = playback.moment
-        key = (body.topology, _number(playback, moment))
+        key = (body.topology, playback.frame, playback.state == "past")
         if key == self._seen:
             return
         self._seen = key
-        positions = playback.require_canvas().positions(moment)
+        positions = playback.require_canvas().positions(playback.player)
         found = overlap_of(body.setup.design, body.setup.mesh, positions, body.topology)
         ended = time.perf_counter()
         self._next = ended + max(EVERY, (ended - started) / SHARE)
@@ -59,7 +57,3 @@ class OverlapWatch:
         """Tell a new tab what the others know."""
         if self._told is not None:
             self._bus.send_to(tab, self._told)
-
-
-def _number(playback: Playback, moment: Moment) -> int:
-    return moment.frame if playback.shown is None else -moment.frame

@@ -58,7 +58,7 @@ class Pictures:
         self._bus.topology_for(tab, canvas.topology(tab.view.mode))
         if self._smooth is not None:
             self._bus.smooth_for(tab, self._smooth)
-        self._bus.send_to(tab, self._playback.plots.whole())
+        self._bus.send_to(tab, self._playback.plot())
         self.repaint(tab)
 
     def change_mode(self, tab: Tab) -> None:
@@ -87,11 +87,10 @@ class Pictures:
         body, canvas = playback.body, playback.canvas
         if body is None or canvas is None or not tab.ready:
             return
-        number = playback.frame if playback.shown is None else -playback.shown.number
-        key = (body.topology, number, view.field, view.mode, playback.state)
+        key = (body.topology, playback.frame, view.field, view.mode, playback.state)
         if tab.painted != key:
             tab.painted = key
-            self._bus.frame(tab, canvas.frame(playback.moment, view.field, view.mode, tab.seq))
+            self._bus.frame(tab, canvas.frame(playback.player, view.field, view.mode, tab.seq))
 
     def _event(self, body: StudioBody) -> events.Body:
         event = body.event(self._report)

@@ -1,275 +1,233 @@
-"""What is shown of a body, and when: the present or a stored frame, moving or still."""
+"""What is shown of a body: its player, once there is something to play, and what goes on beside."""
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Final
+from typing import Final, Literal
 
-import numpy as np
-
+from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
 from voxsoft.simulation.result import Status
-from voxsoft.studio import events
+from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.canvas import Canvas, Moment
+from voxsoft.studio.canvas import Canvas
 from voxsoft.studio.exports import Shown
 from voxsoft.studio.hands import Hands
-from voxsoft.studio.mover import Mover
-from voxsoft.studio.pace import Pace, RealTimeFactor
-from voxsoft.studio.past import Past, StoredFrame
-from voxsoft.studio.plots import Plots
-from voxsoft.studio.sentences import at_rest, diverged, time_text
-from voxsoft.studio.wire import FrameFlag
+from voxsoft.studio.player import Command, Event, Player
+from voxsoft.studio.probes import Probe, moved_probes, placed_probes
+from voxsoft.studio.sentences import time_text
 
 #: How a search for rest may have ended, in the words of the page.
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
-_IDLE: Final = Hands((), ())
 #: What a run that is kept of a state is said to be.
 _KEPT: Final[dict[events.SimulationState, Status]] = {"at-rest": "ok", "diverged": "diverged"}
 
 
 @dataclass(eq=False)
 class Playback:
-    """One body at a time, and how it moves; it knows neither tabs nor threads.
+    """One body at a time; it knows neither tabs nor threads.
+
+    The player comes with the first command that needs one: a shape that has only just come is shown
+    before the core gets ready to move it.
 
     Attributes
     ----------
     body, canvas
         What is shown, and what draws it.
-    state, sentence, progress
-        How the simulation stands, in a word, in a sentence, and the part that is done.
-    wants_play
-        Whether time runs again once a load or a pull wakes the body.
-    steps_left
-        Frames until time stops, or None to go on.
-    pace
-        How fast time is shown.
+    player
+        What moves it, if anything does yet.
+    doing, sentence, progress
+        What is done instead of playing, in a word and a sentence, and the part of it that is done.
     method
         The solver of the search for rest.
-    frame
-        Number of the present frame.
-    past, shown
-        Stored frames, and the one that is looked at; None for the present.
-    plots
-        What is plotted over time.
     result
         The state at rest that a solver found, while the body is in it.
     """
 
     body: StudioBody | None = None
     canvas: Canvas | None = None
-    state: events.SimulationState = "empty"
+    player: Player | None = None
+    doing: Literal["meshing", "solving"] | None = None
     sentence: str = ""
     progress: float | None = None
-    wants_play: bool = False
-    steps_left: int | None = None
-    pace: Pace = field(default_factory=Pace)
     method: str = "auto"
-    frame: int = 0
-    past: Past = field(default_factory=Past)
-    shown: StoredFrame | None = None
-    plots: Plots = field(default_factory=Plots)
     result: Result | None = None
-    _mover: Mover | None = None
+    _pace: float | None = None
+    _probes: list[Probe] = field(default_factory=list)
     _hands: Hands | None = None
-    _speed: RealTimeFactor = field(default_factory=RealTimeFactor)
-    _step_ms: float = 0.0
 
-    def begin(self, body: StudioBody) -> None:
-        """Take another body, unloaded and at time zero; what hands did to the one before stays."""
-        if self._mover is not None and self._hands is None:
-            self._hands = Hands.on(self._mover)
-        self.body, self.canvas = body, Canvas(body)
-        self.plots.begin(body)
-        self._mover, self.result, self.shown = None, None, None
-        self.past, self.frame = Past(), 0
-        self.state, self.progress, self.pace.rest_in = "paused", None, None
+    def begin(self, body: StudioBody) -> bool:
+        """Take another body, at rest; hands and probes of the one before go on with it.
+
+        Returns
+        -------
+        bool
+            Whether time shall run again.
+        """
+        before, player = self.body, self.player
+        if before is not None and player is not None and self._hands is None:
+            self._hands = Hands.on(before, player.stat())
+        moved = [] if before is None else moved_probes(self._probes, before, body)
+        self.body, self.canvas, self.player = body, Canvas(body), None
+        self._probes = [*placed_probes(body), *moved]
+        self.result = self.doing = self.progress = None
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
         if body.refusal is None and self._hands is not None:
-            self._mover = None if self._hands.idle else self._hands.lay_on(body)
+            if not self._hands.idle:
+                self._hands.lay_on(body, self.require_player())
             self._hands = None
+        return player is not None and player.wants_play
 
     def let_go(self) -> None:
-        """Forget what hands did, as another document is opened."""
-        self._hands = _IDLE
+        """Stop time and forget what hands did, as another document is opened."""
+        if self.player is not None:
+            self.player.do(commands.Pause(seq=0))
+        self._hands = Hands()
 
-    def reset(self) -> None:
+    def do(self, command: Command) -> list[Event]:
+        """Do what a command asks of the player, and give what there is to tell.
+
+        Raises
+        ------
+        VoxSoftError
+            There is no body, it cannot be solved, or it cannot be done.
+        """
+        return self.require_player().do(command)
+
+    def advance(self, seconds: float, budget: float) -> list[Event]:
+        """Let time go on by some seconds, or as far as a budget of the clock allows [s]."""
+        return self.require_player().advance(seconds, budget)
+
+    def reset(self) -> list[Event]:
         """Go back to the unloaded shape at time zero."""
-        self.wants_play = False
-        self.shown, self.result = None, None
-        self.past, self.frame = Past(), 0
-        self.plots.clear()
-        if self._mover is not None:
-            self._mover.reset()
-        self.state = "paused" if self.body is not None else "empty"
-        self.sentence, self.progress, self.pace.rest_in = "", None, None
-
-    def halt(self, state: events.SimulationState, sentence: str) -> None:
-        """Stop time for good, and say why."""
-        self.state, self.sentence, self.wants_play = state, sentence, False
-
-    def play(self) -> None:
-        """Let time run.
-
-        Raises
-        ------
-        SimulationError
-            There is no body.
-        VoxSoftError
-            The body cannot be solved.
-        """
-        self.require_mover()
         self.result = None
-        self.state, self.sentence, self.progress = "playing", "", None
-        self.steps_left = None
-        self._speed.restart()
-
-    def look_ahead(self) -> None:
-        """Find out how soon the body comes to rest, to show it slowly enough to be seen.
-
-        Raises
-        ------
-        VoxSoftError
-            Nothing can move.
-        """
-        mover = self.require_mover()
-        if mover.unloaded:
-            self.pace.rest_in = mover.time_to_rest()
+        self.stop_doing()
+        if self.player is None:
+            self.sentence = ""
+            return [self.plot(), self.stat()]
+        return self.do(commands.Reset(seq=0))
 
     def choose_pace(self, factor: float | None) -> None:
-        """Take the user's pace, or None for the automatic one."""
-        self.pace.chosen = factor
-        self._speed.restart()
+        """Take the user's pace for this body and all that come, or None for the automatic one."""
+        self._pace = factor
+        if self.player is not None:
+            self.player.do(commands.Pace(seq=0, factor=factor))
 
-    def touched(self) -> None:
-        """Hear that a hand is on a load or a pull: what it does is shown at once."""
-        self.result, self.pace.rest_in = None, None
-
-    def to_present(self) -> None:
-        """Look at the present again."""
-        if self.shown is not None:
-            self.shown, self.state, self.sentence = None, "paused", ""
-
-    def look_at(self, number: int, time: float | None = None) -> None:
-        """Look at a stored frame by number, or by time [s] where one is given; time stops.
-
-        The nearest that is still there is taken.
+    def add_probe(self, command: commands.Probe) -> list[Event]:
+        """Plot a vertex of the surface from now on.
 
         Raises
         ------
         SimulationError
-            No frame is stored.
+            There is no body, or no such vertex.
         """
-        stored = self.past.at(number) if time is None else self.past.at_time(time)
-        if stored is None:
-            raise SimulationError("seek", "no frame is stored yet", "press play first")
-        self.wants_play = False
-        self.shown, self.state, self.progress = stored, "past", None
-        self.sentence = f"Frame {stored.number} of {self.past.last}"
+        self.require_canvas(command.vertex)
+        probe = Probe.at(self.require_body(), command.vertex)
+        if all(other.name != probe.name for other in self._probes):
+            self._probes.append(probe)
+        return [self.plot()] if self.player is None else self.do(command)
 
-    def take_frame(self, seconds: float, budget: float) -> None:
-        """Move for the time between two frames, or as far as a budget of the clock allows [s].
+    def picked(self, command: commands.Pick) -> events.Picked:
+        """All that is known of a vertex of the surface; of a body that cannot be solved, its place.
 
-        In slow motion there may be no step to take yet; then there is no frame either.
+        Raises
+        ------
+        SimulationError
+            There is no body, or no such vertex.
         """
-        mover = self.require_mover()
-        began = time.perf_counter()
-        steps = mover.advance(seconds * self.pace.factor, budget)
-        ended = time.perf_counter()
-        self._speed.mark(mover.time, ended)
-        if steps:
-            self._step_ms = 1e3 * (ended - began) / steps
-        elif mover.state == "moving":
-            return
-        self.frame += 1
-        positions = mover.positions()
-        self.past.keep(self.frame, mover.time, positions, mover.loads, mover.grabs())
-        self.plots.record(mover, positions)
-        if mover.state == "at-rest":
-            self.state, self.sentence = "at-rest", at_rest(mover.time, mover.tolerance)
-        elif mover.state == "diverged":
-            self.halt("diverged", diverged(mover.time, mover.breakdown))
-        if self.steps_left is not None:
-            self.steps_left -= 1
-            if self.steps_left <= 0 and self.moving:
-                self.state = "paused"
+        canvas = self.require_canvas(command.vertex)
+        if self.require_body().refusal is not None:
+            return canvas.picked(command.vertex)
+        return next(event for event in self.do(command) if isinstance(event, events.Picked))
 
-    def go_to_rest(self, result: Result) -> None:
-        """Take the state at rest that a solver found."""
-        self.result, self.progress = result, None
-        self.state = _STATES.get(result.status, "paused")
+    def begin_search(self, sentence: str) -> None:
+        """Stand still while a solver looks for the state at rest."""
+        if self.player is not None:
+            self.player.hold()
+        self.doing, self.sentence, self.progress = "solving", sentence, 0.0
+
+    def stop_doing(self) -> None:
+        """Do nothing beside playing any more."""
+        self.doing, self.progress = None, None
+
+    def say(self, sentence: str, *, for_good: bool = False) -> None:
+        """Stop time, and say why: until a load or a pull wakes the body, or for good."""
+        self.stop_doing()
+        if self.player is None:
+            self.sentence = sentence
+        elif for_good:
+            self.player.halt(sentence)
+        else:
+            self.player.hold(sentence)
+
+    def go_to_rest(self, result: Result) -> list[Event]:
+        """Take the state at rest that a solver found, and give what there is to tell."""
+        player = self.require_player()
+        self.stop_doing()
+        self.result = result
         said = f"{result.message[:1].upper()}{result.message[1:]}"
-        self.sentence = f"{said}, in {time_text(result.seconds)}."
-        mover = self.require_mover()
-        for pull in mover.grabs():  # no solver knows of them
-            mover.release(pull.id)
-        mover.go_to_rest(result.positions, result.residual, result.elastic_energy)
-        self.frame += 1
-        self.past.keep(self.frame, self.time, result.positions, mover.loads)
-        self.plots.record(mover, result.positions)
+        return player.go_to_rest(
+            result.positions,
+            _STATES.get(result.status, "paused"),
+            f"{said}, in {time_text(result.seconds)}.",
+            residual=result.residual,
+            elastic=result.elastic_energy,
+        )
 
     @property
     def moving(self) -> bool:
         """Whether time runs."""
-        return self.state == "playing"
+        return self.player is not None and self.player.moving
 
     @property
-    def time(self) -> float:
-        """The time that is looked at [s]."""
-        if self.shown is not None:
-            return self.shown.time
-        return 0.0 if self._mover is None else self._mover.time
+    def state(self) -> events.SimulationState:
+        """How the simulation stands, in a word."""
+        if self.doing is not None and not self.moving:
+            return self.doing
+        if self.player is not None:
+            return self.player.state
+        return "empty" if self.body is None else "paused"
 
     @property
-    def moment(self) -> Moment:
-        """What is to be drawn."""
-        shown = self.shown
-        positions = None if shown is None else shown.positions.astype(np.float64)
-        number = self.frame if shown is None else shown.number
-        return Moment(number, self._flags(), self.time, self._mover, positions)
-
-    @property
-    def factors(self) -> Sequence[float]:
-        """How many times as large as in the design each load is."""
-        if self._mover is None:
-            return [1.0] * len(self.require_body().setup.design.loads)
-        return self._mover.factors_of(self._mover.loads if self.shown is None else self.shown.loads)
-
-    def release(self, number: int) -> bool:
-        """Take a pull away; whether there was anything that could be pulled."""
-        if self._mover is not None:
-            self._mover.release(number)
-        return self._mover is not None
+    def frame(self) -> int:
+        """The number of the frame that is looked at."""
+        return 0 if self.player is None else self.player.frame
 
     def stat(self) -> events.Stat:
-        """All numbers of the moment."""
-        body, mover = self.body, self._mover
+        """All numbers of the moment, as far as the player knows them."""
+        if self.player is not None:
+            return self.player.stat()
+        body = self.body
         return events.Stat(
             topology=0 if body is None else body.topology,
             state=self.state,
-            sentence=self.sentence or (self.pace.words if self.moving else ""),
-            time=self.time,
-            step_ms=self._step_ms,
-            substeps=0 if mover is None else mover.steps,
-            real_time_factor=self._speed.value if self.moving else 0.0,
-            pace=self.pace.factor,
-            pace_chosen=self.pace.chosen,
-            residual=None if mover is None else mover.residual,
-            elastic=None if mover is None else mover.elastic,
-            kinetic=None if mover is None else mover.kinetic,
-            frame=self.frame if self.shown is None else self.shown.number,
-            first_frame=self.past.first,
-            last_frame=self.past.last,
-            frames_stored=len(self.past),
-            bytes_stored=self.past.bytes,
-            solver=self.method,
-            progress=self.progress,
-            loads=[] if body is None else body.load_values if mover is None else mover.loads,
-            grabs=[] if mover is None else mover.grabs(),
+            sentence=self.sentence,
+            pace=self._pace or 1.0,
+            pace_chosen=self._pace,
+            loads=[] if body is None else list(body.load_values),
         )
+
+    def plot(self) -> events.Plot:
+        """All rows of the plots, to replace those that a tab has."""
+        if self.player is not None:
+            return self.player.plot()
+        names, units = zip(*_core.PLOT_COLUMNS, strict=True)
+        return events.Plot(
+            topology=0 if self.body is None else self.body.topology,
+            names=[*names, *(probe.name for probe in self._probes)],
+            units=[*units, *["m"] * len(self._probes)],
+            rows=[],
+            clear=True,
+        )
+
+    @property
+    def factors(self) -> Sequence[float]:
+        """How many times as large as in the design each load is in what is looked at."""
+        final = self.require_body().load_values
+        now = final if self.player is None else self.player.shown().loads
+        return [load / end if end else 1.0 for load, end in zip(now, final, strict=True)]
 
     def shown_as(self, name: str, text: str) -> Shown:
         """What is shown, for an export under a name, with the text of the design.
@@ -279,38 +237,40 @@ class Playback:
         SimulationError
             There is no body.
         """
-        body = self.require_body()
-        plot = self.plots.whole()
+        body, plot, player = self.require_body(), self.plot(), self.player
+        shown = None if player is None else player.shown()
         return Shown(
             name=name,
             text=text,
             body=body,
-            positions=self.require_canvas().positions(self.moment),
-            result=self.result if self.shown is None else None,
+            positions=self.require_canvas().positions(player),
+            result=self.result if self.state != "past" else None,
             columns=plot.names,
             units=plot.units,
             rows=plot.rows,
             factors=self.factors,
-            pulls=self.pulls,
+            pulls=[] if shown is None else shown.grabs,
             status=_KEPT.get(self.state, "not-at-rest"),
-            sentence=self._standing(),
-            time=self.time,
+            sentence=self._standing(0.0 if shown is None else shown.time),
+            time=0.0 if shown is None else shown.time,
         )
 
-    @property
-    def pulls(self) -> Sequence[events.GrabState]:
-        """The springs that pull in what is shown."""
-        if self.shown is not None:
-            return self.shown.pulls
-        return [] if self._mover is None else self._mover.grabs()
-
-    def _standing(self) -> str:
+    def _standing(self, time: float) -> str:
         """How the shown state came about, in words."""
         if self.state == "at-rest":
-            return f"at rest after {time_text(self.time)}"
-        if self._mover is None or self._mover.unloaded:
+            return f"at rest after {time_text(time)}"
+        if self.player is None or self.player.unloaded:
             return "the unloaded shape"
-        return f"as it stood at {time_text(self.time)}, not at rest"
+        return f"as it stood at {time_text(time)}, not at rest"
+
+    def complete(self, event: events.Event) -> events.Event:
+        """Add to a statistic what the player does not know of."""
+        if isinstance(event, events.Stat):
+            event.solver = self.method
+            if self.doing is not None and not self.moving:
+                event.state, event.sentence = self.doing, self.sentence
+                event.progress = self.progress
+        return event
 
     def require_body(self) -> StudioBody:
         """The body.
@@ -338,7 +298,7 @@ class Playback:
         assert self.canvas is not None  # it comes with the body
         return self.canvas
 
-    def require_mover(self) -> Mover:
+    def require_player(self) -> Player:
         """What moves the body.
 
         Raises
@@ -348,15 +308,8 @@ class Playback:
         VoxSoftError
             The body cannot be solved.
         """
-        body = self.require_body()
-        if body.refusal is not None:
-            raise body.refusal
-        if self._mover is None:
-            self._mover = Mover(body)
-        return self._mover
-
-    def _flags(self) -> int:
-        flags = FrameFlag(0) if self.moving else FrameFlag.PAUSED
-        if self.state == "diverged":
-            flags |= FrameFlag.DIVERGED
-        return flags | FrameFlag.AT_REST if self.state == "at-rest" else flags
+        if self.player is None:
+            self.player = Player(self.require_body(), self._probes)
+            if self._pace is not None:
+                self.choose_pace(self._pace)
+        return self.player

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Sequence
 from typing import Final
 
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
-from voxsoft.studio.wire import MAGIC, MessageKind
 from voxsoft.voxels import Voxels
 
 Floats = NDArray[np.float64]
@@ -58,10 +56,7 @@ def pack_smooth(design: Design, voxels: Voxels, topology: int) -> bytes | None:
     if traced is None:
         return None
     vertices, triangles, owners = traced
-    kind, sizes = MessageKind.SMOOTH, (len(vertices), len(triangles))
-    head = struct.pack("<IBBHIIdIII28x", MAGIC, kind, 0, 0, topology, 0, 0.0, *sizes, 0)
-    body: bytes = vertices.astype("<f4").tobytes() + triangles.astype("<u4").tobytes()
-    return head + body + owners.tobytes() + bytes(-len(owners) % 4)
+    return _core.pack_smooth(topology, vertices, triangles.astype(np.uint32), owners)
 
 
 def trace(

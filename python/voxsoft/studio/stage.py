@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
+from voxsoft import _core
 from voxsoft.simulation import Result
 from voxsoft.simulation.check import CheckReport
-from voxsoft.studio import events
+from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.equilibrium import Measurement
 from voxsoft.studio.event_bus import EventBus
@@ -18,13 +19,8 @@ from voxsoft.studio.playback import Playback
 from voxsoft.studio.rest import RestSearch
 from voxsoft.studio.tab import Tab
 
-#: Time between two frames [s].
-FRAME_TIME: Final = 1.0 / 60.0
-#: Part of it that stepping may take; the rest is for packing and for other threads.
+#: Part of the time of a frame that stepping may take; the rest is for packing and other threads.
 SHARE_OF_FRAME: Final = 0.8
-#: Time between two statistics, and between two batches of rows for the plots [s].
-STAT_TIME: Final = 0.1
-PLOT_TIME: Final = 1.0 / 15.0
 
 
 class Stage:
@@ -46,7 +42,6 @@ class Stage:
         self._later = later
         self._search: RestSearch | None = None
         self._equilibrium: events.Equilibrium | None = None
-        self._last_stat = self._last_plot = 0.0
 
     # The body
 
@@ -54,11 +49,11 @@ class Stage:
         """Take another body, unloaded and at time zero, and look for its rest where asked."""
         self.stop_search()
         self._equilibrium = None
-        self.playback.begin(body)
+        again = self.playback.begin(body)
         self.pictures.begin(body)
-        self.bus.publish(self.playback.plots.whole())
-        if self.playback.wants_play:
-            self.playback.play()
+        self.bus.publish(self.playback.plot())
+        if again:
+            self.playback.require_player().resume()
         self.painted()
         if loaded and body.refusal is None and not self.playback.moving:
             self.find_rest()
@@ -66,15 +61,13 @@ class Stage:
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""
         if not self.playback.moving and self._search is None:
-            self.playback.state, self.playback.sentence = "meshing", "Meshing"
+            self.playback.doing, self.playback.sentence = "meshing", "Meshing"
             self.publish_stat()
 
     def stay(self, sentence: str) -> None:
         """Say why the body that was being meshed does not come."""
-        playback = self.playback
-        if playback.state == "meshing":
-            playback.state = "empty" if playback.body is None else "paused"
-            playback.sentence = sentence
+        if self.playback.doing == "meshing":
+            self.playback.say(sentence)
             self.publish_stat()
 
     def publish_report(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
@@ -84,55 +77,48 @@ class Stage:
 
     def forget(self) -> None:
         """Stop time, as another document is opened."""
-        self.playback.wants_play = False
         self.playback.let_go()
-        if self.playback.moving:
-            self.playback.state = "paused"
 
     def send_snapshot(self, tab: Tab) -> None:
         """Show a new tab what there is."""
         self.pictures.send_snapshot(tab)
-        self.bus.send_to(tab, self.playback.stat())
+        self.bus.send_to(tab, self.playback.complete(self.playback.stat()))
         self.overlaps.send_snapshot(tab)
         if self._equilibrium is not None:
             self.bus.send_to(tab, self._equilibrium)
 
     # Time
 
-    def play(self) -> None:
+    def play(self, command: commands.Play | commands.Step) -> None:
         """Let time run; what is asked last wins over a search that goes on."""
-        self.playback.play()
+        told = self.playback.do(command)
         self.stop_search()
+        self.playback.result = None
+        self.publish(told)
 
-    def invalidate(self) -> None:
-        """Go on after a change of load or a grab, if time was running before it came to rest."""
+    def touch(self, command: commands.Load | commands.Grab | commands.Release) -> None:
+        """Change a load or a pull; what was at rest is so no more, and is shown at once."""
         playback = self.playback
-        playback.touched()
+        told = playback.do(command)
+        self.stop_search()
+        playback.result = None
         self.pictures.forget()
-        if playback.state in ("at-rest", "solving"):
-            self.stop_search()
-            playback.state = "paused"
-        if playback.wants_play and playback.state == "paused":
-            self.play()
         if not playback.moving:
             self.pictures.paint_all()
-        self.publish_stat()
+        self.publish(told)
 
     def advance(self) -> None:
         """Take one frame, tell of it, and wait until the next is due."""
         started = time.perf_counter()
-        self.playback.take_frame(FRAME_TIME, budget=FRAME_TIME * SHARE_OF_FRAME)
+        frame = _core.FRAME_TIME
+        told = self.playback.advance(frame, budget=frame * SHARE_OF_FRAME)
         self.pictures.paint_all()
         self.overlaps.look()
-        now, moving = time.perf_counter(), self.playback.moving
         if self.playback.state == "at-rest":
             self.measure()
-        if not moving or now - self._last_plot > PLOT_TIME:
-            self.publish_plot()
-        if not moving or now - self._last_stat > STAT_TIME:
-            self.publish_stat()
-        spare = FRAME_TIME - (time.perf_counter() - started)
-        if moving and spare > 0:
+        self.publish(told)
+        spare = frame - (time.perf_counter() - started)
+        if self.playback.moving and spare > 0:
             time.sleep(spare)
 
     # Rest
@@ -150,11 +136,7 @@ class Stage:
         if body.refusal is not None:
             raise body.refusal
         self.stop_search()
-        playback.state, playback.sentence, playback.progress = (
-            "solving",
-            "Solving for equilibrium",
-            0.0,
-        )
+        playback.begin_search("Solving for equilibrium")
         self._search = RestSearch(body, playback.factors, playback.method, self)
         self._search.start()
         self.publish_stat()
@@ -164,6 +146,7 @@ class Stage:
         if self._search is not None:
             self._search.stop()
             self._search = None
+            self.playback.stop_doing()
 
     def searching(self, search: RestSearch, sentence: str, progress: float) -> None:
         """Hear how far a search is, from its thread."""
@@ -185,23 +168,22 @@ class Stage:
     def _found(self, search: RestSearch, result: Result) -> None:
         if search is self._search:
             self._search = None
-            self.playback.go_to_rest(result)
+            told = self.playback.go_to_rest(result)
             self.pictures.forget()
             self.painted()
-            self.publish_plot()
+            self.publish(told)
             self.measure()
 
     def _not_found(self, search: RestSearch, sentence: str) -> None:
         if search is self._search:
-            self._search, self.playback.progress = None, None
+            self._search = None
             self.halt(sentence)
 
     def cancel_search(self) -> None:
         """Give up the search at the user's request, and say so."""
         if self._search is not None:
             self.stop_search()
-            self.playback.state, self.playback.progress = "paused", None
-            self.playback.sentence = "Canceled: the body is where it was"
+            self.playback.say("Canceled: the body is where it was")
 
     def measure(self) -> None:
         """Tell the numbers of the equilibrium that is shown, once they are known."""
@@ -223,7 +205,7 @@ class Stage:
 
     def halt(self, sentence: str) -> None:
         """Stop time, and say why."""
-        self.playback.halt("paused", sentence)
+        self.playback.say(sentence, for_good=True)
         self.publish_stat()
 
     def painted(self) -> None:
@@ -232,13 +214,11 @@ class Stage:
         self.publish_stat()
         self.overlaps.look()
 
-    def publish_plot(self) -> None:
-        """Tell the rows of the plots that no tab has got yet."""
-        if (news := self.playback.plots.news()) is not None:
-            self.bus.publish(news)
-        self._last_plot = time.perf_counter()
+    def publish(self, told: Sequence[events.Event]) -> None:
+        """Tell every tab."""
+        for event in told:
+            self.bus.publish(self.playback.complete(event))
 
     def publish_stat(self) -> None:
         """Tell all numbers of the moment."""
-        self._last_stat = time.perf_counter()
-        self.bus.publish(self.playback.stat())
+        self.publish([self.playback.stat()])

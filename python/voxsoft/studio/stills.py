@@ -25,11 +25,10 @@ from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.fields import FIELDS
-from voxsoft.studio.frames import pack_points
+from voxsoft.studio.fields import DISPLACEMENT, FIELDS
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
-from voxsoft.studio.surface import Surface, pack_surface
+from voxsoft.studio.surface import Surface
 from voxsoft.studio.wire import FrameFlag
 from voxsoft.study.trial import Trial
 
@@ -39,7 +38,6 @@ RESULT: Final = "result.vtu"
 MOST_KEPT: Final = 4
 #: The number of the one topology of an answer, which its frames name.
 _TOPOLOGY: Final = 1
-_DISPLACEMENT: Final = FIELDS[0]
 #: Fields that tell something of a body at rest.
 _FIELDS: Final = tuple(each for each in FIELDS if each.name != "speed")
 _FLAGS: Final = {
@@ -77,20 +75,17 @@ class Still:
         """Write it as the page reads it: the surface, then a frame for each field."""
         mesh, flags = self.setup.mesh, _FLAGS.get(self.status, FrameFlag.PAUSED)
         surface = Surface.of(mesh)
-        messages = [pack_surface(surface, mesh, _TOPOLOGY)]
+        messages = [surface.outline.pack_topology(_TOPOLOGY)]
         try:
             triangles, size = mesh.triangles.astype(np.uint32), mesh.voxel_size or 0.0
             display = _core.Display.surface(self.setup.problem, triangles, surface.tags, size)
         except VoxSoftError:  # no problem to solve, such as a card that is gone: only the shape
             moved = np.linalg.norm(self.positions - mesh.vertices, axis=1)
-            shape = pack_points(
-                self.positions[surface.vertices],
-                moved[surface.vertices],
+            shape = surface.outline.pack_frame(
+                self.positions,
                 topology=_TOPOLOGY,
-                frame=0,
-                time=0.0,
-                seq=0,
-                field=_DISPLACEMENT.id,
+                field=DISPLACEMENT,
+                values=moved[surface.vertices],
                 flags=flags,
             )
             return b"".join([*messages, shape])
@@ -165,7 +160,7 @@ class Stills:
                 setup = Setup.of(design_in(folder))
                 positions = read_specimen(folder, len(setup.mesh.vertices))
                 # The stress would be that of the material of the design, not of the candidate.
-                return Still(setup, positions, fields=(_DISPLACEMENT.name,))
+                return Still(setup, positions, fields=(FIELDS[DISPLACEMENT].name,))
         raise FileError(name, "holds neither a run nor a study")
 
     def _trial(self, folder: Path, trial: Trial, cancelled: threading.Event) -> Still:

@@ -1,13 +1,15 @@
 """Numbers that the page must know as the server does: codes, flags and marks of messages.
 
-They are written into ``studio/src/protocol.ts`` beside the types of the messages. The core packs
-surfaces and frames with the same marks (``crates/frames``); tests compare the two.
+They are written into ``studio/src/protocol.ts`` beside the types of the messages. What the core
+packs and plays with is the core's own.
 """
 
 from __future__ import annotations
 
 from enum import IntEnum, IntFlag
 from typing import Final
+
+from voxsoft import _core
 
 #: Raised when a message changes its meaning; page and server must agree.
 PROTOCOL: Final = 1
@@ -16,11 +18,11 @@ CREDITS: Final = 2
 #: Largest file that is taken from the page [bytes].
 LARGEST_UPLOAD: Final = 64 * 1024 * 1024
 #: Speeds of time that can be chosen: simulated seconds for each second of the clock.
-PACES: Final = (1.0, 1 / 2, 1 / 5, 1 / 10, 1 / 50, 1 / 200)
+PACES: Final = _core.PACES
 
 #: The first four bytes of a binary message, and the length of its head.
-MAGIC: Final = 0x31465856  # "VXF1"
-HEADER: Final = 64
+MAGIC: Final = _core.MAGIC
+HEADER: Final = _core.HEADER
 #: Bit of a triangle's tag that says that it faces a cavity.
 CAVITY: Final = 0x80
 
@@ -41,21 +43,21 @@ class CloseCode(IntEnum):
 class MessageKind(IntEnum):
     """What a binary message holds."""
 
-    TOPOLOGY = 1
-    FRAME = 2
-    SMOOTH = 3
+    TOPOLOGY = _core.MESSAGE_KINDS["TOPOLOGY"]
+    FRAME = _core.MESSAGE_KINDS["FRAME"]
+    SMOOTH = _core.MESSAGE_KINDS["SMOOTH"]
 
 
 class FrameFlag(IntFlag):
     """What is said of a frame beside its numbers."""
 
-    PAUSED = 1
-    DIVERGED = 2
-    AT_REST = 4
+    PAUSED = _core.FRAME_FLAGS["PAUSED"]
+    DIVERGED = _core.FRAME_FLAGS["DIVERGED"]
+    AT_REST = _core.FRAME_FLAGS["AT_REST"]
 
 
 class TopologyFlag(IntFlag):
     """What a topology describes."""
 
-    SURFACE = 1
-    SHRUNK_TETS = 2
+    SURFACE = _core.TOPOLOGY_FLAGS["SURFACE"]
+    SHRUNK_TETS = _core.TOPOLOGY_FLAGS["SHRUNK_TETS"]

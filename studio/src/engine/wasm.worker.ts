@@ -16,9 +16,8 @@ addEventListener("message", async (message: MessageEvent<ToWorker>) => {
   const { data } = message;
   if (data.kind === "open") {
     try {
-      const core = await Core.load(data.core);
-      const run = core.open(new Uint8Array(data.scene));
-      player = new Player(run, JSON.parse(run.notes) as Notes, {
+      const core = await Core.open(data.core, new Uint8Array(data.scene));
+      player = new Player(core, JSON.parse(core.notes) as Notes, {
         event: (event) => post({ kind: "event", event }),
         binary: (bytes) => post(bytes),
       });

@@ -1,9 +1,11 @@
+use serde::{Deserialize, Serialize};
+
 use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::vector::{Vec3, axpy, dot, sub};
 
 /// An acceleration of all mass.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Gravity {
     /// In m/s².
     pub acceleration: Vec3,

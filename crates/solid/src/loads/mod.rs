@@ -6,6 +6,8 @@ mod pressure;
 
 use std::fmt::Debug;
 
+use serde::{Deserialize, Serialize};
+
 use crate::assembly::Visitor;
 use crate::vector::Vec3;
 use crate::{History, ProblemError};
@@ -71,7 +73,7 @@ pub trait ExternalForce: Debug + Send + Sync {
 }
 
 /// The kinds of loads.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum LoadKind {
     /// An acceleration of all mass.
     Gravity(Gravity),

@@ -1,10 +1,12 @@
+use serde::{Deserialize, Serialize};
+
 use super::{ExternalForce, Vertices, check_finite};
 use crate::ProblemError;
 use crate::assembly::check_indices;
 use crate::vector::{Vec3, axpy, dot, sub};
 
 /// Forces on vertices, fixed in direction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PointForces {
     /// The loaded vertices.
     pub vertices: Vec<u32>,

@@ -1,3 +1,5 @@
+use serde::{Deserialize, Serialize};
+
 use super::{ExternalForce, Vertices, check_finite};
 use crate::assembly::{Visitor, check_indices};
 use crate::matrix::{cross_matrix, plus};
@@ -6,7 +8,7 @@ use crate::vector::{Vec3, axpy, cross, scale, sub};
 use crate::{ProblemError, balance::cavity_volume};
 
 /// A pressure on triangles whose normals point out of the solid; it follows the surface.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pressure {
     /// The loaded triangles.
     pub triangles: Vec<[u32; 3]>,

@@ -1,0 +1,189 @@
+use voxsoft_solid::ProblemError;
+use voxsoft_solid::fields::Field;
+use voxsoft_solid::vector::{Vec3, add, scale, sub};
+
+use crate::pack::{FrameHead, TopologyFlag, pack_frame, pack_topology};
+
+/// Tetrahedra are drawn this much smaller, so that one sees between them.
+const SHRINK: f64 = 0.85;
+
+/// An edge moves along an axis where it moves by more than this part of a voxel.
+const ALONG: f64 = 1e-3;
+
+/// What of a mesh is drawn, whatever it is made of.
+#[derive(Debug, Clone)]
+pub struct Outline {
+    /// The vertices of the mesh that are needed, in ascending order.
+    vertices: Vec<u32>,
+    /// For shrunk tetrahedra, the places of their corners; each corner is a point.
+    tets: Option<Vec<[u32; 4]>>,
+    triangles: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    tags: Vec<u8>,
+    voxel_size: f64,
+}
+
+impl Outline {
+    /// The surface given by triangles of a mesh, each with a tag for the client. With a voxel size (m)
+    /// above zero, edges that are diagonals are left out.
+    pub fn surface(
+        rest: &[Vec3],
+        triangles: &[[u32; 3]],
+        tags: &[u8],
+        voxel_size: f64,
+    ) -> Result<Self, ProblemError> {
+        let vertices = used(rest, triangles.as_flattened(), tags, triangles.len())?;
+        let place = places(rest, &vertices);
+        let triangles: Vec<[u32; 3]> = triangles
+            .iter()
+            .map(|t| t.map(|v| place[v as usize]))
+            .collect();
+        let mut edges: Vec<[u32; 2]> = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .map(|[a, b]| [a.min(b), a.max(b)])
+            .filter(|edge| {
+                voxel_size <= 0.0 || {
+                    let [a, b] = edge.map(|place| rest[vertices[place as usize] as usize]);
+                    let moves = |axis: &usize| (a[*axis] - b[*axis]).abs() > ALONG * voxel_size;
+                    (0..3).filter(moves).count() == 1
+                }
+            })
+            .collect();
+        edges.sort_unstable();
+        edges.dedup();
+        Ok(Self {
+            vertices,
+            tets: None,
+            triangles,
+            edges,
+            tags: tags.to_vec(),
+            voxel_size,
+        })
+    }
+
+    /// Tetrahedra of a mesh, each shrunk towards its center and with a tag for the client.
+    pub fn tets(
+        rest: &[Vec3],
+        tets: &[[u32; 4]],
+        tags: &[u8],
+        voxel_size: f64,
+    ) -> Result<Self, ProblemError> {
+        let vertices = used(rest, tets.as_flattened(), tags, tets.len())?;
+        let place = places(rest, &vertices);
+        let faces = |index: u32| {
+            [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]].map(|t: [u32; 3]| t.map(|c| 4 * index + c))
+        };
+        Ok(Self {
+            triangles: (0..tets.len() as u32).flat_map(faces).collect(),
+            edges: Vec::new(),
+            tags: tags.iter().flat_map(|tag| [*tag; 4]).collect(),
+            voxel_size,
+            tets: Some(tets.iter().map(|t| t.map(|v| place[v as usize])).collect()),
+            vertices,
+        })
+    }
+
+    /// The vertices of the mesh that are shown, in ascending order: those of the points of a surface.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
+    /// The number of points.
+    pub fn points(&self) -> usize {
+        self.tets
+            .as_ref()
+            .map_or(self.vertices.len(), |tets| 4 * tets.len())
+    }
+
+    /// The triangles, of points.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The edges of voxels, of points.
+    pub fn edges(&self) -> &[[u32; 2]] {
+        &self.edges
+    }
+
+    /// The message that says what is shown.
+    pub fn topology(&self, rest: &[Vec3], number: u32) -> Vec<u8> {
+        let flag = match self.tets {
+            Some(_) => TopologyFlag::ShrunkTets,
+            None => TopologyFlag::Surface,
+        };
+        let shape = (&*self.triangles, &*self.edges, &*self.tags);
+        pack_topology(flag, number, self.voxel_size, &self.place(rest), shape)
+    }
+
+    /// The message of one picture: where all vertices of the mesh are (m), and a value for each of
+    /// [`Outline::vertices`].
+    pub fn frame(
+        &self,
+        head: FrameHead,
+        time: f64,
+        positions: &[Vec3],
+        field: Field,
+        values: &[f64],
+    ) -> Vec<u8> {
+        let points = self.place(positions);
+        match &self.tets {
+            Some(tets) => {
+                let corners = tets.as_flattened().iter();
+                let values: Vec<f64> = corners.map(|&place| values[place as usize]).collect();
+                pack_frame(head, field, time, &points, &values)
+            }
+            None => pack_frame(head, field, time, &points, values),
+        }
+    }
+
+    fn place(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let of = |place: u32| positions[self.vertices[place as usize] as usize];
+        let Some(tets) = &self.tets else {
+            return (0..self.vertices.len() as u32).map(of).collect();
+        };
+        let mut points = Vec::with_capacity(4 * tets.len());
+        for tet in tets {
+            let corners = tet.map(of);
+            let center = scale(0.25, corners.into_iter().fold([0.0; 3], add));
+            points.extend(corners.map(|x| add(center, scale(SHRINK, sub(x, center)))));
+        }
+        points
+    }
+}
+
+/// The vertices that are used, in ascending order.
+fn used(
+    rest: &[Vec3],
+    corners: &[u32],
+    tags: &[u8],
+    count: usize,
+) -> Result<Vec<u32>, ProblemError> {
+    let mut shown = vec![false; rest.len()];
+    for &vertex in corners {
+        *shown.get_mut(vertex as usize).ok_or(ProblemError::Index {
+            what: "vertex of what is shown",
+            index: vertex as usize,
+            count: rest.len(),
+        })? = true;
+    }
+    if tags.len() != count {
+        return Err(ProblemError::Length {
+            what: "tags of what is shown",
+            got: tags.len(),
+            expected: count,
+        });
+    }
+    Ok((0..rest.len() as u32)
+        .filter(|&v| shown[v as usize])
+        .collect())
+}
+
+/// Where each vertex of a mesh stands among those that are used.
+fn places(rest: &[Vec3], used: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; rest.len()];
+    for (place, &vertex) in used.iter().enumerate() {
+        places[vertex as usize] = place as u32;
+    }
+    places
+}

@@ -1,0 +1,190 @@
+//! Time as it is handed to a player, and what becomes of it.
+
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Ask, LiveStatus, Look, Method, ProblemError};
+
+use crate::clock::Clock;
+use crate::event::{Event, Mode, finite};
+use crate::player::{Numbers, Player};
+use crate::sentences::{at_rest, diverged};
+
+/// Time between two frames in s, which is also the longest implicit step.
+pub const FRAME_TIME: f64 = 1.0 / 60.0;
+
+/// Time between two tellings of rows and of numbers, in s.
+const TELL_EVERY: [f64; 2] = [1.0 / 15.0, 0.1];
+
+/// How far a motion is looked ahead: seconds of it, and vertices times steps of either kind, some 0.05 s of
+/// work.
+const LONGEST_LOOK: f64 = 1.0;
+const MOST_WORK: [usize; 2] = [1_000_000, 4_000];
+
+/// Steps are whole numbers of frames' times up to rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// How a search for rest ended, by whoever solved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rest {
+    /// Where the vertices are, in m.
+    pub positions: Vec<Vec3>,
+    /// Whether it is rest, a breakdown, or neither.
+    pub mode: Mode,
+    /// The same in words.
+    pub sentence: String,
+    /// The residual force without units.
+    pub residual: f64,
+    /// The elastic energy in J.
+    pub elastic: f64,
+}
+
+impl Player {
+    /// Lets time go on by some seconds of the clock, at the pace, or as far as a budget of the clock allows
+    /// (s); gives what there is to tell.
+    ///
+    /// Parts of a step are carried over to the next call: in slow motion there may be no step to take yet,
+    /// and then there is no frame either.
+    pub fn advance(&mut self, seconds: f64, budget: f64, clock: &dyn Clock) -> Vec<Event> {
+        if self.mode != Mode::Playing {
+            return Vec::new();
+        }
+        if let Some(look) = self.take_steps(seconds, budget, clock) {
+            self.speed.mark(look.time, clock.now());
+            self.take_frame(look);
+        } else {
+            let time = self.stepper.state().time;
+            self.speed.mark(time, clock.now());
+        }
+        let (now, moving) = (clock.now(), self.mode == Mode::Playing);
+        let [rows, stat] = std::array::from_fn(|which| {
+            let due = !moving || now - self.told[which] >= TELL_EVERY[which];
+            if due {
+                self.told[which] = now;
+            }
+            due
+        });
+        let rows = rows.then(|| self.plots.news(self.topology)).flatten();
+        let stat = stat.then(|| Event::Stat(self.stat()));
+        rows.map(Event::Plot).into_iter().chain(stat).collect()
+    }
+
+    /// Takes the steps that are due.
+    fn take_steps(&mut self, seconds: f64, budget: f64, clock: &dyn Clock) -> Option<Look> {
+        let pace = self.pace.factor();
+        if self.stepper.method() == Method::Implicit {
+            self.stepper.prefer_step(FRAME_TIME * pace);
+        }
+        self.due += seconds * pace / self.stepper.step();
+        if self.steps_left.is_some() {
+            self.due = self.due.max(1.0); // a frame by hand is not waited for
+        }
+        let wanted = (self.due + ROUNDING).floor();
+        if wanted < 1.0 {
+            return None;
+        }
+        self.due -= wanted;
+        let began = clock.now();
+        let mut taken = 0_u32;
+        let mut go_on = |ask| {
+            if ask == Ask::Within {
+                return !clock.canceled();
+            }
+            taken += 1;
+            !clock.canceled() && clock.now() - began < budget
+        };
+        let look = self.stepper.advance_while(wanted as u32, &mut go_on);
+        self.numbers = Numbers {
+            steps: look.substeps,
+            step_ms: match taken {
+                0 => self.numbers.step_ms,
+                _ => 1e3 * (clock.now() - began) / f64::from(taken),
+            },
+            residual: finite(look.residual),
+            elastic: finite(look.elastic),
+            kinetic: finite(look.kinetic),
+        };
+        Some(look)
+    }
+
+    /// Makes a frame of what was stepped to.
+    fn take_frame(&mut self, look: Look) {
+        self.record();
+        match look.status {
+            LiveStatus::Moving => {}
+            LiveStatus::AtRest => self.stand(Mode::AtRest, at_rest(look.time, self.tolerance)),
+            LiveStatus::Diverged => {
+                let place = look.breakdown.map(|breakdown| breakdown.rest);
+                self.wants_play = false;
+                self.stand(Mode::Diverged, diverged(look.time, place));
+            }
+        }
+        if let Some(left) = &mut self.steps_left {
+            *left -= 1;
+            if *left == 0 {
+                self.steps_left = None;
+                if self.moving() {
+                    self.hold(String::new());
+                }
+            }
+        }
+    }
+
+    /// Keeps the present as a frame and a row of the plots.
+    fn record(&mut self) {
+        self.frame += 1;
+        let (loads, grabs) = (self.loads.clone(), self.grabs());
+        let state = self.stepper.state();
+        self.recording.keep(self.frame, state, loads, grabs);
+        let Numbers {
+            residual,
+            elastic,
+            kinetic,
+            ..
+        } = self.numbers;
+        let numbers = [finite(state.time), residual, elastic, kinetic];
+        let rest = self.stepper.problem().body().rest();
+        self.plots.record(numbers, rest, &state.positions);
+    }
+
+    /// Finds out unseen how soon the body comes to rest from its unloaded shape, to show it slowly enough
+    /// to be seen.
+    pub(crate) fn look_ahead(&mut self) {
+        if self.numbers.steps > 0 || self.solved {
+            return;
+        }
+        self.pace.rest_in = None;
+        if !self.held.is_empty() {
+            return;
+        }
+        self.stepper.reset(); // what is shown first may be another shape
+        if self.stepper.method() == Method::Implicit {
+            self.stepper.prefer_step(FRAME_TIME * self.pace.factor());
+        }
+        let most = MOST_WORK[usize::from(self.stepper.method() == Method::Implicit)];
+        let work = most / self.stepper.problem().body().rest().len().max(1);
+        let steps = (LONGEST_LOOK / self.stepper.step()).round() as usize;
+        let look = self.stepper.advance(work.min(steps) as u32);
+        self.stepper.reset();
+        self.pace.rest_in = (look.status == LiveStatus::AtRest).then_some(look.time);
+    }
+
+    /// Shows positions (m) of all vertices at time zero first; play goes the way from the unloaded shape.
+    pub fn show_first(&mut self, positions: Vec<Vec3>) -> Result<(), ProblemError> {
+        self.stepper.seek(positions, 0.0)
+    }
+
+    /// Takes the state that a solver found, at the present time; hands let go, as no solver knows of them.
+    pub fn go_to_rest(&mut self, rest: Rest) -> Result<Vec<Event>, ProblemError> {
+        let time = self.stepper.state().time;
+        self.stepper.seek(rest.positions, time)?;
+        self.held.clear();
+        self.shown = None;
+        self.solved = true;
+        self.numbers.residual = finite(rest.residual);
+        self.numbers.elastic = finite(rest.elastic);
+        self.numbers.kinetic = Some(0.0);
+        self.record();
+        self.stand(rest.mode, rest.sentence);
+        let rows = self.plots.news(self.topology).map(Event::Plot);
+        Ok(rows.into_iter().chain([Event::Stat(self.stat())]).collect())
+    }
+}

@@ -1,0 +1,84 @@
+//! What is said of a simulation, in plain words, with numbers as `voxsoft.units` writes them.
+
+use voxsoft_solid::vector::Vec3;
+
+/// A number with so many significant digits, as people read it: never with an exponent.
+fn significant(value: f64, digits: usize) -> String {
+    // Rounded first, as 9.996 has one digit more before the point when it is.
+    let rounded: f64 = format!("{value:.*e}", digits - 1)
+        .parse()
+        .expect("a number that was just written");
+    format!("{rounded}")
+}
+
+/// A time with three digits.
+pub fn said_time(seconds: f64) -> String {
+    if seconds == 0.0 {
+        return "0 s".into();
+    }
+    let milli = 1e3 * seconds;
+    if !(0.1..1000.0).contains(&seconds.abs()) && (0.1..1000.0).contains(&milli.abs()) {
+        return format!("{} ms", significant(milli, 3));
+    }
+    format!("{} s", significant(seconds, 3))
+}
+
+/// That a body came to rest.
+pub fn at_rest(seconds: f64, tolerance: f64) -> String {
+    let (time, share) = (said_time(seconds), significant(100.0 * tolerance, 2));
+    format!("At rest after {time}: forces balance within {share} % of the load.")
+}
+
+/// How slowly a motion is shown and, where it slows itself down, why.
+pub fn slowed(factor: f64, rest_in: Option<f64>) -> String {
+    let why = rest_in.map_or(String::new(), |seconds| {
+        format!(", as it comes to rest within {}", said_time(seconds))
+    });
+    let times = significant(1.0 / factor, 3);
+    format!("Shown {times} times slower than real time{why}.")
+}
+
+/// That a body could not be followed, where, and what to try.
+pub fn diverged(seconds: f64, place: Option<Vec3>) -> String {
+    let near = place.map_or(String::new(), |at| {
+        let [x, y, z] = at.map(|value| format!("{:.1}", 1e3 * value));
+        format!(" near ({x}, {y}, {z}) mm")
+    });
+    let time = said_time(seconds);
+    format!(
+        "Diverged at {time}{near}: the material cannot carry the load there. \
+         Try a smaller load, a stiffer material or thicker walls, then reset."
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_have_three_digits_and_a_unit_that_suits_them() {
+        let times = [0.0, 0.81234, 0.0497, 12.0, 999.96, 1e-5, 0.1].map(said_time);
+        let expected = [
+            "0 s",
+            "0.812 s",
+            "49.7 ms",
+            "12 s",
+            "1000 s",
+            "0.00001 s",
+            "0.1 s",
+        ];
+        assert_eq!(times, expected);
+    }
+
+    #[test]
+    fn rest_and_breakdown_say_when_where_and_what_to_try() {
+        let said = "At rest after 0.8 s: forces balance within 0.01 % of the load.";
+        assert_eq!(at_rest(0.8, 1e-4), said);
+        let said = diverged(0.31, Some([0.01, 0.0, 0.02]));
+        assert!(said.starts_with("Diverged at 0.31 s near (10.0, 0.0, 20.0) mm: the material"));
+        assert!(
+            said.ends_with("Try a smaller load, a stiffer material or thicker walls, then reset.")
+        );
+        assert!(diverged(2.0, None).starts_with("Diverged at 2 s: the"));
+    }
+}

@@ -1,0 +1,173 @@
+//! What is seen of a player.
+
+use std::borrow::Cow;
+
+use voxsoft_frames::{Display, Field, FrameHead, frame_flag, name_of};
+use voxsoft_solid::vector::{Vec3, norm, sub};
+use voxsoft_solid::{Problem, State};
+
+use crate::event::{GrabState, Mode, Picked, Plot, Refusal, Shown, Stat, Value, finite};
+use crate::player::Player;
+
+impl Player {
+    /// All numbers of the moment.
+    pub fn stat(&self) -> Stat {
+        let moving = self.moving();
+        Stat {
+            topology: self.topology,
+            state: self.mode,
+            sentence: match self.sentence.as_str() {
+                "" if moving => self.pace.words(),
+                sentence => sentence.to_owned(),
+            },
+            time: self.time(),
+            step_ms: self.numbers.step_ms,
+            substeps: self.numbers.steps,
+            real_time_factor: if moving { self.speed.value() } else { 0.0 },
+            pace: self.pace.factor(),
+            pace_chosen: self.pace.chosen,
+            residual: self.numbers.residual,
+            elastic: self.numbers.elastic,
+            kinetic: self.numbers.kinetic,
+            frame: self.frame(),
+            first_frame: self.recording.first(),
+            last_frame: self.recording.last(),
+            frames_stored: self.recording.len(),
+            bytes_stored: self.recording.bytes(),
+            loads: self.loads.clone(),
+            grabs: self.grabs(),
+        }
+    }
+
+    /// Whether time runs, and why not.
+    pub fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// Whether time runs.
+    pub fn moving(&self) -> bool {
+        self.mode == Mode::Playing
+    }
+
+    /// Whether time runs again once a load or a pull wakes the body.
+    pub fn wants_play(&self) -> bool {
+        self.wants_play
+    }
+
+    /// The problem, with the loads as they are now.
+    pub fn problem(&self) -> &Problem {
+        self.stepper.problem()
+    }
+
+    /// The number of the frame that is looked at.
+    pub fn frame(&self) -> u64 {
+        self.shown.as_ref().map_or(self.frame, |shown| shown.number)
+    }
+
+    /// The time that is looked at in s.
+    pub fn time(&self) -> f64 {
+        let now = || self.stepper.state().time;
+        self.shown.as_ref().map_or_else(now, |shown| shown.time)
+    }
+
+    /// What is looked at, with the loads and the hands of its time.
+    pub fn shown(&self) -> Shown {
+        let (loads, grabs) = match &self.shown {
+            Some(shown) => (shown.loads.clone(), shown.grabs.clone()),
+            None => (self.loads.clone(), self.grabs()),
+        };
+        Shown {
+            frame: self.frame(),
+            time: self.time(),
+            loads,
+            grabs,
+        }
+    }
+
+    /// Whether the body has its unloaded shape still.
+    pub fn unloaded(&self) -> bool {
+        self.numbers.steps == 0 && !self.solved
+    }
+
+    /// The state that is looked at; a recorded one has no velocities.
+    pub fn state(&self) -> Cow<'_, State> {
+        match &self.shown {
+            Some(shown) => Cow::Owned(shown.state()),
+            None => Cow::Borrowed(self.stepper.state()),
+        }
+    }
+
+    /// The message that says what is shown.
+    pub fn topology(&self) -> Vec<u8> {
+        let body = self.stepper.problem().body();
+        self.surface.topology(body, self.topology)
+    }
+
+    /// The message of what is looked at, on the surface or on another display of the same body. `seq` is the
+    /// number of the last command that the reader sent.
+    pub fn pack_frame(&self, field: Field, seq: u32, display: Option<&Display>) -> Vec<u8> {
+        let flags = match self.mode {
+            Mode::Playing => 0,
+            Mode::Paused | Mode::Past => frame_flag::PAUSED,
+            Mode::AtRest => frame_flag::PAUSED | frame_flag::AT_REST,
+            Mode::Diverged => frame_flag::PAUSED | frame_flag::DIVERGED,
+        };
+        let head = FrameHead {
+            topology: self.topology,
+            frame: self.frame() as u32,
+            seq,
+            flags,
+        };
+        let body = self.stepper.problem().body();
+        let display = display.unwrap_or(&self.surface);
+        display.frame(body, &self.state(), field, head)
+    }
+
+    /// All rows of the plots, to replace those that a reader has.
+    pub fn whole_plot(&self) -> Plot {
+        self.plots.whole(self.topology)
+    }
+
+    /// The springs that pull now, and how hard.
+    pub fn grabs(&self) -> Vec<GrabState> {
+        let positions = &self.stepper.state().positions;
+        let asked = |id: u32| self.held.get(&id);
+        let grabs = self.stepper.grabs().iter();
+        let grabs = grabs.filter_map(|(id, grab)| Some((*id, grab, asked(*id)?)));
+        grabs
+            .map(|(id, grab, asked)| {
+                let position = positions[grab.vertex as usize];
+                GrabState {
+                    id,
+                    vertex: asked.vertex,
+                    target: grab.target,
+                    stiffness: asked.stiffness,
+                    force: grab.force(position),
+                    stretch: norm(sub(grab.anchor, position)),
+                }
+            })
+            .collect()
+    }
+
+    pub(crate) fn picked(&self, point: usize) -> Result<Picked, Refusal> {
+        let vertex = self.vertex(point)? as usize;
+        let body = self.stepper.problem().body();
+        let state = self.state();
+        let values = Field::ALL.map(|field| {
+            let called = name_of(field);
+            Value {
+                field: field as u16,
+                name: called.name,
+                value: finite(self.surface.values(body, &state, field)[point]),
+                unit: called.unit,
+            }
+        });
+        let position: Vec3 = state.positions[vertex];
+        Ok(Picked {
+            vertex: point,
+            rest: body.rest()[vertex],
+            position,
+            values: values.into(),
+        })
+    }
+}

@@ -1,0 +1,385 @@
+//! `_core.Scene` and `_core.Player`: a problem as it is played, in this process or in a page.
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::Instant;
+
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::MutexExt;
+use pyo3::types::{IntoPyDict, PyBytes, PyTuple};
+use serde::Serialize;
+use serde_json::to_vec;
+use voxsoft_frames::{
+    Display, Field, FieldName, HEADER, MAGIC, MessageKind, TopologyFlag, frame_flag, name_of,
+};
+use voxsoft_player::{
+    COLUMNS, Cast, Clock, Command, Control, Event, FRAME_TIME, Mode, PACES, Player, Probe, Refusal,
+    Rest, STIFFNESS,
+};
+use voxsoft_scene::Scene;
+use voxsoft_solid::{Material, Mesh, Problem, ProblemError};
+use voxsoft_xpbd::{Damping, Dynamics};
+
+use crate::display::{PyDisplay, field as field_of, of_vertices};
+use crate::errors::to_python;
+use crate::gate;
+use crate::simulate::{PyProblem, from_rows, rows};
+
+/// How a problem moves live.
+pub(crate) fn dynamics(
+    substeps: Option<u32>,
+    damping: Option<f64>,
+    retardation: f64,
+    tolerance: f64,
+) -> Dynamics {
+    Dynamics {
+        substeps,
+        damping: damping.map_or(Damping::Critical, Damping::Rate),
+        retardation,
+        tolerance,
+        ..Dynamics::default()
+    }
+}
+
+/// The time since some moment, and whether Ctrl-C was pressed.
+struct Wall<'a> {
+    began: Instant,
+    cancel: &'a AtomicBool,
+}
+
+impl Clock for Wall<'_> {
+    fn now(&self) -> f64 {
+        self.began.elapsed().as_secs_f64()
+    }
+
+    fn canceled(&self) -> bool {
+        self.cancel.load(Ordering::Relaxed)
+    }
+}
+
+/// A problem with all it takes to play it: here, or in a page that opens its bytes.
+#[pyclass(frozen, name = "Scene", module = "voxsoft._core")]
+pub struct PyScene {
+    problem: Arc<Problem>,
+    mesh: Mesh,
+    materials: Vec<Material>,
+    triangles: Vec<[u32; 3]>,
+    tags: Vec<u8>,
+    voxel_size: f64,
+    settings: Dynamics,
+    cast: Cast,
+}
+
+#[pymethods]
+impl PyScene {
+    #[new]
+    #[pyo3(signature = (problem, triangles, tags, voxel_size, *, topology=1, controls=vec![], probes=vec![],
+        substeps=None, damping=None, retardation=0.0, tolerance=1e-4))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn new(
+        problem: PyRef<'_, PyProblem>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxel_size: f64,
+        topology: u32,
+        controls: Vec<(f64, Vec<u32>)>,
+        probes: Vec<(String, Vec<u32>, Vec<f64>)>,
+        substeps: Option<u32>,
+        damping: Option<f64>,
+        retardation: f64,
+        tolerance: f64,
+    ) -> PyResult<Self> {
+        let control = |(value, loads)| Control { value, loads };
+        let probe = |(name, vertices, weights)| Probe {
+            name,
+            vertices,
+            weights,
+        };
+        Ok(Self {
+            problem: Arc::clone(&problem.problem),
+            mesh: problem.mesh.clone(),
+            materials: problem.materials.clone(),
+            triangles: rows("triangles", &triangles)?,
+            tags: tags.as_array().to_vec(),
+            voxel_size,
+            settings: dynamics(substeps, damping, retardation, tolerance),
+            cast: Cast {
+                topology,
+                controls: controls.into_iter().map(control).collect(),
+                probes: probes.into_iter().map(probe).collect(),
+            },
+        })
+    }
+
+    /// The bytes that a page opens; it shows positions (m) first where they are given.
+    #[pyo3(signature = (notes="", positions=None))]
+    fn pack<'py>(
+        &self,
+        py: Python<'py>,
+        notes: &str,
+        positions: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let count = self.problem.body().rest().len();
+        let positions = positions.map(|array| of_vertices("positions", &array, count));
+        let scene = Scene {
+            notes: notes.to_owned(),
+            settings: self.settings.clone(),
+            mesh: self.mesh.clone(),
+            materials: self.materials.clone(),
+            clamps: self.problem.clamps().to_vec(),
+            loads: self.problem.loads().to_vec(),
+            floor: self.problem.floor(),
+            voxel_size: self.voxel_size,
+            triangles: self.triangles.clone(),
+            tags: self.tags.clone(),
+            cast: self.cast.clone(),
+            positions: positions.transpose()?,
+        };
+        Ok(PyBytes::new(py, &py.detach(|| scene.write())))
+    }
+
+    /// A player at rest pose and time zero.
+    #[pyo3(signature = (*, deterministic=false))]
+    fn play(&self, py: Python<'_>, deterministic: bool) -> PyResult<PyPlayer> {
+        let problem = &self.problem;
+        let settings = Dynamics {
+            deterministic,
+            ..self.settings.clone()
+        };
+        let player = gate::run(py, |_| {
+            let (triangles, tags) = (&self.triangles, &self.tags);
+            let body = problem.body();
+            let surface = Display::surface(body, triangles, tags, self.voxel_size)?;
+            let problem = Problem::clone(problem);
+            Ok::<_, ProblemError>(Player::new(problem, settings, surface, self.cast.clone()))
+        })?;
+        Ok(PyPlayer {
+            problem: Arc::clone(problem),
+            player: Mutex::new(player.map_err(to_python)?),
+            began: Instant::now(),
+        })
+    }
+}
+
+/// A problem that lives; commands and events are JSON. Any thread may call any method; they take turns.
+#[pyclass(frozen, name = "Player", module = "voxsoft._core")]
+pub struct PyPlayer {
+    problem: Arc<Problem>,
+    player: Mutex<Player>,
+    began: Instant,
+}
+
+impl PyPlayer {
+    /// Locks in the calling thread, never in one of the pool: that could take up another call of the same
+    /// player while it waits in a loop, and would wait for itself.
+    fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Player>> {
+        let message = "an earlier call of this player panicked; please report it";
+        let guard = self.player.lock_py_attached(py);
+        guard.map_err(|_| PyRuntimeError::new_err(message))
+    }
+
+    /// Does something that is soon done.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut Player) -> T + Send,
+    ) -> PyResult<T> {
+        let mut guard = self.lock(py)?;
+        let player = &mut *guard;
+        Ok(py.detach(|| work(player)))
+    }
+}
+
+fn refused(refusal: Refusal) -> PyErr {
+    PyValueError::new_err((refusal.place, refusal.what, refusal.hint))
+}
+
+/// `value` as JSON.
+fn told<'py>(py: Python<'py>, value: &impl Serialize) -> Bound<'py, PyBytes> {
+    let json = to_vec(value).expect("events have names and numbers alone");
+    PyBytes::new(py, &json)
+}
+
+#[pymethods]
+impl PyPlayer {
+    /// Does what a command asks; gives the events. A refusal is a `ValueError` of where, what and hint.
+    fn command<'py>(&self, py: Python<'py>, command: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+        let command: Command = serde_json::from_slice(command)
+            .map_err(|error| PyValueError::new_err(("command", error.to_string(), "")))?;
+        let mut guard = self.lock(py)?;
+        let player = &mut *guard;
+        let events = gate::run(py, |_| player.command(command))?;
+        Ok(told(py, &events.map_err(refused)?))
+    }
+
+    /// Lets time go on by some seconds, within a budget of the clock; gives the events.
+    fn advance<'py>(
+        &self,
+        py: Python<'py>,
+        seconds: f64,
+        budget: f64,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let mut guard = self.lock(py)?;
+        let (player, began) = (&mut *guard, self.began);
+        let events = gate::run(py, |cancel| {
+            player.advance(seconds, budget, &Wall { began, cancel })
+        })?;
+        Ok(told(py, &events))
+    }
+
+    /// Takes positions (m) where a solver ended; gives the events.
+    fn go_to_rest<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+        state: &str,
+        sentence: String,
+        residual: f64,
+        elastic: f64,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let rest = Rest {
+            positions: rows("positions", &positions)?,
+            mode: match state {
+                "at-rest" => Mode::AtRest,
+                "diverged" => Mode::Diverged,
+                _ => Mode::Paused,
+            },
+            sentence,
+            residual,
+            elastic,
+        };
+        let events = self.with(py, |player| player.go_to_rest(rest))?;
+        Ok(told(py, &events.map_err(to_python)?))
+    }
+
+    /// Stops time for now, and says why: a load or a pull lets it run again if it was asked to.
+    #[pyo3(signature = (sentence=String::new()))]
+    fn hold(&self, py: Python<'_>, sentence: String) -> PyResult<()> {
+        self.with(py, |player| player.hold(sentence))
+    }
+
+    /// Goes on from another body that was played.
+    fn resume(&self, py: Python<'_>) -> PyResult<()> {
+        self.with(py, Player::resume)
+    }
+
+    /// Stops time for good, and says why.
+    fn halt(&self, py: Python<'_>, sentence: String) -> PyResult<()> {
+        self.with(py, |player| player.halt(sentence))
+    }
+
+    #[getter]
+    fn state(&self, py: Python<'_>) -> PyResult<&'static str> {
+        self.with(py, |player| player.mode().name())
+    }
+
+    /// The number of the frame that is looked at.
+    #[getter]
+    fn frame(&self, py: Python<'_>) -> PyResult<u64> {
+        self.with(py, |player| player.frame())
+    }
+
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> PyResult<bool> {
+        self.with(py, |player| player.moving())
+    }
+
+    #[getter]
+    fn wants_play(&self, py: Python<'_>) -> PyResult<bool> {
+        self.with(py, |player| player.wants_play())
+    }
+
+    #[getter]
+    fn unloaded(&self, py: Python<'_>) -> PyResult<bool> {
+        self.with(py, |player| player.unloaded())
+    }
+
+    fn stat<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let stat = self.with(py, |player| Event::Stat(player.stat()))?;
+        Ok(told(py, &stat))
+    }
+
+    /// All rows of the plots.
+    fn plot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let plot = self.with(py, |player| Event::Plot(player.whole_plot()))?;
+        Ok(told(py, &plot))
+    }
+
+    /// Frame, time, loads and grabs of what is looked at.
+    fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let shown = self.with(py, |player| player.shown())?;
+        Ok(told(py, &shown))
+    }
+
+    /// Positions (m) of what is looked at.
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions = self.with(py, |player| player.state().positions.clone())?;
+        Ok(from_rows(py, &positions))
+    }
+
+    /// The frame of what is looked at, on the surface or on another display of the same problem.
+    #[pyo3(signature = (field, seq=0, display=None))]
+    fn pack_frame<'py>(
+        &self,
+        py: Python<'py>,
+        field: u16,
+        seq: u32,
+        display: Option<PyRef<'_, PyDisplay>>,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let display = display.as_deref();
+        if display.is_some_and(|other| !Arc::ptr_eq(&other.problem, &self.problem)) {
+            let message = "display: it belongs to another problem";
+            return Err(PyValueError::new_err(message));
+        }
+        let field = field_of(field)?;
+        let display = display.map(|other| &other.display);
+        let bytes = self.with(py, |player| player.pack_frame(field, seq, display))?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+}
+
+/// What Python and the page must know as the core does.
+pub(crate) fn add_constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("MAGIC", MAGIC)?;
+    module.add("HEADER", HEADER)?;
+    module.add("PACES", PyTuple::new(module.py(), PACES)?)?;
+    module.add("PLOT_COLUMNS", PyTuple::new(module.py(), COLUMNS)?)?;
+    module.add("FRAME_TIME", FRAME_TIME)?;
+    module.add("STIFFNESS", STIFFNESS)?;
+    let fields = Field::ALL.map(|field| {
+        let called = name_of(field);
+        let FieldName {
+            name, title, unit, ..
+        } = called;
+        (field as u16, name, title, unit, called.signed)
+    });
+    module.add("FIELDS", PyTuple::new(module.py(), fields)?)?;
+    let codes = |codes: &[(&str, u8)]| codes.to_vec().into_py_dict(module.py());
+    module.add(
+        "MESSAGE_KINDS",
+        codes(&[
+            ("TOPOLOGY", MessageKind::Topology as u8),
+            ("FRAME", MessageKind::Frame as u8),
+            ("SMOOTH", MessageKind::Smooth as u8),
+        ])?,
+    )?;
+    module.add(
+        "FRAME_FLAGS",
+        codes(&[
+            ("PAUSED", frame_flag::PAUSED),
+            ("DIVERGED", frame_flag::DIVERGED),
+            ("AT_REST", frame_flag::AT_REST),
+        ])?,
+    )?;
+    module.add(
+        "TOPOLOGY_FLAGS",
+        codes(&[
+            ("SURFACE", TopologyFlag::Surface as u8),
+            ("SHRUNK_TETS", TopologyFlag::ShrunkTets as u8),
+        ])?,
+    )
+}
