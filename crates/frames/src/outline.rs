@@ -62,7 +62,7 @@ impl Outline {
         })
     }
 
-    /// Tetrahedra of a mesh, each shrunk towards its center and with a tag for the client.
+    /// Tetrahedra of a mesh, each shrunk toward its center and with a tag for the client.
     pub fn tets(
         rest: &[Vec3],
         tets: &[[u32; 4]],
