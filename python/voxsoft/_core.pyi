@@ -554,14 +554,15 @@ class Live:
         display: Display | None = None,
     ) -> bytes: ...
 
+@final
 class Scene:
     """A problem with all it takes to play it: in this process, or in a page that opens its bytes.
 
     Each control is a value and the loads that it changes; each probe a name, vertices and weights.
     """
 
-    def __init__(
-        self,
+    def __new__(
+        cls,
         problem: Problem,
         triangles: NDArray[np.uint32],
         tags: NDArray[np.uint8],
@@ -574,7 +575,7 @@ class Scene:
         damping: float | None = None,
         retardation: float = 0.0,
         tolerance: float = 1e-4,
-    ) -> None: ...
+    ) -> Scene: ...
     def pack(self, notes: str = "", positions: NDArray[np.float64] | None = None) -> bytes:
         """The bytes that a page opens; it shows positions first where they are given."""
 
@@ -600,7 +601,7 @@ class Player:
         residual: float,
         elastic: float,
     ) -> bytes: ...
-    def hold(self, sentence: str = "") -> None: ...
+    def hold(self, sentence: str = ...) -> None: ...
     def halt(self, sentence: str) -> None: ...
     def resume(self) -> None: ...
     @property
