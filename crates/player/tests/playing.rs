@@ -74,9 +74,9 @@ fn settle(player: &mut Player, clock: &Ticking) -> Vec<Event> {
     panic!("it never rests: {:?}", player.stat());
 }
 
-fn last(told: &[Event]) -> &Stat {
-    let stat = |event| match event {
-        &Event::Stat(ref stat) => Some(stat),
+fn last<'a>(told: &'a [Event]) -> &'a Stat {
+    let stat = |event: &'a Event| match event {
+        Event::Stat(stat) => Some(stat),
         _ => None,
     };
     told.iter().rev().find_map(stat).unwrap()
