@@ -12,7 +12,7 @@ fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A time with three digits.
-pub fn said_time(seconds: f64) -> String {
+pub fn time_text(seconds: f64) -> String {
     if seconds == 0.0 {
         return "0 s".into();
     }
@@ -25,14 +25,14 @@ pub fn said_time(seconds: f64) -> String {
 
 /// That a body came to rest.
 pub fn at_rest(seconds: f64, tolerance: f64) -> String {
-    let (time, share) = (said_time(seconds), significant(100.0 * tolerance, 2));
+    let (time, share) = (time_text(seconds), significant(100.0 * tolerance, 2));
     format!("At rest after {time}: forces balance within {share} % of the load.")
 }
 
 /// How slowly a motion is shown and, where it slows itself down, why.
 pub fn slowed(factor: f64, rest_in: Option<f64>) -> String {
     let why = rest_in.map_or(String::new(), |seconds| {
-        format!(", as it comes to rest within {}", said_time(seconds))
+        format!(", as it comes to rest within {}", time_text(seconds))
     });
     let times = significant(1.0 / factor, 3);
     format!("Shown {times} times slower than real time{why}.")
@@ -44,7 +44,7 @@ pub fn diverged(seconds: f64, place: Option<Vec3>) -> String {
         let [x, y, z] = at.map(|value| format!("{:.1}", 1e3 * value));
         format!(" near ({x}, {y}, {z}) mm")
     });
-    let time = said_time(seconds);
+    let time = time_text(seconds);
     format!(
         "Diverged at {time}{near}: the material cannot carry the load there. \
          Try a smaller load, a stiffer material or thicker walls, then reset."
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn times_have_three_digits_and_a_unit_that_suits_them() {
-        let times = [0.0, 0.81234, 0.0497, 12.0, 999.96, 1e-5, 0.1].map(said_time);
+        let times = [0.0, 0.81234, 0.0497, 12.0, 999.96, 1e-5, 0.1].map(time_text);
         let expected = [
             "0 s",
             "0.812 s",

@@ -257,9 +257,9 @@ impl PyPlayer {
     }
 
     /// Stops time for now, and says why: a load or a pull lets it run again if it was asked to.
-    #[pyo3(signature = (sentence=String::new()))]
-    fn hold(&self, py: Python<'_>, sentence: String) -> PyResult<()> {
-        self.with(py, |player| player.hold(sentence))
+    #[pyo3(signature = (sentence=""))]
+    fn hold(&self, py: Python<'_>, sentence: &str) -> PyResult<()> {
+        self.with(py, |player| player.hold(sentence.to_owned()))
     }
 
     /// Goes on from another body that was played.
