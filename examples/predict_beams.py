@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.calibration import Comparison, Experiment, Measurement
+from voxsoft.calibration import Deviation, Experiment, Measurement
 from voxsoft.design import Design, families
 from voxsoft.materials import load_card
 from voxsoft.simulation import simulate
@@ -34,7 +34,7 @@ class Prediction(NamedTuple):
 
     beam: str
     size: tuple[float, float, float]
-    comparison: Comparison
+    comparison: Deviation
 
     @property
     def tip(self) -> tuple[float, float]:
@@ -69,7 +69,7 @@ def predictions(
         experiment = Experiment(_beam(size, card, voxel_size), measurement, line="centerline")
         result = simulate(experiment.setup)
         seen = experiment.seen_at(result.positions)
-        yield Prediction(beam, size, Comparison(seen, measurement.values, 1.0, result.positions))
+        yield Prediction(beam, size, Deviation(seen, measurement.values, 1.0, result.positions))
 
 
 def _column(rows: list[dict[str, str]], *names: str) -> NDArray[np.float64]:
