@@ -22,8 +22,8 @@ import type { Frame, Topology } from "../engine/frames";
 import { type BodyLayer, CAVITY } from "../protocol";
 import type { View } from "../store/view";
 import { texels } from "./colormaps";
-import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
 import { type Membrane, membraneOn } from "./membranes";
+import { BODY_FRAGMENT, BODY_VERTEX, EDGE_FRAGMENT, EDGE_VERTEX } from "./shaders";
 import { stencilPair } from "./stencil";
 
 /** Colors of cavities, after Okabe and Ito; the same as in body.css. */
