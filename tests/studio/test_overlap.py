@@ -18,6 +18,7 @@ def test_a_solved_body_in_itself_is_told_with_its_places(make_studio):
 
     async def scenario():
         async with studio.page() as page:
+            await page.shown(lambda stat: stat.state == "paused")
             await page.send("rest")
             found = await page.until("overlap", lambda told: told.places, seconds=60.0)
             equilibrium = await page.until("equilibrium")
