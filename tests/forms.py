@@ -18,6 +18,7 @@ from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.region import Spot
+from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Card, Fiber, StretchRange
@@ -121,6 +122,7 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Parameter, "kind"): {"value": 0.5},
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
+    (Spring, "to"): {"anchor": None},
 }
 
 
@@ -234,7 +236,8 @@ def needs(model: type[Record]) -> dict[str, Any]:
     for each in model.__mro__:
         if each in NEEDS:
             return dict(NEEDS[each])
-    return {}
+    extra = model.model_config.get("json_schema_extra")
+    return dict(extra["examples"][0]) if isinstance(extra, dict) else {}
 
 
 def base(model: type[Record], _depth: int = 0) -> dict[str, Any]:

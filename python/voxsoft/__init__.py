@@ -69,6 +69,7 @@ if TYPE_CHECKING:
         Region,
         Rotation,
         Solver,
+        Spring,
         Traction,
     )
     from voxsoft.design.discretize import mesh_of, voxels_of
@@ -137,6 +138,7 @@ _HOMES = {
         "Region",
         "Rotation",
         "Solver",
+        "Spring",
         "Traction",
     ),
     "voxsoft.design.discretize": ("mesh_of", "voxels_of"),

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Body, Clamp, Filling, Floor, Gravity, History, Load, LoadKind, Material, Membrane,
+    Attachment, Body, Clamp, Filling, Floor, Gravity, History, Load, LoadKind, Material, Membrane,
     MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
@@ -59,6 +59,7 @@ pub struct PyProblemParts {
     membranes: Vec<(Vec<[u32; 3]>, MembraneMaterial)>,
     block_fraction: Vec<f64>,
     block_filling: Vec<Filling>,
+    attachments: Vec<Attachment>,
 }
 
 #[pymethods]
@@ -147,6 +148,15 @@ impl PyProblemParts {
         self.floor = Some(Floor { z });
     }
 
+    /// Elements of an attached term, by the name of its kind, as JSON.
+    fn attach(&mut self, kind: &str, elements: &str) -> PyResult<()> {
+        let tagged = format!("{{{kind:?}:{elements}}}");
+        let attachment = serde_json::from_str(&tagged)
+            .map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))?;
+        self.attachments.push(attachment);
+        Ok(())
+    }
+
     /// A membrane on triangles.
     fn membrane(
         &mut self,
@@ -231,6 +241,7 @@ impl PyProblem {
             block_fraction: parts.block_fraction.clone(),
             block_filling: parts.block_filling.clone(),
             membranes: Vec::new(),
+            attachments: parts.attachments.clone(),
         };
         let count = mesh.vertices.len();
         for (triangles, material) in &parts.membranes {
@@ -257,6 +268,7 @@ impl PyProblem {
             membranes: Vec::new(),
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
+            attachments: Vec::new(),
         };
         Self::assemble(py, self.mesh.clone(), materials, &parts)
     }

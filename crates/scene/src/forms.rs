@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use voxsoft_player::{Cast, Control, Probe};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{self as solid, HyperelasticMaterial, LatticeConstants, LatticeMaterial};
-use voxsoft_solid::{LoadKind, Model, ProblemError};
+use voxsoft_solid::{Attachment, LoadKind, Model, ProblemError};
 use voxsoft_xpbd::{Damping, Dynamics};
 
 use crate::SceneError;
@@ -50,6 +50,7 @@ struct Mesh {
     block_filling: Vec<[Vec3; 2]>,
     /// Vertices, then Young's modulus, Poisson's ratio, thickness and density.
     membranes: Vec<([u32; 3], [f64; 4])>,
+    attachments: Vec<Attachment>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -227,6 +228,7 @@ impl From<&solid::Mesh> for Mesh {
             block_fraction: mesh.block_fraction.clone(),
             block_filling: mesh.block_filling.iter().map(filling).collect(),
             membranes: mesh.membranes.iter().map(membrane).collect(),
+            attachments: mesh.attachments.clone(),
         }
     }
 }
@@ -254,6 +256,7 @@ impl TryFrom<Mesh> for solid::Mesh {
         let filling = |[shift, spread]: [Vec3; 2]| solid::Filling { shift, spread };
         Ok(Self {
             membranes: membranes?,
+            attachments: form.attachments,
             vertices: form.vertices,
             tets: form.tets,
             tet_part: form.tet_part,

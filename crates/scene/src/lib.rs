@@ -16,7 +16,7 @@ use voxsoft_xpbd::Dynamics;
 const MAGIC: [u8; 4] = *b"VXSC";
 
 /// The version that is written and read.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Why bytes are no scene.
 #[derive(Debug, Error, Clone, PartialEq)]

@@ -4,8 +4,9 @@ use proptest::prelude::*;
 use voxsoft_player::{Cast, Control, Probe};
 use voxsoft_scene::{Scene, SceneError};
 use voxsoft_solid::{
-    Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load, Material,
-    Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure,
+    Attachment, Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load,
+    Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure, Spring,
+    Springs,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics};
@@ -39,6 +40,13 @@ fn full() -> Scene {
             },
         ],
         membranes: vec![Membrane::new(triangles[0], corners, fabric).unwrap()],
+        attachments: vec![Attachment::Springs(Springs(vec![Spring {
+            vertices: vec![2, 7],
+            weights: vec![1.0, -1.0],
+            anchor: [0.0; 3],
+            length: 0.02,
+            stiffness: 4.0,
+        }]))],
     };
     let fiber = Fiber {
         direction: [0.0, 0.6, 0.8],
@@ -163,7 +171,7 @@ fn what_is_cut_off_or_too_long_is_told() {
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
     // A list that says to be longer than all there is is refused once the bytes are used up.
-    let endless = b"VXSC\x02\0\0\0\xff\xff\xff\xff\x0fab";
+    let endless = b"VXSC\x03\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }

@@ -1,6 +1,6 @@
 //! Balance of forces: the residual that tells rest from motion, reactions and moments.
 
-use crate::vector::{Vec3, add, axpy, cross};
+use crate::vector::{Vec3, add, axpy, cross, dot};
 use crate::{Load, Problem, elastic};
 
 /// A strain that counts as none: ten times the rounding of a coordinate a thousand voxels away,
@@ -12,12 +12,12 @@ pub const NEGLIGIBLE_STRAIN: f64 = 1e-8;
 pub struct Balance {
     /// Norm of the forces left over on free vertices in N.
     pub residual: f64,
-    /// Norm against which the residual counts, in N: that of the external forces, or, where there
-    /// are none (a motion is prescribed), that of the reactions. Reactions of a cantilever are
+    /// Norm against which the residual counts, in N: that of the external forces and of what is attached to the
+    /// body, or, where there are none (a motion is prescribed), that of the reactions. Reactions of a cantilever are
     /// many times its load, so a residual small against them would still leave it unbent. Never
     /// below the forces of a [`NEGLIGIBLE_STRAIN`], so that a body without any force is at rest.
     pub scale: f64,
-    /// The larger of the norms of external forces and reactions in N.
+    /// The larger of that of external and attached forces and that of the reactions in N.
     pub largest: f64,
     /// Elastic plus external force on every vertex in N.
     pub net: Vec<Vec3>,
@@ -78,7 +78,9 @@ pub fn balance_of_forces(
 ) -> Balance {
     let count = positions.len();
     let mut reactions = vec![[0.0; 3]; count];
-    let (mut residual, mut applied, mut supported) = (0.0, 0.0, 0.0);
+    // Squares apart: a spring that carries all of a load is as large as the load, not nothing with it.
+    let (mut residual, mut applied, mut supported) =
+        (0.0, attached_square(problem, positions), 0.0);
     for vertex in 0..count {
         for axis in 0..3 {
             let force = net[vertex][axis];
@@ -104,6 +106,17 @@ pub fn balance_of_forces(
         net,
         reactions,
     }
+}
+
+/// The square of the norm of the forces of what is attached to the body, N².
+fn attached_square(problem: &Problem, positions: &[Vec3]) -> f64 {
+    let mut terms = problem.body().attached().peekable();
+    if terms.peek().is_none() {
+        return 0.0;
+    }
+    let mut forces = vec![[0.0; 3]; positions.len()];
+    terms.for_each(|term| term.add_forces(positions, &mut forces));
+    forces.iter().map(|force| dot(*force, *force)).sum()
 }
 
 /// The floor carries a vertex that touches it and is pressed down.

@@ -15,10 +15,9 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::assembly::check_indices;
 use crate::color::{color_order, interleave};
 use crate::lattice::LatticeConstants;
-use crate::terms::{Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
+use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{
     Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube,
@@ -57,6 +56,8 @@ pub struct Mesh {
     pub block_filling: Vec<Filling>,
     /// Membranes on triangles.
     pub membranes: Vec<Membrane>,
+    /// What else is attached.
+    pub attachments: Vec<Attachment>,
 }
 
 /// Masses and terms.
@@ -73,7 +74,8 @@ pub struct Body {
     voxels: Vec<[u32; 8]>,
     bricks: Bricks,
     membranes: Membranes,
-    attached: Vec<Attached>,
+    attachments: Vec<Attachment>,
+    foreign: Vec<Foreign>,
     chunk_edges: Vec<u32>,
     chunk_tets: Vec<u32>,
     colors: Vec<u32>,
@@ -212,7 +214,8 @@ impl Body {
                 materials: hyperelastic,
             },
             membranes: Membranes(mesh.membranes.clone()),
-            attached: Vec::new(),
+            attachments: mesh.attachments.clone(),
+            foreign: Vec::new(),
             chunk_edges,
             chunk_tets,
             colors: order.colors,
@@ -235,17 +238,10 @@ impl Body {
         self.masses.iter().sum()
     }
 
-    /// Adds a term that is not of the mesh, which nothing but its vertices ties to the body.
+    /// Adds a term of a kind that is not an [`Attachment`].
     pub fn attach(&mut self, term: Arc<dyn Term>) -> Result<(), ProblemError> {
-        let (what, count) = ("vertex of an attached term", self.rest.len());
-        let mut outcome = Ok(());
-        term.visit_pattern(&mut |vertices| {
-            if outcome.is_ok() {
-                outcome = check_indices(what, vertices, count);
-            }
-        });
-        outcome?;
-        self.attached.push(Attached(term));
+        term.check(self.rest.len())?;
+        self.foreign.push(Foreign(term));
         Ok(())
     }
 
@@ -273,9 +269,10 @@ impl Body {
         own.into_iter().chain(self.attached())
     }
 
-    /// The terms that are not of the mesh.
+    /// The terms that are not made of the mesh.
     pub fn attached(&self) -> impl Iterator<Item = &dyn Term> {
-        self.attached.iter().map(|attached| &*attached.0)
+        let own = self.attachments.iter().map(|attachment| &**attachment);
+        own.chain(self.foreign.iter().map(|foreign| &*foreign.0))
     }
 
     /// All hyperelastic voxels as one block.
@@ -356,11 +353,11 @@ impl Body {
     }
 }
 
-/// An attached term; two are the same if they are one.
+/// A term of a kind that is not known here; two are the same if they are one.
 #[derive(Debug, Clone)]
-struct Attached(Arc<dyn Term>);
+struct Foreign(Arc<dyn Term>);
 
-impl PartialEq for Attached {
+impl PartialEq for Foreign {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
@@ -483,7 +480,9 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
             in_range("vertex of a membrane", vertex as usize, mesh.vertices.len())?;
         }
     }
-    Ok(())
+    mesh.attachments
+        .iter()
+        .try_for_each(|attachment| attachment.check(mesh.vertices.len()))
 }
 
 /// The filled part of a block, given by its tetrahedra.

@@ -87,4 +87,6 @@ pub use problem::Problem;
 pub use solver::{Observer, Progress, Solution, Solver, Status};
 pub use state::State;
 pub use stepper::{Ask, Damping, LiveStatus, Look, Method, Stepper};
-pub use terms::{Bricks, Edge, Edges, Membranes, Strain, Term, Tet, Tets};
+pub use terms::{
+    Attachment, Bricks, Edge, Edges, Membranes, Spring, Springs, Strain, Term, Tet, Tets,
+};

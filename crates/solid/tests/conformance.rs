@@ -116,6 +116,7 @@ enum Fault {
     Stiffness,
     Asymmetric,
     Anchored,
+    Free,
     Pattern,
     Bounds,
     Product,
@@ -142,6 +143,10 @@ impl Springs {
 impl Term for Springs {
     fn name(&self) -> &'static str {
         "springs"
+    }
+
+    fn is_anchored(&self) -> bool {
+        self.1 == Fault::Free
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
@@ -282,6 +287,7 @@ fn the_suite_catches_every_fault_of_a_term() {
         (Fault::Stiffness, Law::Tangent),
         (Fault::Asymmetric, Law::Symmetry),
         (Fault::Anchored, Law::RigidMotion),
+        (Fault::Free, Law::RigidMotion),
         (Fault::Pattern, Law::Pattern),
         (Fault::Bounds, Law::Bounds),
         (Fault::Product, Law::Product),

@@ -155,6 +155,10 @@ class BrickModel:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
             )
+        for where, _ in setup.design.attachments():
+            raise SimulationError(
+                where, "cannot be given to an outside code", "compare the design without it"
+            )
         for index, part in enumerate(setup.design.parts):
             if part.fibers:
                 raise SimulationError(

@@ -12,6 +12,7 @@ from voxsoft.design.part import Part
 from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.solver import Solver
+from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
 
 __all__ = [
@@ -34,6 +35,7 @@ __all__ = [
     "Region",
     "Rotation",
     "Solver",
+    "Spring",
     "Traction",
     "require_design",
     "set_values",

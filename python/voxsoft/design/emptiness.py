@@ -59,9 +59,9 @@ def without_empty_shapes(document: Mapping[str, Any]) -> tuple[Document, tuple[s
         named = {name: pruning.differences(table) for name, table in shapes.items()}
         named.update(pruning.subtracted)
         cleaned["shapes"] = {name: table for name, table in named.items() if table is not None}
-    for place in ("parts", "layers", "clamps", "loads", "chambers", "probes"):
-        if place in document:
-            cleaned[place] = pruning.differences(document[place])
+    for key, value in document.items():
+        if key != "shapes":
+            cleaned[key] = pruning.differences(value)
     empty = tuple(name for name, table in pruning.subtracted.items() if table is None)
     return cleaned, empty
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
@@ -19,6 +19,7 @@ from pydantic import (
 from pydantic_core import PydanticSerializationError
 
 from voxsoft.design.assignment import set_values
+from voxsoft.design.attachment import Attachment
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
@@ -35,6 +36,7 @@ from voxsoft.design.region import Probe
 from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
+from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.errors import DesignError, FormulaError
 from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
@@ -77,6 +79,8 @@ class Design(Record):
         Materials of this design, by name; a part may also name a material card.
     layers
         Thin layers of fabric, film or paper bonded to the body.
+    springs
+        Springs between places of the body, or to fixed points.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
     chambers
@@ -122,6 +126,7 @@ class Design(Record):
     materials: Table[MaterialName, AnyMaterial] = Field(default_factory=FrozenDict)
     parts: tuple[Part, ...] = Field(min_length=1, max_length=250)
     layers: tuple[Layer, ...] = Field((), max_length=250)
+    springs: tuple[Spring, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
@@ -231,6 +236,15 @@ class Design(Record):
         ]
         size = format_quantity(self.voxel_size, "length")
         return f"<Design {self.name}: voxels of {size}, {', '.join(held)}>"
+
+    def attachments(self) -> Iterator[tuple[str, Attachment]]:
+        """Yield everything that is attached to the body, each with its place in the design."""
+        for field in type(self).model_fields:
+            entries = getattr(self, field)
+            if isinstance(entries, tuple):
+                for index, entry in enumerate(entries):
+                    if isinstance(entry, Attachment):
+                        yield f"{field}[{index}]", entry
 
     @property
     def empty_shapes(self) -> tuple[str, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
-from voxsoft.records import closest, place
+from voxsoft.records import Record, closest, place
 
 Path = tuple[str | int, ...]
 
@@ -109,12 +109,20 @@ def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
 
 
 def _regions(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
-    for key in ("layers", "clamps", "loads"):
-        for path, entry in _list(document, key):
-            yield (*path, "region"), entry_of(entry, "region")
-    for table in ("chambers", "probes"):
-        for name, spot in _table(document, table).items():
-            yield (table, name), spot
+    """Whatever may name a shape beside the shapes and parts: places, at any depth."""
+    for key, value in document.items():
+        if key not in ("shapes", "parts", "parameters"):
+            yield from _tables_in(value, (key,))
+
+
+def _tables_in(value: object, path: Path) -> Iterator[tuple[Path, Any]]:
+    if isinstance(value, (list, tuple)):
+        for index, entry in enumerate(value):
+            yield from _tables_in(entry, (*path, index))
+    elif isinstance(value, (Mapping, Record)):
+        yield path, value
+        for key, entry in value.items() if isinstance(value, Mapping) else value:
+            yield from _tables_in(entry, (*path, key))
 
 
 def operand_names(shape: object, path: Path) -> Iterator[tuple[Path, str]]:

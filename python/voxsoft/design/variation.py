@@ -15,8 +15,10 @@ from voxsoft.design.part import Part
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.records import Record, closest, steps_of
 
-#: What a change may reach, beside the parameters.
-_ROOTS = ("chambers", "clamps", "layers", "loads", "materials", "parts", "probes", "shapes")
+#: What a change may not reach: what is no part of the mechanics, and parameters, which have names.
+_OTHERS = frozenset(
+    {"schema", "name", "description", "parameters", "objectives", "constraints", "solver"}
+)
 
 
 def number_of(design: Design, name: str) -> float:
@@ -97,7 +99,7 @@ def _with_parameter(design: Design, name: str, value: float) -> Design:
 
 def _path(design: Design, name: str) -> list[str]:
     path = [str(step) for step in steps_of(name)]
-    if path[0] not in _ROOTS or len(path) < 2:
+    if path[0] in _OTHERS or path[0] not in _fields(design) or len(path) < 2:
         known = [*design.parameters]
         hint = closest(name, known) if known else ""
         raise DesignError(

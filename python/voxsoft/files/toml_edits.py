@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Final
+from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
@@ -15,9 +15,6 @@ from voxsoft.files.toml_text import write_toml
 from voxsoft.records import place
 
 Path = Sequence[str | int]
-
-#: Lists of a design that are written as repeated sections.
-_SECTIONS: Final = frozenset({"parts", "loads", "clamps", "layers"})
 
 
 def with_value(text: str, path: Path, value: object) -> str:
@@ -102,7 +99,7 @@ def _set(document: tomlkit.TOMLDocument, path: list[str | int], value: object) -
     elif isinstance(last, int):
         _set_entry(here, last, value, path)
     elif len(path) == 1:
-        here[last] = _kept(here.get(last), _item(value, top=True, name=last))
+        here[last] = _kept(here.get(last), _item(value, top=True))
     else:
         here[last] = _kept(here.get(last), _item(value))
 
@@ -111,7 +108,7 @@ def _inside(here: Any, step: str | int, path: list[str | int], follower: str | i
     """Go one step down, making what is missing."""
     if isinstance(step, str) and step not in here:
         if isinstance(follower, int):
-            here[step] = tomlkit.aot() if step in _SECTIONS else tomlkit.array()
+            here[step] = tomlkit.aot() if len(path) == 1 else tomlkit.array()
         else:
             here[step] = tomlkit.table() if len(path) == 1 else tomlkit.inline_table()
     elif isinstance(step, int) and step == len(here):
@@ -141,15 +138,15 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         here[index] = _item(value)
 
 
-def _item(value: object, *, top: bool = False, name: str = "") -> Any:  # noqa: ANN401
-    """A value as TOML writes it: tables inline, but for those at the top."""
+def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401
+    """A value as TOML writes it: tables inline, but for those at the top, which lists repeat."""
     if isinstance(value, Mapping):
         table = tomlkit.table() if top else tomlkit.inline_table()
         for key, inner in value.items():
             table[key] = _item(inner)
         return table
     if isinstance(value, list):
-        if top and name in _SECTIONS and all(isinstance(each, Mapping) for each in value):
+        if top and all(isinstance(each, Mapping) for each in value):
             sections = tomlkit.aot()
             for each in value:
                 sections.append(_item(each, top=True))

@@ -16,7 +16,7 @@ def moves_freely(setup: Setup) -> bool:
     """Whether a component of the body has a rigid motion that no clamp stops.
 
     Pieces are what shares vertices; hinges between voxels on one edge are not looked at. Where
-    there is a floor or a layer, which may hold a component as well, the answer is no.
+    there is a floor, a layer or a spring, which may hold a component as well, the answer is no.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def moves_freely(setup: Setup) -> bool:
     >>> moves_freely(Setup.of(families.beam()))
     False
     """
-    if setup.design.floor is not None or setup.design.layers:
+    if setup.design.floor is not None or setup.design.layers or setup.attached:
         return False
     held = np.zeros((len(setup.mesh.vertices), 3), dtype=bool)
     for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):

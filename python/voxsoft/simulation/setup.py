@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -13,6 +14,7 @@ from voxsoft import _core
 from voxsoft._memory import shortage
 from voxsoft.design import Clamp, Design, Probe, Region
 from voxsoft.design import History as LoadHistory
+from voxsoft.design.attachment import PlaceOnBody
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
 from voxsoft.materials import Material
@@ -105,7 +107,7 @@ class Setup:
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
-        _ = self.places
+        _ = self.places, self.attached
 
     @cached_property
     def layers(self) -> tuple[LayerTriangles, ...]:
@@ -121,8 +123,7 @@ class Setup:
     def places(self) -> dict[str, Place]:
         """What each probe averages over."""
         return {
-            name: place_of(probe, self.mesh, self.design.shapes, f"probes.{name}", self.points)
-            for name, probe in self.design.probes.items()
+            name: self.place(probe, f"probes.{name}") for name, probe in self.design.probes.items()
         }
 
     @cached_property
@@ -155,6 +156,8 @@ class Setup:
             receiver = _CoreLoads(self.mesh, parts, _times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
+        for term, elements in self.attached.items():
+            parts.attach(term, json.dumps(elements, allow_nan=False))
         if self.design.floor is not None:
             parts.floor(self.design.floor.z)
         return parts
@@ -173,6 +176,28 @@ class Setup:
     def load(self, index: int) -> ResolvedLoad:
         """What one load of the design does; errors as for :attr:`loads`."""
         return resolve(self.design.loads[index], self, f"loads[{index}]")
+
+    @cached_property
+    def attached(self) -> dict[str, list[dict[str, Any]]]:
+        """The elements of each term of the core that the design attaches, by the term's name.
+
+        Raises
+        ------
+        DesignError
+            An element with an end that is not on the body.
+        """
+        found: dict[str, list[dict[str, Any]]] = {}
+        for where, attachment in self.design.attachments():
+            found.setdefault(attachment.term, []).append(attachment.element(self, where))
+        return found
+
+    def place(self, probe: Probe, where: str) -> Place:
+        """What a point or region is on the mesh; `where` is the place an error names."""
+        return place_of(probe, self.mesh, self.design.shapes, where, self.points)
+
+    def position(self, place: PlaceOnBody) -> NDArray[np.float64]:
+        """Where a place is in the undeformed body, (3,), m."""
+        return np.asarray(place.weights @ self.mesh.vertices[place.vertices])
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:

@@ -97,6 +97,11 @@ impl Check<'_> {
         let (law, subject) = (Law::RigidMotion, self.subject);
         let unit = self.unit_force();
         let moved = carried(self.rest);
+        if self.term.is_anchored() {
+            let cost = self.term.energy(&moved) - self.term.energy(self.rest);
+            let costs = cost.abs() > ROUNDING * unit * self.size;
+            return subject.holds(law, "said to be anchored, but free to move", costs);
+        }
         let force = size(&self.forces(&moved));
         subject.at_most(law, "the force at rest, moved", force, ROUNDING * unit)?;
         let energy = self.term.energy(&moved).abs();

@@ -1,19 +1,24 @@
 //! Blocks of like elements, each with an energy.
 //!
 //! A [`crate::Body`] is a list of such terms: those that its mesh brings (edges, tetrahedra, voxels,
-//! membranes), and any that are attached to it ([`crate::Body::attach`]). Solvers know a term by this
-//! trait, so a new kind of element is one file that implements it; dispatch is per block, never per element.
+//! membranes), and any that are attached to it. Solvers know a term by this trait, so a new kind of element is
+//! one file that implements it and a variant of [`Attachment`], by which bindings and scenes know it; terms of
+//! other crates go through [`crate::Body::attach`]. Dispatch is per block, never per element.
 //! What a solver has a quicker form of, it asks the body for by name: strips of edges and tetrahedra,
 //! multigrid on voxels, the inertia of membranes.
 
 mod bricks;
 mod edges;
 mod membranes;
+mod springs;
 mod tets;
 
 use std::fmt::Debug;
 
-use crate::assembly::{Visitor, add_product, add_row_sums};
+use serde::{Deserialize, Serialize};
+
+use crate::ProblemError;
+use crate::assembly::{Visitor, add_product, add_row_sums, check_indices};
 use crate::brick::Tangent;
 use crate::vector::Vec3;
 
@@ -21,6 +26,7 @@ pub use bricks::Bricks;
 pub(crate) use bricks::FORCE_BATCH;
 pub use edges::{Edge, Edges};
 pub use membranes::Membranes;
+pub use springs::{Spring, Springs};
 pub(crate) use tets::volume_hessian;
 pub use tets::{Tet, Tets};
 
@@ -30,6 +36,22 @@ pub use tets::{Tet, Tets};
 pub trait Term: Debug + Send + Sync {
     /// What its elements are called.
     fn name(&self) -> &'static str;
+
+    /// Checks numbers and indices against the number of vertices.
+    fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+        let mut outcome = Ok(());
+        self.visit_pattern(&mut |element| {
+            if outcome.is_ok() {
+                outcome = check_indices("vertex of an attached term", element, vertices);
+            }
+        });
+        outcome
+    }
+
+    /// Whether it ties the body to fixed points, so that moving the whole body costs energy.
+    fn is_anchored(&self) -> bool {
+        false
+    }
 
     /// Hands over the vertices of every element: its stiffness joins no others.
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32]));
@@ -67,6 +89,24 @@ pub trait Term: Debug + Send + Sync {
     /// them along; `None` for a term that is taken as it is where the step ends.
     fn predict<'a>(&'a self, _positions: &[Vec3], _moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
         None
+    }
+}
+
+/// The kinds of terms that can be attached to a body by name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Attachment {
+    /// Springs between places, or to fixed points.
+    Springs(Springs),
+}
+
+impl std::ops::Deref for Attachment {
+    type Target = dyn Term;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Self::Springs(springs) => springs,
+        }
     }
 }
 

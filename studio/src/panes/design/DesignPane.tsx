@@ -10,7 +10,7 @@ import { Goals } from "./Goals";
 import { Parameters } from "./Parameters";
 import { SchemaField, TableFields } from "./SchemaField";
 import { Shapes } from "./Shapes";
-import { helpOfKeys } from "./schema";
+import { helpOfKeys, labelOf, listSections, resolve, type Schema, single, summary } from "./schema";
 import { materialName } from "./starters";
 import { NO_DIAGNOSTICS, useFormOfDocument } from "./useForm";
 import "./design.css";
@@ -55,6 +55,7 @@ export default function DesignPane() {
             what="a layer"
             empty="None. A layer is a thin sheet that resists stretch, such as fabric."
           />
+          <OtherLists root={form.root} />
           <EntryList
             section="clamps"
             title="Clamps"
@@ -109,6 +110,29 @@ function Faults() {
       <p className="muted">The view shows the last design that was good.</p>
     </div>
   );
+}
+
+/** Lists that have their own place and words in the form. */
+const PLACED = ["parts", "layers", "clamps", "loads"];
+
+/** All other lists of the schema, in its words. */
+function OtherLists(props: { root: Schema }) {
+  const { root } = props;
+  return listSections(root)
+    .filter((section) => !PLACED.includes(section))
+    .map((section) => {
+      const what = `a ${single(section).toLowerCase()}`;
+      const schema = resolve(root, root.properties?.[section]?.items ?? {});
+      return (
+        <EntryList
+          key={section}
+          section={section}
+          title={labelOf(section)}
+          what={what}
+          empty={`None. ${summary(schema)}`}
+        />
+      );
+    });
 }
 
 const GENERAL = ["name", "description", "voxel_size", "fill"];

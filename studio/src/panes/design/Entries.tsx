@@ -9,7 +9,7 @@ import { useForm } from "./form";
 import { Glyph } from "./Glyph";
 import { NAME, type Named, renamed } from "./rename";
 import { swapped, TableFields } from "./SchemaField";
-import { controlOf, resolve, type Schema, summary } from "./schema";
+import { controlOf, resolve, type Schema, single, summary } from "./schema";
 import { freeName, starter } from "./starters";
 
 export type Table = Readonly<Record<string, unknown>>;
@@ -130,8 +130,7 @@ function describeShort(value: unknown): string {
 function titleOf(section: string, value: Table, index: number): string {
   if (typeof value.name === "string") return value.name;
   if (section === "loads") return String(value.kind ?? "load");
-  const word = { parts: "Part", clamps: "Clamp", layers: "Layer" }[section] ?? "Entry";
-  return `${word} ${index + 1}`;
+  return `${single(section)} ${index + 1}`;
 }
 
 /** A list of tables, such as the loads; the order counts and can be changed. */

@@ -21,6 +21,7 @@ export interface Schema {
     readonly propertyName: string;
     readonly mapping: Readonly<Record<string, string>>;
   };
+  readonly examples?: readonly unknown[];
   readonly "x-kind"?: string;
   readonly "x-names"?: string;
 }
@@ -186,6 +187,24 @@ export function summary(schema: Schema): string {
 /** A description without the marks of its source: of ":meth:`~a.b.young`" a reader needs "young". */
 function plain(text: string): string {
   return text.replace(/:\w+:`~?(?:[\w.]+\.)?(\w+)`/g, "$1").replaceAll("``", "");
+}
+
+/** The sections of a design that are lists of tables, such as the loads. */
+export function listSections(root: Schema): readonly string[] {
+  const sections = Object.entries(root.properties ?? {});
+  return sections
+    .filter(([, schema]) => {
+      const control = controlOf(root, schema);
+      return (
+        control.is === "list" && ["table", "variant"].includes(controlOf(root, control.item).is)
+      );
+    })
+    .map(([name]) => name);
+}
+
+/** What one entry of a list is called: "Clamp" for "clamps". */
+export function single(section: string): string {
+  return labelOf(section.slice(0, -1));
 }
 
 /** A key as a label: "top_radius" becomes "Top radius". */

@@ -32,6 +32,7 @@ export function starter(root: Schema, given: Schema, names: Names): unknown {
   const schema = resolve(root, given);
   const control = controlOf(root, schema);
   const usual = schema.default;
+  if (schema.examples?.[0] !== undefined) return schema.examples[0];
   switch (control.is) {
     case "quantity":
       if (control.words.length > 0) return control.words[0];

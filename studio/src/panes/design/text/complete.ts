@@ -6,14 +6,13 @@ import {
   helpOfKeys,
   inside,
   labelOf,
+  listSections,
   resolve,
   type Schema,
   schemaAt,
   summary,
 } from "../schema";
 import { type Place, placeAt, type Step } from "./place";
-
-const LISTS = new Set(["parts", "layers", "clamps", "loads"]);
 
 /** The table of keys that a path leads to, with what its kind is known to be. */
 export function tableAt(root: Schema, path: readonly Step[], read: unknown): Schema | null {
@@ -91,12 +90,13 @@ export function valueOffers(
 
 function keyOffers(root: Schema, place: Place): Completion[] {
   if (place.path.length === 0) {
+    const lists = listSections(root);
     return Object.entries(root.properties ?? {})
       .filter(([name]) => !(name in place.read))
       .map(([name, schema]) => {
         const control = controlOf(root, schema);
-        const header = LISTS.has(name) ? `[[${name}]]` : `[${name}]`;
-        const nests = control.is === "map" || control.is === "table" || LISTS.has(name);
+        const header = lists.includes(name) ? `[[${name}]]` : `[${name}]`;
+        const nests = control.is === "map" || control.is === "table" || lists.includes(name);
         return {
           label: name,
           type: "property",
@@ -121,11 +121,10 @@ function keyOffers(root: Schema, place: Place): Completion[] {
 }
 
 function headerOffers(root: Schema): Completion[] {
-  return Object.entries(root.properties ?? {})
-    .filter(
-      ([name, schema]) => LISTS.has(name) || ["map", "table"].includes(controlOf(root, schema).is),
-    )
-    .map(([name]) => ({ label: name, type: "namespace" }));
+  const tables = Object.entries(root.properties ?? {})
+    .filter(([, schema]) => ["map", "table"].includes(controlOf(root, schema).is))
+    .map(([name]) => name);
+  return [...listSections(root), ...tables].map((label) => ({ label, type: "namespace" }));
 }
 
 /** The source of completions for the editor. */

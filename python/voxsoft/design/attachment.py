@@ -1,0 +1,64 @@
+"""What is attached to a body beside its material: elements between places of it."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import Any, ClassVar, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design.region import Probe
+from voxsoft.records import Record
+
+
+class PlaceOnBody(Protocol):
+    """Vertices, and the weights of the mean that is a place; the weights sum to 1."""
+
+    @property
+    def vertices(self) -> NDArray[np.uint32]:
+        """Indices, (n,)."""
+
+    @property
+    def weights(self) -> NDArray[np.float64]:
+        """A weight for each, (n,)."""
+
+
+class AttachingBody(Protocol):
+    """What elements are attached to: a :class:`~voxsoft.simulation.Setup`."""
+
+    def place(self, probe: Probe, where: str) -> PlaceOnBody:
+        """Return what a point or region of the undeformed body is on the mesh."""
+
+    def position(self, place: PlaceOnBody) -> NDArray[np.float64]:
+        """Return where a place is in the undeformed body, (3,), m."""
+
+
+class Attachment(Record):
+    """Something that pulls at places of a body.
+
+    Notes
+    -----
+    A kind is a subclass with the name of its term in the core, and a field of
+    :class:`~voxsoft.design.Design` that holds a tuple of it; nothing else needs to know the kind.
+    """
+
+    #: The name of the core's term, a variant of its `Attachment`.
+    term: ClassVar[str]
+
+    @abstractmethod
+    def element(self, body: AttachingBody, where: str) -> dict[str, Any]:
+        """Return the element of the core's term, by the names of its fields, as plain data.
+
+        Parameters
+        ----------
+        body
+            The body made ready.
+        where
+            The place in the design that an error names.
+
+        Raises
+        ------
+        DesignError
+            A place that is not on the body, or ends that the element cannot have.
+        """
