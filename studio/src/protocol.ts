@@ -651,6 +651,19 @@ export interface BodyLayer {
   triangles: number[];
 }
 
+/** A place: its center in the unloaded body, and the drawn vertices that carry it, if any. */
+export interface BodyPlace {
+  center: Triple;
+  vertices: number[];
+}
+
+/** What is attached to the body: the places that it joins, in turn. */
+export interface BodyAttachment {
+  name: string;
+  summary: string;
+  places: BodyPlace[];
+}
+
 /**
  * A new body: its topology follows as a binary message with the same id.
  *
@@ -678,6 +691,7 @@ export interface BodyEvent {
   probes: BodyProbe[];
   parts: BodyPart[];
   layers: BodyLayer[];
+  attachments: BodyAttachment[];
   seconds: number;
   memory: number;
   smooth: boolean;

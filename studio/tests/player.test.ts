@@ -18,6 +18,7 @@ const BODY: BodyEvent = {
     findings: [],
     clamps: [],
     layers: [],
+    attachments: [],
     parts: [],
     seconds: 0,
     memory: 0,

@@ -7,6 +7,7 @@ import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, gradient, simulate
+from voxsoft.studio.body import StudioBody
 from voxsoft.units import kPa, mm
 
 YOUNG, SIDE, LENGTH, STIFFNESS = 60 * kPa, 2 * mm, 16 * mm, 0.5
@@ -159,3 +160,22 @@ def test_a_shape_that_an_end_names_must_exist():
 def test_outside_codes_are_not_given_springs():
     with pytest.raises(SimulationError, match="cannot be given to an outside code"):
         BrickModel.of(Setup.of(bar([tie()])))
+
+
+def test_the_studio_draws_them_where_they_end():
+    inner = vs.Spring(at=vs.Probe(point=(8 * mm, 2 * mm, 2 * mm)), to=END, stiffness=1.0)
+    thick = vs.Part(
+        shape=vs.Box(size=(LENGTH, 4 * mm, 4 * mm)), material=vs.NeoHookean(young=YOUNG)
+    )
+    lost = tie(at=vs.Probe(point=(1.0, 0, 0)))
+    design = bar([tie(name="return"), inner, lost], parts=[thick])
+    shown = StudioBody.of(design, rev=1, topology=1).event().attachments
+    assert [(each.name, each.summary) for each in shown] == [
+        ("return", "spring of 0.5 N/m"),
+        ("spring 2", "spring of 1 N/m"),
+    ], "a spring that ends nowhere is a finding, and is not drawn"
+    assert [place.center for place in shown[0].places] == [(16 * mm, 2 * mm, 2 * mm), FAR]
+    assert len(shown[0].places[0].vertices) == 9
+    assert shown[0].places[1].vertices == []
+    # The middle of the bar is not drawn: its end goes with the surface beside it.
+    assert len(shown[1].places[0].vertices) == 1

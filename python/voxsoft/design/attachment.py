@@ -8,8 +8,10 @@ from typing import Any, ClassVar, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.operands import Name
 from voxsoft.design.region import Probe
 from voxsoft.records import Record
+from voxsoft.units import Point
 
 
 class PlaceOnBody(Protocol):
@@ -45,6 +47,18 @@ class Attachment(Record):
 
     #: The name of the core's term, a variant of its `Attachment`.
     term: ClassVar[str]
+
+    name: Name | None = None
+
+    @property
+    @abstractmethod
+    def places(self) -> tuple[Probe | Point, ...]:
+        """What it joins, in turn: places on the body, and points in space that do not move."""
+
+    @property
+    @abstractmethod
+    def summary(self) -> str:
+        """What it is, in a few words with its size, for pictures and lists."""
 
     @abstractmethod
     def element(self, body: AttachingBody, where: str) -> dict[str, Any]:

@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import ConfigDict, model_validator
 
 from voxsoft.design.attachment import AttachingBody, Attachment
-from voxsoft.design.operands import Name
 from voxsoft.design.region import Probe
 from voxsoft.errors import DesignError
 from voxsoft.units import NonNegativeLength, Point, UnitOf, format_quantity
@@ -67,7 +66,6 @@ class Spring(Attachment):
     to: Probe | None = None
     anchor: Point | None = None
     length: NonNegativeLength | None = None
-    name: Name | None = None
 
     @model_validator(mode="after")
     def _has_two_ends(self) -> Spring:
@@ -77,6 +75,16 @@ class Spring(Attachment):
         if self.to is not None and self.anchor is not None:
             raise DesignError("", 'has both "to" and "anchor"', "keep one of them")
         return self
+
+    @property
+    def places(self) -> tuple[Probe | Point, ...]:
+        """Its two ends."""
+        return self.at, self.to or self.anchor or (0.0, 0.0, 0.0)
+
+    @property
+    def summary(self) -> str:
+        """Its stiffness."""
+        return f"spring of {format_quantity(self.stiffness, 'stiffness')}"
 
     def element(self, body: AttachingBody, where: str) -> dict[str, Any]:
         """Return the core's `Spring`; see :meth:`Attachment.element`."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft._memory import gigabytes, memory_limit
-from voxsoft.design import Design
+from voxsoft.design import Design, Probe
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.discretize import voxels_of
 from voxsoft.design.load import scaled
@@ -28,7 +28,7 @@ from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
 from voxsoft.studio.surface import Surface
-from voxsoft.units import format_quantity, parse
+from voxsoft.units import Point, format_quantity, parse
 from voxsoft.voxels import Voxels
 
 #: Bytes that a voxel takes with its mesh, its problem and its stepper; measured on blocks of 8,000
@@ -175,6 +175,7 @@ class StudioBody:
             probes=self._probes(),
             parts=_parts(setup.design),
             layers=_layers(setup, self.surface),
+            attachments=_attachments(setup, self.surface),
             seconds=self.seconds,
             memory=float(self.voxels.count * BYTES_PER_VOXEL),
         )
@@ -269,6 +270,31 @@ def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
             )
         )
     return told
+
+
+def _attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:
+    found = []
+    for where, attachment in setup.design.attachments():
+        section, _, index = where.rstrip("]").partition("[")
+        try:
+            places = [_body_place(setup, surface, end, where) for end in attachment.places]
+        except VoxSoftError:
+            continue  # a finding of the check
+        name = attachment.name or f"{section.removesuffix('s')} {int(index) + 1}"
+        found.append(events.BodyAttachment(name=name, summary=attachment.summary, places=places))
+    return found
+
+
+def _body_place(setup: Setup, surface: Surface, end: Probe | Point, where: str) -> events.BodyPlace:
+    if not isinstance(end, Probe):
+        return events.BodyPlace(center=end, vertices=[])
+    place = setup.place(end, where)
+    center = setup.position(place)
+    vertices = surface.index_of(place.vertices[place.weights > 1e-9])
+    if len(vertices) == 0:  # inside the body, where nothing is drawn: it goes with what is near
+        drawn = setup.mesh.vertices[surface.vertices]
+        vertices = np.array([np.linalg.norm(drawn - center, axis=1).argmin()], dtype=np.uint32)
+    return events.BodyPlace(center=_point(center), vertices=vertices.tolist())
 
 
 def _load(setup: Setup, index: int) -> events.BodyLoad:

@@ -218,6 +218,21 @@ class BodyLayer(Entry):
     triangles: list[int]
 
 
+class BodyPlace(Entry):
+    """A place: its center in the unloaded body, and the drawn vertices that carry it, if any."""
+
+    center: Triple
+    vertices: list[int]
+
+
+class BodyAttachment(Entry):
+    """What is attached to the body: the places that it joins, in turn."""
+
+    name: str
+    summary: str
+    places: list[BodyPlace]
+
+
 class BodyProbe(Entry):
     """A named place of measurement, with the surface vertices of it."""
 
@@ -260,6 +275,7 @@ class Body(Event):
     probes: list[BodyProbe]
     parts: list[BodyPart]
     layers: list[BodyLayer]
+    attachments: list[BodyAttachment]
     seconds: float
     memory: float
     smooth: bool = False

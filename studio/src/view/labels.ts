@@ -7,6 +7,7 @@ export interface Label {
   readonly kind:
     | "clamp"
     | "layer"
+    | "attachment"
     | "load"
     | "probe"
     | "cavity"

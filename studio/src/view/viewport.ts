@@ -15,6 +15,7 @@ import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView, type View } from "../store/view";
+import { Attachments } from "./attachments";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { type ColorRange, colorRange } from "./colorRange";
@@ -64,6 +65,7 @@ export class Viewport {
   private readonly scene = new Scene();
   private readonly section = new Section();
   private readonly sectionHandle = new SectionHandle(this.section, this.rig);
+  private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
   private readonly labels = new Labels();
   private legend: Rect | null = null;
@@ -109,7 +111,13 @@ export class Viewport {
     this.renderer.domElement.setAttribute("aria-label", "The body");
     this.renderer.domElement.tabIndex = 0;
     this.element.append(this.renderer.domElement, this.labels.element, this.sectionHandle.element);
-    this.scene.add(this.section.group, this.symbols.group, this.grabs.group, this.tape.group);
+    this.scene.add(
+      this.section.group,
+      this.symbols.group,
+      this.attachments.group,
+      this.grabs.group,
+      this.tape.group,
+    );
     new ResizeObserver(() => this.resize()).observe(this.element);
     new MutationObserver(() => this.recolor()).observe(document.documentElement, {
       attributeFilter: ["data-theme"],
@@ -212,6 +220,7 @@ export class Viewport {
     const body = useStudio.getState().body;
     if (body) this.symbols.build(body);
     else this.symbols.clear();
+    this.attachments.build(body?.attachments ?? []);
     this.coverSurface();
     this.request();
   }
@@ -422,6 +431,7 @@ export class Viewport {
     );
     this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
     this.symbols.group.visible = view.symbols;
+    this.attachments.group.visible = view.symbols;
   }
 
   private range(view: View): [number, number] {
@@ -449,6 +459,7 @@ export class Viewport {
     // A shape comes before its words, which speak of vertices that another one may not have.
     if (body?.topology === mesh.topology.id && view.symbols) {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
+      labels.push(...this.attachments.update(mesh, view.exaggeration));
     }
     // Where all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;

@@ -114,8 +114,10 @@ function aboutEntry(section: string, value: Table): string {
       return `${describeValue(value.thickness)}, ${describeValue(value.young)}`;
     case "materials":
       return String(value.model ?? "");
-    default:
-      return describeValue(value);
+    default: {
+      const { name: _, ...rest } = value;
+      return describeValue(rest);
+    }
   }
 }
 
