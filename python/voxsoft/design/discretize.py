@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 
 from voxsoft.design.cut_voxels import CutVoxels
@@ -35,8 +38,50 @@ def voxels_of(design: Design) -> Voxels:
     >>> voxels_of(families.beam()).count
     80
     """
+    return filled(design).voxels
+
+
+@dataclass(frozen=True)
+class Filled:
+    """A design on its grid, not meshed yet.
+
+    Attributes
+    ----------
+    voxels
+        Its cells; of full ones those before they are refined.
+    count
+        How many voxels the mesh will have.
+    lost
+        Volume of the material that found no voxel [m³].
+    mesh
+        Makes the mesh.
+    """
+
+    voxels: Voxels
+    count: int
+    lost: float
+    mesh: Callable[[], Mesh]
+
+
+def filled(design: Design, refine: int = 1) -> Filled:
+    """Fill a grid with a design, as its `fill` says; parameters as for :func:`mesh_of`.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> cells = filled(families.beam(), refine=2)
+    >>> cells.voxels.count, cells.count, len(cells.mesh().tets)
+    (80, 640, 3200)
+    """
     if require_design(design).fill == "fraction":
-        return CutVoxels.of(design).voxels
+        cut = CutVoxels.of(design, refine)
+        return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)
+    voxels = _full_voxels(design)
+    mesh = (lambda: voxels.refine(refine).mesh()) if refine > 1 else voxels.mesh
+    return Filled(voxels, voxels.count * refine**3, 0.0, mesh)
+
+
+def _full_voxels(design: Design) -> Voxels:
     size = design.voxel_size
     grids = []
     for part in design.parts:
@@ -76,7 +121,4 @@ def mesh_of(design: Design, refine: int = 1) -> Mesh:
     >>> len(mesh_of(families.beam(), refine=2).tets)
     3200
     """
-    if require_design(design).fill == "fraction":
-        return CutVoxels.of(design, refine).mesh()
-    voxels = voxels_of(design)
-    return (voxels.refine(refine) if refine > 1 else voxels).mesh()
+    return filled(design, refine).mesh()

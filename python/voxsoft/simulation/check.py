@@ -11,8 +11,7 @@ import numpy as np
 
 from voxsoft._shown import Shown, counted, rounded, shortened
 from voxsoft.design import Design, require_design
-from voxsoft.design.cut_voxels import CutVoxels
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretize import filled
 from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
@@ -218,11 +217,10 @@ def examine(
 
 def _discretized(body: Design | Voxels) -> tuple[Voxels, Mesh, float]:
     """Voxels, their mesh, and the volume [m³] of material that found no voxel."""
-    if isinstance(body, Design) and body.fill == "fraction":
-        cut = CutVoxels.of(body)
-        return cut.voxels, cut.mesh(), cut.lost
-    voxels = voxels_of(body) if isinstance(body, Design) else body
-    return voxels, voxels.mesh(), 0.0
+    if not isinstance(body, Design):
+        return body, body.mesh(), 0.0
+    cells = filled(body)
+    return cells.voxels, cells.mesh(), cells.lost
 
 
 def _errors(error: VoxSoftError) -> Iterator[Diagnostic]:

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
-from voxsoft.design.cut_voxels import CutVoxels
-from voxsoft.design.discretize import voxels_of
+from voxsoft.design.discretize import filled, voxels_of
 from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
@@ -83,18 +82,10 @@ class StudioBody:
             It cannot be meshed, or would need more memory than there is.
         """
         started = time.perf_counter()
-        refine = design.solver.refine
-        lost = 0.0
         _refuse_far_too_large(design)
-        if design.fill == "fraction":
-            cut = CutVoxels.of(design, refine)
-            _refuse_too_large(cut.voxels.count)
-            voxels, mesh, lost = cut.voxels, cut.mesh(), cut.lost
-        else:
-            voxels = voxels_of(design)
-            _refuse_too_large(voxels.count * refine**3)
-            mesh = (voxels.refine(refine) if refine > 1 else voxels).mesh()
-        setup = Setup(design, mesh)
+        cells = filled(design, design.solver.refine)
+        _refuse_too_large(cells.count)
+        setup = Setup(design, cells.mesh())
         surface = Surface.of(setup.mesh)
         refusal: VoxSoftError | None = None
         try:
@@ -103,7 +94,7 @@ class StudioBody:
         except VoxSoftError as error:
             refusal = error
         seconds = time.perf_counter() - started
-        return cls(topology, rev, setup, voxels, surface, lost, refusal, seconds)
+        return cls(topology, rev, setup, cells.voxels, surface, cells.lost, refusal, seconds)
 
     @property
     def mesh(self) -> Mesh:
