@@ -1,5 +1,6 @@
 """From a request for a shape to the shape: the newest wins; the picture comes before the words."""
 
+import queue
 import struct
 import threading
 
@@ -41,12 +42,34 @@ def requests(monkeypatch):
 
     monkeypatch.setattr(mesher.StudioBody, "of", of)
     monkeypatch.setattr(mesher, "IDLE", 60.0)
-    thread = Mesher(lambda: None, shown.append, lambda *_: None, lambda *_: None)
+    thread = Mesher(lambda: None, shown.append, *[lambda *_: None] * 3)
     thread.start()
     yield thread, begun, made, let, shown
     thread.end()
     let.release()
     thread.join(20)
+
+
+def test_a_check_that_fails_is_reported_and_the_mesher_lives_on(monkeypatch):
+    events = queue.SimpleQueue()
+    put = lambda name: lambda *what: events.put((name, *what))  # noqa: E731
+    names = ("done", "examined", "failed", "unexamined")
+    thread = Mesher(lambda: None, *map(put, names))
+    whole = mesher.StudioBody.report
+    monkeypatch.setattr(mesher.StudioBody, "report", lambda _: 1 / 0)
+    thread.start()
+    try:
+        thread.ask(families.cylinder(), 1)
+        assert events.get(timeout=20)[0] == "done"
+        name, error = events.get(timeout=20)
+        assert name == "unexamined"
+        assert "ZeroDivisionError" in str(error)
+        monkeypatch.setattr(mesher.StudioBody, "report", whole)
+        thread.ask(families.cylinder(), 2)
+        assert [events.get(timeout=20)[0] for _ in range(2)] == ["done", "examined"]
+    finally:
+        thread.end()
+        thread.join(20)
 
 
 def test_only_the_newest_of_several_requests_is_answered(requests):

@@ -37,6 +37,8 @@ class Mesher(threading.Thread):
         unless a newer request came meanwhile.
     failed
         Called with the revision of a design that could not be meshed, and the reason.
+    unexamined
+        Called with the reason where the checks of a body, or its smooth surface, failed.
     """
 
     def __init__(
@@ -45,9 +47,11 @@ class Mesher(threading.Thread):
         done: Callable[[StudioBody], None],
         examined: Callable[[StudioBody, CheckReport, bytes | None], None],
         failed: Callable[[int, VoxSoftError], None],
+        unexamined: Callable[[VoxSoftError], None],
     ) -> None:
         super().__init__(name="studio-mesher", daemon=True)
         self._slow, self._done, self._examined, self._failed = slow, done, examined, failed
+        self._unexamined = unexamined
         self._request: _Request | None = None
         self._changed = threading.Condition()
         self._ended = False
@@ -78,23 +82,23 @@ class Mesher(threading.Thread):
                 continue
             self._done(body)
             if self._idle():
-                self._examined(
-                    body, body.report(), pack_smooth(request.design, body.voxels, body.topology)
-                )
+                self._examine(body, request.design)
 
     def _body_of(self, request: _Request) -> StudioBody | None:
         """Make a body; None where that fails, which is told."""
         try:
             return StudioBody.of(request.design, request.rev, self._count)
-        except VoxSoftError as error:
-            failure = error
-        except MemoryError:
-            what = "needs more memory than there is"
-            failure = VoxSoftError("voxel_size", what, "make the voxels larger")
         except BaseException as error:  # a panic of the core too: the thread must live on
-            failure = VoxSoftError("design", f"{type(error).__name__}: {error}")
-        self._failed(request.rev, failure)
+            self._failed(request.rev, _in_words(error))
         return None
+
+    def _examine(self, body: StudioBody, design: Design) -> None:
+        try:
+            report, smooth = body.report(), pack_smooth(design, body.voxels, body.topology)
+        except BaseException as error:  # as above
+            self._unexamined(_in_words(error))
+        else:
+            self._examined(body, report, smooth)
 
     def _idle(self) -> bool:
         """Wait a little; whether nothing was requested meanwhile."""
@@ -109,3 +113,12 @@ class Mesher(threading.Thread):
                 self._changed.wait()
             request, self._request = self._request, None
             return None if self._ended else request
+
+
+def _in_words(error: BaseException) -> VoxSoftError:
+    if isinstance(error, VoxSoftError):
+        return error
+    if isinstance(error, MemoryError):
+        what = "needs more memory than there is"
+        return VoxSoftError("voxel_size", what, "make the voxels larger")
+    return VoxSoftError("design", f"{type(error).__name__}: {error}")

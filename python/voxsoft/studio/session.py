@@ -85,7 +85,11 @@ class Session:
         self.stills = Stills(self.list)
         self._tables: dict[str, tuple[str, list[commands.ColumnMap] | None]] = {}
         self._mesher = Mesher(
-            self.engine.wait_for_body, self._meshed, self._examined, self._not_meshed
+            self.engine.wait_for_body,
+            self._meshed,
+            self._examined,
+            self._not_meshed,
+            self._not_examined,
         )
         self._lock = threading.RLock()
         self._author: Tab | None = None
@@ -428,6 +432,10 @@ class Session:
 
     def _examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         self.engine.publish_report(body, report, smooth)
+
+    def _not_examined(self, error: VoxSoftError) -> None:
+        text = f"The body could not be checked, so faults of it are not shown. {error}"
+        self.tabs.publish(events.Log(level="error", text=text))
 
     def _not_meshed(self, rev: int, error: VoxSoftError) -> None:
         self.engine.stay(str(error))
