@@ -71,6 +71,7 @@ def test_the_clamp_holds_what_the_spring_pulls(material, settings):
     assert np.linalg.norm(result.positions - setup.mesh.vertices, axis=1).max() > 1 * mm
     # At rest a residual of 1e-8 of the load is left, and dynamics has its own floor.
     assert result.reaction == pytest.approx(-pull, abs=2e-4 * np.linalg.norm(pull))
+    assert result.load == pytest.approx(pull, abs=1e-9 * np.linalg.norm(pull))
 
 
 def test_a_spring_within_the_body_leaves_no_reaction():

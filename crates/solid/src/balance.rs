@@ -157,7 +157,8 @@ pub fn cavity_volume(triangles: &[[u32; 3]], positions: &[Vec3]) -> f64 {
     six_volumes / 6.0
 }
 
-/// The external force (N) and moment about the origin (N m) of all loads.
+/// The external force (N) and moment about the origin (N m) of all loads, and of what ties the body to fixed
+/// points: what the supports answer to.
 pub fn total_load(problem: &Problem, positions: &[Vec3], time: f64) -> (Vec3, Vec3) {
     total_load_under(problem, positions, &|load| load.history.at(time))
 }
@@ -170,6 +171,8 @@ pub fn total_load_under(
 ) -> (Vec3, Vec3) {
     let mut external = vec![[0.0; 3]; positions.len()];
     problem.add_scaled_loads(positions, factor_of, &mut external);
+    let anchored = problem.body().attached().filter(|term| term.is_anchored());
+    anchored.for_each(|term| term.add_forces(positions, &mut external));
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for (f, x) in external.iter().zip(positions) {
         axpy(&mut force, 1.0, *f);

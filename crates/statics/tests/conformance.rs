@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use common::{block, cantilever, rubber, vertices_where};
 use voxsoft_solid::conformance::{Law, check_solver, check_stepper};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Ask, History, LatticeMaterial, PointForces};
+use voxsoft_solid::{Ask, Attachment, History, LatticeMaterial, PointForces, Spring, Springs};
 use voxsoft_solid::{
     Body, Clamp, Floor, Grab, Load, Look, Method, Motion, Observer, Problem, ProblemError,
     Solution, Solver, State, Status, Stepper,
@@ -46,9 +46,27 @@ fn turned() -> Problem {
     Problem::new(body, vec![clamp], loads, Some(Floor { z: -2e-4 })).unwrap()
 }
 
+/// A block that nothing loads but a spring between its end and a place beside it.
+fn sprung() -> Problem {
+    let mut mesh = block([8, 3, 2], 5e-3);
+    let vertices = vertices_where(&mesh, |x| x[0] > 40e-3 - 1e-9);
+    let spring = Spring {
+        weights: vec![1.0 / vertices.len() as f64; vertices.len()],
+        vertices,
+        anchor: [60e-3, 30e-3, 5e-3],
+        length: 20e-3,
+        stiffness: 2.0,
+    };
+    mesh.attachments = vec![Attachment::Springs(Springs(vec![spring]))];
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let clamp = Clamp::fixed(vertices_where(&mesh, |x| x[0] < 1e-9));
+    Problem::new(body, vec![clamp], vec![], None).unwrap()
+}
+
 #[test]
 fn statics_keeps_the_laws_of_a_solver() {
     for problem in [
+        sprung(),
         cantilever([10, 2, 2], 5e-3, rubber()),
         cantilever([10, 2, 2], 5e-3, lattice()),
         turned(),

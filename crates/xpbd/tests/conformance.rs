@@ -4,7 +4,8 @@ mod common;
 
 use common::{GRAVITY, block, problem, where_};
 use voxsoft_solid::conformance::{check_solver, check_stepper};
-use voxsoft_solid::{Body, Clamp, Floor, HyperelasticMaterial, Load, Problem, Stepper};
+use voxsoft_solid::{Attachment, Body, Clamp, Floor, HyperelasticMaterial, Load, Problem};
+use voxsoft_solid::{Spring, Springs, Stepper};
 use voxsoft_xpbd::{Dynamics, Live, Relaxation};
 
 fn rubber() -> Problem {
@@ -39,10 +40,26 @@ fn lying() -> Problem {
     )
 }
 
+/// A short beam with a spring to a fixed point, which is 25 mm from the beam's end at rest.
+fn sprung(length: f64, loads: Vec<Load>) -> Problem {
+    let mut mesh = block([6, 2, 2], 5e-3);
+    let vertices = where_(&mesh, |p| p[0] > 30e-3 - 1e-9);
+    let spring = Spring {
+        weights: vec![1.0 / vertices.len() as f64; vertices.len()],
+        vertices,
+        anchor: [50e-3, 20e-3, 5e-3],
+        length,
+        stiffness: 2.0,
+    };
+    mesh.attachments = vec![Attachment::Springs(Springs(vec![spring]))];
+    let clamp = Clamp::fixed(where_(&mesh, |p| p[0] < 1e-9));
+    problem(&mesh, 60e3, 400e3, vec![clamp], loads, None)
+}
+
 #[test]
 fn relaxation_keeps_the_laws_of_a_solver() {
     let settings = Relaxation::default();
-    for problem in [lattice(), lying(), rubber()] {
+    for problem in [lattice(), lying(), rubber(), sprung(10e-3, vec![])] {
         check_solver(&settings, &problem, settings.tolerance).unwrap();
     }
 }
@@ -50,7 +67,7 @@ fn relaxation_keeps_the_laws_of_a_solver() {
 #[test]
 fn dynamics_keeps_the_laws_of_a_solver() {
     let settings = Dynamics::default();
-    for problem in [lattice(), lying(), rubber()] {
+    for problem in [lattice(), lying(), rubber(), sprung(10e-3, vec![])] {
         check_solver(&settings, &problem, settings.tolerance).unwrap();
     }
 }
@@ -58,7 +75,12 @@ fn dynamics_keeps_the_laws_of_a_solver() {
 #[test]
 fn live_runs_keep_the_laws_of_a_stepper() {
     // Bodies with voxels of rubber take the plain loops anyway.
-    for (problem, deterministic) in [(lattice(), false), (lattice(), true), (rubber(), false)] {
+    for (problem, deterministic) in [
+        (lattice(), false),
+        (lattice(), true),
+        (rubber(), false),
+        (sprung(25e-3, vec![Load::gravity(GRAVITY)]), false),
+    ] {
         let settings = Dynamics {
             deterministic,
             ..Dynamics::default()

@@ -72,7 +72,7 @@ class Result(Shown):
     reactions
         Support forces in N, (n, 3), zero on free vertices.
     reaction, reaction_moment, load, load_moment
-        Totals in N and N m (about the origin), (3,).
+        Totals in N and N m (about the origin), (3,). Springs to fixed points count as loads.
     elastic_energy
         In J.
     solver
