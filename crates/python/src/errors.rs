@@ -20,9 +20,13 @@ pub fn to_python(error: ProblemError) -> PyErr {
         | ProblemError::NotCubes { .. }
         | ProblemError::NotVoxels { .. } => ("MeshError", "mesh"),
         ProblemError::FlatMembrane { .. } => ("DesignError", "layers"),
-        // Lengths, indices, constants, directions and histories; the message says which. The core keeps
-        // the right to add kinds, so these cannot be listed to the end.
-        _ => ("DesignError", ""),
+        // The message says which.
+        ProblemError::Length { .. }
+        | ProblemError::Index { .. }
+        | ProblemError::NotPositive { .. }
+        | ProblemError::NotUnit { .. }
+        | ProblemError::NotFinite { .. }
+        | ProblemError::History { .. } => ("DesignError", ""),
     };
     Python::attach(|py| exception(py, class, place, &error.to_string(), ""))
 }

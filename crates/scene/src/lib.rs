@@ -20,7 +20,6 @@ pub const VERSION: u32 = 3;
 
 /// Why bytes are no scene.
 #[derive(Debug, Error, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum SceneError {
     /// They do not begin as a scene does.
     #[error("this is no scene of VoxSoft")]

@@ -2,7 +2,6 @@ use thiserror::Error;
 
 /// Why a mechanical problem could not be set up.
 #[derive(Debug, Error, Clone, PartialEq)]
-#[non_exhaustive]
 pub enum ProblemError {
     /// Arrays that belong together have different lengths.
     #[error("{what}: {got} entries, expected {expected}")]
