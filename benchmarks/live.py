@@ -51,8 +51,8 @@ def measure(report: Report, across: int, substeps: int) -> None:
         started = time.perf_counter()
         look = live.advance(substeps)
         taken = time.perf_counter() - started
-        if look["taken"] != substeps or look["back_offs"]:
-            raise SystemExit(f"{body}: the run broke off: {look}")
+        if look.taken != substeps or look.back_offs:
+            raise SystemExit(f"{body}: the run broke off after {look.taken} substeps")
         return live, taken / substeps
 
     ways: dict[str, list[float]] = {"native": [], "native, deterministic": [], "page": []}

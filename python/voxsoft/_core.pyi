@@ -1,7 +1,7 @@
 """Types of the private Rust module."""
 
 from collections.abc import Callable, Sequence
-from typing import Any, ClassVar, Literal, final
+from typing import ClassVar, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,15 +162,51 @@ class Shape:
         self, origin: _Point, voxel_size: float, shape: _Cells, memory_limit: int
     ) -> NDArray[np.uint8]: ...
 
-_Fibers = list[tuple[tuple[float, float, float], float, bool]]
-_Material = (
-    tuple[str, list[float], float, float]
-    | tuple[str, list[float], float, float, _Fibers]
-    | tuple[str, list[float], float, float, _Fibers, list[tuple[float, float]]]
-)
 _History = tuple[Sequence[float], Sequence[float]] | None
 
-def lattice_constants(argument: _Material, voxel_size: float) -> tuple[float, float]: ...
+@final
+class Fiber:
+    """A family of fibers: unit vector, modulus in Pa, whether they carry compression."""
+
+    def __new__(cls, direction: _Point, *, modulus: float, compression: bool) -> Fiber: ...
+
+@final
+class Material:
+    """The material of a part: moduli in Pa, density in kg/m³.
+
+    Constants that are not positive raise a `DesignError`.
+    """
+
+    @staticmethod
+    def lattice(*, edge: float, bulk: float, density: float) -> Material: ...
+    @staticmethod
+    def lattice_compliance(*, edge: float, volume: float, density: float) -> Material:
+        """Compliances in m/N and m³/Pa."""
+
+    @staticmethod
+    def neo_hookean(*, c10: float, bulk: float, density: float) -> Material: ...
+    @staticmethod
+    def mooney_rivlin(*, c10: float, c01: float, bulk: float, density: float) -> Material: ...
+    @staticmethod
+    def yeoh(*, c: Sequence[float], bulk: float, density: float) -> Material:
+        """Three constants."""
+
+    @staticmethod
+    def ogden(*, terms: Sequence[tuple[float, float]], bulk: float, density: float) -> Material:
+        """Up to three pairs of a modulus and an exponent."""
+
+    @staticmethod
+    def gent(*, shear: float, limit: float, bulk: float, density: float) -> Material: ...
+    def with_fibers(self, fibers: Sequence[Fiber]) -> Material:
+        """The same with these fibers in place of any others; a lattice has none."""
+
+    def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
+        """The same with these branches: share of the instantaneous modulus, time in s."""
+
+    def young(self, voxel_size: float) -> float: ...
+    def poisson(self, voxel_size: float) -> float: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class ProblemParts:
@@ -352,10 +388,10 @@ class Problem:
         tets: NDArray[np.uint32],
         tet_part: NDArray[np.uint8],
         tet_block: NDArray[np.uint32],
-        materials: Sequence[_Material],
+        materials: Sequence[Material],
         parts: ProblemParts,
     ) -> Problem: ...
-    def with_materials(self, materials: Sequence[_Material]) -> Problem: ...
+    def with_materials(self, materials: Sequence[Material]) -> Problem: ...
     @property
     def mass(self) -> float: ...
     @property
@@ -500,13 +536,54 @@ class Display:
         """A field at each of the vertices that are shown."""
 
 @final
-class Live:
-    """A problem in motion between calls; any thread may call.
+class LiveStatus:
+    """Whether a run goes on."""
 
-    `advance` gives status ("moving", "at-rest", "diverged"), time, substep, substeps (all so far),
-    taken (in this call), back_offs, residual, elastic, kinetic (J), breakdown (vertex, rest, when)
-    and seconds of the clock.
-    """
+    MOVING: ClassVar[LiveStatus]
+    AT_REST: ClassVar[LiveStatus]
+    DIVERGED: ClassVar[LiveStatus]
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __hash__(self, /) -> int: ...
+    def __int__(self, /) -> int: ...
+
+@final
+class Advance:
+    """How far a run has come, and what this call did."""
+
+    @property
+    def status(self) -> LiveStatus: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def substep(self) -> float: ...
+    @property
+    def substeps(self) -> int:
+        """All so far."""
+
+    @property
+    def taken(self) -> int:
+        """In this call."""
+
+    @property
+    def back_offs(self) -> int: ...
+    @property
+    def residual(self) -> float: ...
+    @property
+    def elastic(self) -> float: ...
+    @property
+    def kinetic(self) -> float: ...
+    @property
+    def breakdown(self) -> tuple[int, list[float], float] | None:
+        """Vertex, its place at rest in m, and when."""
+
+    @property
+    def seconds(self) -> float:
+        """Of the clock, for this call."""
+
+@final
+class Live:
+    """A problem in motion between calls; any thread may call."""
 
     def __new__(
         cls,
@@ -530,8 +607,8 @@ class Live:
     def prefer_step(self, seconds: float) -> None:
         """Ask for steps of another length; explicit ones are as long as they can be."""
 
-    def advance(self, substeps: int) -> dict[str, Any]: ...
-    def advance_for(self, seconds: float, max_substeps: int = ...) -> dict[str, Any]: ...
+    def advance(self, substeps: int) -> Advance: ...
+    def advance_for(self, seconds: float, max_substeps: int = ...) -> Advance: ...
     def set_load(self, load: int, factor: float | None) -> None: ...
     def grab(self, number: int, vertex: int, target: Sequence[float], stiffness: float) -> None: ...
     def release(self, number: int) -> bool: ...

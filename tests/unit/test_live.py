@@ -9,6 +9,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft import _core
+from voxsoft._core import LiveStatus as Status
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
 
@@ -37,7 +38,7 @@ def live_of(setup, **settings):
 def settle(live):
     for _ in range(500):
         look = live.advance(1000)
-        if look["status"] != "moving":
+        if look.status != Status.MOVING:
             return look
     pytest.fail(f"not at rest: {look}")
 
@@ -51,20 +52,20 @@ def test_comes_to_the_rest_of_simulate(setup):
     expected = vs.simulate(setup, method="xpbd").positions
     live = live_of(setup)
     look = settle(live)
-    assert look["status"] == "at-rest"
-    assert look["residual"] < 1e-4
-    assert 0 <= look["kinetic"] < 1e-4 * look["elastic"]
+    assert look.status == Status.AT_REST
+    assert look.residual < 1e-4
+    assert 0 <= look.kinetic < 1e-4 * look.elastic
     moved = np.abs(expected - setup.mesh.vertices).max()
     assert np.abs(live.positions() - expected).max() < SAME * moved
     again = live.advance(1000)
-    assert (again["taken"], again["substeps"]) == (0, look["substeps"])
+    assert (again.taken, again.substeps) == (0, look.substeps)
 
 
 def test_pressure_follows_the_slider():
     setup = Setup.of(families.cylinder())
     live = live_of(setup)
     live.set_load(0, 0.0)
-    assert settle(live)["elastic"] < 1e-12
+    assert settle(live).elastic < 1e-12
     live.set_load(0, None)
     settle(live)
     expected = vs.simulate(setup, method="xpbd").positions
@@ -102,16 +103,16 @@ def test_goes_back_and_elsewhere(setup):
     rest = live.positions()
     live.reset()
     np.testing.assert_array_equal(live.positions(), setup.mesh.vertices)
-    live.seek(rest, look["time"])
-    assert live.advance(64)["status"] == "at-rest"
+    live.seek(rest, look.time)
+    assert live.advance(64).status == Status.AT_REST
     with pytest.raises(ValueError, match="positions"):
         live.seek(rest[1:])
 
 
 def test_an_advance_keeps_to_its_budget_and_its_limit(setup):
     live = live_of(setup)
-    assert live.advance_for(0.0)["taken"] == 1
-    assert live.advance_for(60.0, max_substeps=7)["taken"] == 7
+    assert live.advance_for(0.0).taken == 1
+    assert live.advance_for(60.0, max_substeps=7).taken == 7
     with pytest.raises(ValueError, match="seconds"):
         live.advance_for(-1.0)
 

@@ -1,9 +1,14 @@
 """Hyperelastic models: constants, what the core takes, what is refused, where they are stable."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 import voxsoft as vs
+from voxsoft._core import Fiber
+from voxsoft._core import Material as Core
+from voxsoft.errors import DesignError, MaterialError
 from voxsoft.files.cards import load_card_file, save_card
 from voxsoft.materials import Card, nominal_stress, stable_range, stable_ranges
 
@@ -47,18 +52,38 @@ def test_a_design_holds_the_model(material, tmp_path):
 @pytest.mark.parametrize(
     ("material", "core"),
     [
-        (vs.NeoHookean(young=60e3, poisson=0.2), ("neo-hookean", [12.5e3])),
-        (vs.MooneyRivlin(c10=1e3, c01=2e3), ("mooney-rivlin", [1e3, 2e3])),
-        (vs.Yeoh(c=[1e3, -5.0]), ("yeoh", [1e3, -5.0, 0.0])),
-        (vs.Ogden(mu=[1e3, 2e3], alpha=[2, -3]), ("ogden", [1e3, 2.0, 2e3, -3.0])),
-        (vs.Gent(shear=1e3, jm=30), ("gent", [1e3, 30.0])),
+        (vs.NeoHookean(young=60e3, poisson=0.2), partial(Core.neo_hookean, c10=12.5e3)),
+        (vs.MooneyRivlin(c10=1e3, c01=2e3), partial(Core.mooney_rivlin, c10=1e3, c01=2e3)),
+        (vs.Yeoh(c=[1e3, -5.0]), partial(Core.yeoh, c=[1e3, -5.0, 0.0])),
+        (
+            vs.Ogden(mu=[1e3, 2e3], alpha=[2, -3]),
+            partial(Core.ogden, terms=[(1e3, 2.0), (2e3, -3.0)]),
+        ),
+        (vs.Gent(shear=1e3, jm=30), partial(Core.gent, shear=1e3, limit=30.0)),
     ],
     ids=lambda value: value.model if hasattr(value, "model") else "",
 )
 def test_what_the_core_takes(material, core):
-    model, constants, bulk, density = material.core
-    assert (model, constants) == (core[0], pytest.approx(core[1]))
-    assert (bulk, density) == (material.bulk, 1070.0)
+    expected = core(bulk=material.bulk, density=1070.0)
+    assert material.core == expected
+    viscous = material.replace(prony=[{"g": 0.25, "tau": "2 s"}])
+    assert viscous.core == expected.with_prony([(0.25, 2.0)]) != expected
+
+
+def test_fibers_and_branches_belong_to_hyperelastic_materials():
+    """Neither takes the other's place, and a lattice has none."""
+    fiber = Fiber((0.0, 0.6, 0.8), modulus=2e6, compression=False)
+    soft = Core.neo_hookean(c10=1e4, bulk=1e6, density=1e3)
+    both = soft.with_prony([(0.25, 2.0)]).with_fibers([fiber])
+    assert both == soft.with_fibers([fiber]).with_prony([(0.25, 2.0)])
+    assert both.with_fibers([]).with_prony([]) == soft != both
+    lattice = Core.lattice(edge=1e4, bulk=1e5, density=1e3)
+    with pytest.raises(MaterialError, match="fibers: are for hyperelastic materials"):
+        lattice.with_fibers([fiber])
+    with pytest.raises(MaterialError, match="prony: are for hyperelastic materials"):
+        lattice.with_prony([(0.25, 2.0)])
+    with pytest.raises(DesignError, match="4 entries, expected 3"):
+        Core.ogden(terms=[(1e3, 2.0)] * 4, bulk=1e6, density=1e3)
 
 
 @pytest.mark.parametrize(

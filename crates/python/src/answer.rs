@@ -1,8 +1,8 @@
 //! What solvers found, as Python sees it: frozen classes with typed attributes, and how a solution ended.
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
-use voxsoft_solid::Status;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{LiveStatus, Look, Status};
 
 /// How a solution ended.
 #[pyclass(
@@ -93,4 +93,67 @@ pub struct PySettlement {
     pub residual: Py<PyArray1<f64>>,
     pub iterations: Py<PyArray1<u32>>,
     pub back_offs: Py<PyArray1<u32>>,
+}
+
+/// Whether a run goes on.
+#[pyclass(
+    frozen,
+    eq,
+    hash,
+    name = "LiveStatus",
+    module = "voxsoft._core",
+    rename_all = "SCREAMING_SNAKE_CASE"
+)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum PyLiveStatus {
+    Moving,
+    AtRest,
+    Diverged,
+}
+
+impl From<LiveStatus> for PyLiveStatus {
+    fn from(status: LiveStatus) -> Self {
+        match status {
+            LiveStatus::Moving => Self::Moving,
+            LiveStatus::AtRest => Self::AtRest,
+            LiveStatus::Diverged => Self::Diverged,
+        }
+    }
+}
+
+/// How far a run has come.
+#[pyclass(frozen, get_all, name = "Advance", module = "voxsoft._core")]
+pub struct PyAdvance {
+    pub status: PyLiveStatus,
+    pub time: f64,
+    pub substep: f64,
+    /// All so far.
+    pub substeps: u64,
+    /// In this call.
+    pub taken: u32,
+    pub back_offs: u32,
+    pub residual: f64,
+    pub elastic: f64,
+    pub kinetic: f64,
+    pub breakdown: Option<(usize, Vec3, f64)>,
+    /// Of the clock, for this call.
+    pub seconds: f64,
+}
+
+impl PyAdvance {
+    pub(crate) fn of(look: &Look, taken: u32, seconds: f64) -> Self {
+        Self {
+            status: look.status.into(),
+            time: look.time,
+            substep: look.substep,
+            substeps: look.substeps,
+            taken,
+            back_offs: look.back_offs,
+            residual: look.residual,
+            elastic: look.elastic,
+            kinetic: look.kinetic,
+            breakdown: look.breakdown.map(|b| (b.vertex, b.rest, b.when)),
+            seconds,
+        }
+    }
 }

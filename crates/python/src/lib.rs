@@ -26,6 +26,10 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answer::PyPath>()?;
     module.add_class::<answer::PySettlement>()?;
     module.add_class::<answer::PyStatus>()?;
+    module.add_class::<answer::PyAdvance>()?;
+    module.add_class::<answer::PyLiveStatus>()?;
+    module.add_class::<materials::PyMaterial>()?;
+    module.add_class::<materials::PyFiber>()?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
@@ -37,7 +41,6 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<player::PyScene>()?;
     module.add_class::<player::PyPlayer>()?;
     player::add_constants(module)?;
-    module.add_function(wrap_pyfunction!(materials::lattice_constants, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
     module.add_class::<shapes::PyShape>()?;

@@ -7,13 +7,14 @@ use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
-use pyo3::types::{PyBytes, PyDict};
+use pyo3::types::PyBytes;
 use voxsoft_frames::FrameHead;
 use voxsoft_player::stepper;
 use voxsoft_solid::vector::{Vec3, norm, sub};
-use voxsoft_solid::{Ask, Grab, LiveStatus, Look, Method, Problem, Stepper};
+use voxsoft_solid::{Ask, Grab, Method, Problem, Stepper};
 use voxsoft_xpbd::Dynamics;
 
+use crate::answer::PyAdvance;
 use crate::display::{PyDisplay, field as field_of};
 use crate::errors::to_python;
 use crate::gate;
@@ -48,12 +49,12 @@ impl PyLive {
         Ok(py.detach(|| work(live)))
     }
 
-    fn report<'py>(
+    fn report(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         go_on: impl Fn() -> bool + Sync,
         substeps: u32,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<PyAdvance> {
         let started = Instant::now();
         let mut guard = self.lock(py)?;
         let live = guard.as_mut();
@@ -70,31 +71,8 @@ impl PyLive {
             (look, taken)
         })?;
         drop(guard);
-        let report = look_report(py, &look)?;
-        report.set_item("taken", taken)?;
-        report.set_item("seconds", started.elapsed().as_secs_f64())?;
-        Ok(report)
+        Ok(PyAdvance::of(&look, taken, started.elapsed().as_secs_f64()))
     }
-}
-
-fn look_report<'py>(py: Python<'py>, look: &Look) -> PyResult<Bound<'py, PyDict>> {
-    let report = PyDict::new(py);
-    let status = match look.status {
-        LiveStatus::Moving => "moving",
-        LiveStatus::AtRest => "at-rest",
-        LiveStatus::Diverged => "diverged",
-    };
-    report.set_item("status", status)?;
-    report.set_item("time", look.time)?;
-    report.set_item("substep", look.substep)?;
-    report.set_item("substeps", look.substeps)?;
-    report.set_item("back_offs", look.back_offs)?;
-    report.set_item("residual", look.residual)?;
-    report.set_item("elastic", look.elastic)?;
-    report.set_item("kinetic", look.kinetic)?;
-    let breakdown = look.breakdown.map(|b| (b.vertex, b.rest, b.when));
-    report.set_item("breakdown", breakdown)?;
-    Ok(report)
 }
 
 /// A grab as Python sees it: number, vertex, target, force in N, stretch in m.
@@ -162,18 +140,13 @@ impl PyLive {
     }
 
     /// Takes as many substeps, fewer at rest or after a breakdown.
-    fn advance<'py>(&self, py: Python<'py>, substeps: u32) -> PyResult<Bound<'py, PyDict>> {
+    fn advance(&self, py: Python<'_>, substeps: u32) -> PyResult<PyAdvance> {
         self.report(py, || true, substeps)
     }
 
     /// Takes substeps for so many seconds of the clock, at least one and no more than asked.
     #[pyo3(signature = (seconds, max_substeps=u32::MAX))]
-    fn advance_for<'py>(
-        &self,
-        py: Python<'py>,
-        seconds: f64,
-        max_substeps: u32,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    fn advance_for(&self, py: Python<'_>, seconds: f64, max_substeps: u32) -> PyResult<PyAdvance> {
         let budget = Duration::try_from_secs_f64(seconds).map_err(|_| {
             PyValueError::new_err(format!("seconds must be zero or more, got {seconds}"))
         })?;

@@ -1,84 +1,147 @@
-//! Materials as Python hands them over.
-use pyo3::exceptions::PyValueError;
+//! `_core.Material` and `_core.Fiber`: what parts are made of, as frozen values.
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model};
+use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, ProblemError};
 
-use crate::errors::to_python;
+use crate::errors::{exception, to_python};
 
-/// The model's name, its constants, the bulk modulus (Pa) and the density (kg/m³); families of fibers
-/// as (direction, modulus in Pa, whether they carry compression) and Prony branches may follow.
-#[derive(FromPyObject)]
-pub enum MaterialArgument {
-    /// Without fibers.
-    Plain(String, Vec<f64>, f64, f64),
-    /// With fibers.
-    Reinforced(String, Vec<f64>, f64, f64, Fibers),
-    /// With fibers and Prony branches (share of the instantaneous modulus, time in s).
-    Viscous(String, Vec<f64>, f64, f64, Fibers, Vec<(f64, f64)>),
-}
+/// A family of fibers: a unit vector, a modulus in Pa, and whether they carry compression.
+#[pyclass(frozen, from_py_object, name = "Fiber", module = "voxsoft._core")]
+#[derive(Clone)]
+pub struct PyFiber(Fiber);
 
-type Fibers = Vec<(Vec3, f64, bool)>;
-
-/// Young's modulus (Pa) and Poisson's ratio of a lattice material at a voxel size (m).
-#[pyfunction]
-pub fn lattice_constants(argument: MaterialArgument, voxel_size: f64) -> PyResult<(f64, f64)> {
-    match material(argument)? {
-        Material::Lattice(material) => {
-            Ok((material.young(voxel_size), material.poisson(voxel_size)))
-        }
-        Material::Hyperelastic(material) => Ok((material.young(), material.poisson())),
-    }
-}
-
-pub(crate) fn material(argument: MaterialArgument) -> PyResult<Material> {
-    let (model, constants, bulk, density, fibers, prony) = match argument {
-        MaterialArgument::Plain(model, constants, bulk, density) => {
-            (model, constants, bulk, density, Vec::new(), Vec::new())
-        }
-        MaterialArgument::Reinforced(model, constants, bulk, density, fibers) => {
-            (model, constants, bulk, density, fibers, Vec::new())
-        }
-        MaterialArgument::Viscous(model, constants, bulk, density, fibers, prony) => {
-            (model, constants, bulk, density, fibers, prony)
-        }
-    };
-    let model = match (model.as_str(), constants.as_slice()) {
-        ("lattice", &[edge]) => {
-            let material = LatticeMaterial::from_moduli(edge, bulk, density);
-            return Ok(material.map_err(to_python)?.into());
-        }
-        ("lattice-compliance", &[edge, volume]) => {
-            let material = LatticeMaterial::from_compliances(edge, volume, density);
-            return Ok(material.map_err(to_python)?.into());
-        }
-        ("neo-hookean", &[c10]) => Model::NeoHookean { c10 },
-        ("mooney-rivlin", &[c10, c01]) => Model::MooneyRivlin { c10, c01 },
-        ("yeoh", &[c10, c20, c30]) => Model::Yeoh { c: [c10, c20, c30] },
-        ("ogden", pairs) if matches!(pairs.len(), 2 | 4 | 6) => {
-            let mut terms = [(0.0, 0.0); 3];
-            for (term, pair) in terms.iter_mut().zip(pairs.chunks(2)) {
-                *term = (pair[0], pair[1]);
-            }
-            Model::Ogden { terms }
-        }
-        ("gent", &[shear, limit]) => Model::Gent { shear, limit },
-        (other, constants) => {
-            let count = constants.len();
-            let message = format!("no material model \"{other}\" with {count} constants");
-            return Err(PyValueError::new_err(message));
-        }
-    };
-    let fibers = fibers
-        .into_iter()
-        .map(|(direction, modulus, compression)| Fiber {
+#[pymethods]
+impl PyFiber {
+    #[new]
+    #[pyo3(signature = (direction, *, modulus, compression))]
+    fn new(direction: Vec3, modulus: f64, compression: bool) -> Self {
+        Self(Fiber {
             direction,
             modulus,
             compression,
-        });
-    let material = HyperelasticMaterial::new(model, bulk, density)
-        .and_then(|material| material.with_fibers(fibers.collect()))
-        .and_then(|material| material.with_prony(prony))
-        .map_err(to_python)?;
-    Ok(material.into())
+        })
+    }
+}
+
+/// The material of a part, in SI units.
+#[pyclass(
+    frozen,
+    eq,
+    from_py_object,
+    name = "Material",
+    module = "voxsoft._core"
+)]
+#[derive(Clone, PartialEq)]
+pub struct PyMaterial(pub(crate) Material);
+
+#[pymethods]
+impl PyMaterial {
+    /// The paper's springs, from moduli.
+    #[staticmethod]
+    #[pyo3(signature = (*, edge, bulk, density))]
+    fn lattice(edge: f64, bulk: f64, density: f64) -> PyResult<Self> {
+        made(LatticeMaterial::from_moduli(edge, bulk, density))
+    }
+
+    /// The paper's springs, from raw compliances.
+    #[staticmethod]
+    #[pyo3(signature = (*, edge, volume, density))]
+    fn lattice_compliance(edge: f64, volume: f64, density: f64) -> PyResult<Self> {
+        made(LatticeMaterial::from_compliances(edge, volume, density))
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, c10, bulk, density))]
+    fn neo_hookean(c10: f64, bulk: f64, density: f64) -> PyResult<Self> {
+        hyperelastic(Model::NeoHookean { c10 }, bulk, density)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, c10, c01, bulk, density))]
+    fn mooney_rivlin(c10: f64, c01: f64, bulk: f64, density: f64) -> PyResult<Self> {
+        hyperelastic(Model::MooneyRivlin { c10, c01 }, bulk, density)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, c, bulk, density))]
+    fn yeoh(c: [f64; 3], bulk: f64, density: f64) -> PyResult<Self> {
+        hyperelastic(Model::Yeoh { c }, bulk, density)
+    }
+
+    /// Up to three pairs of a shear modulus and an exponent.
+    #[staticmethod]
+    #[pyo3(signature = (*, terms, bulk, density))]
+    fn ogden(terms: Vec<(f64, f64)>, bulk: f64, density: f64) -> PyResult<Self> {
+        let mut three = [(0.0, 0.0); 3];
+        let Some(filled) = three.get_mut(..terms.len()) else {
+            return Err(to_python(ProblemError::Length {
+                what: "terms of an Ogden material",
+                got: terms.len(),
+                expected: 3,
+            }));
+        };
+        filled.copy_from_slice(&terms);
+        hyperelastic(Model::Ogden { terms: three }, bulk, density)
+    }
+
+    #[staticmethod]
+    #[pyo3(signature = (*, shear, limit, bulk, density))]
+    fn gent(shear: f64, limit: f64, bulk: f64, density: f64) -> PyResult<Self> {
+        hyperelastic(Model::Gent { shear, limit }, bulk, density)
+    }
+
+    /// The same material with these families of fibers in place of any others.
+    fn with_fibers(&self, py: Python<'_>, fibers: Vec<PyFiber>) -> PyResult<Self> {
+        let fibers = fibers.into_iter().map(|fiber| fiber.0).collect();
+        made(self.rubber(py, "fibers")?.with_fibers(fibers))
+    }
+
+    /// The same material with these branches that relax: share of the instantaneous modulus, time in s.
+    fn with_prony(&self, py: Python<'_>, branches: Vec<(f64, f64)>) -> PyResult<Self> {
+        made(self.rubber(py, "prony")?.with_prony(branches))
+    }
+
+    /// Young's modulus in Pa at small strain, of voxels with edges of so many m.
+    fn young(&self, voxel_size: f64) -> f64 {
+        match &self.0 {
+            Material::Lattice(material) => material.young(voxel_size),
+            Material::Hyperelastic(material) => material.young(),
+        }
+    }
+
+    /// Poisson's ratio under the same conditions.
+    fn poisson(&self, voxel_size: f64) -> f64 {
+        match &self.0 {
+            Material::Lattice(material) => material.poisson(voxel_size),
+            Material::Hyperelastic(material) => material.poisson(),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.0 {
+            Material::Lattice(material) => format!("{material:?}"),
+            Material::Hyperelastic(material) => format!("{material:?}"),
+        }
+    }
+}
+
+impl PyMaterial {
+    /// The hyperelastic material, which alone can have fibers and branches.
+    fn rubber(&self, py: Python<'_>, what: &str) -> PyResult<HyperelasticMaterial> {
+        self.0.hyperelastic().cloned().ok_or_else(|| {
+            let came = "are for hyperelastic materials, and this one is a lattice";
+            let hint = "use the neo-Hookean one of the same Young's modulus";
+            exception(py, "MaterialError", what, came, hint)
+        })
+    }
+}
+
+fn hyperelastic(model: Model, bulk: f64, density: f64) -> PyResult<PyMaterial> {
+    made(HyperelasticMaterial::new(model, bulk, density))
+}
+
+fn made(material: Result<impl Into<Material>, ProblemError>) -> PyResult<PyMaterial> {
+    material
+        .map(|material| PyMaterial(material.into()))
+        .map_err(to_python)
 }

@@ -15,7 +15,7 @@ use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate
 use crate::answer::PyAnswer;
 use crate::errors::to_python;
 use crate::gate;
-use crate::materials::{MaterialArgument, material};
+use crate::materials::PyMaterial;
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -230,7 +230,7 @@ impl PyProblem {
         tets: PyReadonlyArray2<'_, u32>,
         tet_part: PyReadonlyArray1<'_, u8>,
         tet_block: PyReadonlyArray1<'_, u32>,
-        materials: Vec<MaterialArgument>,
+        materials: Vec<PyMaterial>,
         parts: PyRef<'_, PyProblemParts>,
     ) -> PyResult<Self> {
         let mut mesh = Mesh {
@@ -260,7 +260,7 @@ impl PyProblem {
     }
 
     /// The same body and loads with other materials.
-    fn with_materials(&self, py: Python<'_>, materials: Vec<MaterialArgument>) -> PyResult<Self> {
+    fn with_materials(&self, py: Python<'_>, materials: Vec<PyMaterial>) -> PyResult<Self> {
         let parts = PyProblemParts {
             clamps: self.problem.clamps().to_vec(),
             loads: self.problem.loads().to_vec(),
@@ -412,11 +412,10 @@ impl PyProblem {
     fn assemble(
         py: Python<'_>,
         mesh: Mesh,
-        materials: Vec<MaterialArgument>,
+        materials: Vec<PyMaterial>,
         parts: &PyProblemParts,
     ) -> PyResult<Self> {
-        let materials: PyResult<Vec<Material>> = materials.into_iter().map(material).collect();
-        let materials = materials?;
+        let materials: Vec<Material> = materials.into_iter().map(|given| given.0).collect();
         let (clamps, loads, floor) = (parts.clamps.clone(), parts.loads.clone(), parts.floor);
         gate::run_owned(py, move |_| {
             let body = Body::new(&mesh, &materials)?;

@@ -87,8 +87,7 @@ compare a hyperelastic material, such as the neo-Hookean one of the same Young's
     """
     if not isinstance(material, Hyperelastic):
         raise no_such_material(code, material.model, where)
-    model, constants, bulk = material.core[:3]
-    return model, constants, bulk
+    return material.model, material.constants, material.bulk
 
 
 def no_such_material(code: str, model: str, where: str) -> SimulationError:

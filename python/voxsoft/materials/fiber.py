@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar
 import numpy as np
 from pydantic import field_validator
 
+from voxsoft import _core
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.records import Record
 from voxsoft.units import UnitOf, Vector
@@ -58,6 +59,6 @@ class Fiber(Record):
         return x, y, z
 
     @property
-    def core(self) -> tuple[tuple[float, float, float], float, bool]:
-        """What the Rust core takes: unit vector, modulus in Pa, whether it carries compression."""
-        return self.unit, self.modulus, self.compression
+    def core(self) -> _core.Fiber:
+        """What the Rust core takes."""
+        return _core.Fiber(self.unit, modulus=self.modulus, compression=self.compression)

@@ -16,6 +16,7 @@ from pydantic import (
     model_validator,
 )
 
+from voxsoft import _core
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.materials.lattice import SILICONE_DENSITY
 from voxsoft.materials.tested import StretchRange
@@ -23,19 +24,6 @@ from voxsoft.records import Record
 from voxsoft.units import PositiveDensity, PositiveTime, UnitOf, format_quantity
 
 Floats = NDArray[np.float64]
-
-#: What the Rust core takes: the model, its constants, bulk modulus in Pa, density in kg/m³.
-Core = tuple[str, list[float], float, float]
-
-#: The same with families of fibers and pairs of ``g`` and ``tau`` in s.
-ViscousCore = tuple[
-    str,
-    list[float],
-    float,
-    float,
-    list[tuple[tuple[float, float, float], float, bool]],
-    list[tuple[float, float]],
-]
 
 #: A modulus that may be negative, as coefficients of polynomials are.
 SignedModulus = Annotated[float, UnitOf("modulus")]
@@ -126,7 +114,12 @@ class Hyperelastic(Record):
     @property
     @abstractmethod
     def constants(self) -> list[float]:
-        """The constants of ``W`` in SI units, in the order in which the Rust core takes them."""
+        """The constants of ``W`` in SI units, in the order of its formula."""
+
+    @property
+    @abstractmethod
+    def elastic_core(self) -> _core.Material:
+        """What the Rust core takes, without branches."""
 
     @abstractmethod
     def energy(self, stretches: ArrayLike) -> Floats:
@@ -160,11 +153,9 @@ class Hyperelastic(Record):
         return 2.0 * self.shear * (1.0 + self.poisson) / (3.0 * (1.0 - 2.0 * self.poisson))
 
     @property
-    def core(self) -> Core | ViscousCore:
-        """What the Rust core takes: model, constants, bulk modulus, density, any branches."""
-        plain = (self.model, self.constants, self.bulk, self.density)
-        branches = [(term.g, term.tau) for term in self.prony]
-        return (*plain, [], branches) if branches else plain
+    def core(self) -> _core.Material:
+        """What the Rust core takes."""
+        return self.elastic_core.with_prony([(term.g, term.tau) for term in self.prony])
 
     @model_validator(mode="after")
     def _possible(self) -> Self:

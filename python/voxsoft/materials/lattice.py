@@ -66,16 +66,16 @@ class Lattice(Record):
         voxel_size
             Edge length of a voxel in m; moduli do not depend on it.
         """
-        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[0]
+        return self.core.young(to_si(voxel_size, "length", "voxel_size"))
 
     def poisson(self, voxel_size: float | str = 1.0) -> float:
         """Poisson's ratio under the same conditions as :meth:`young`."""
-        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[1]
+        return self.core.poisson(to_si(voxel_size, "length", "voxel_size"))
 
     @property
-    def core(self) -> tuple[str, list[float], float, float]:
-        """What the Rust core takes: model, constants, bulk modulus, density."""
-        return (self.model, [self.edge], self.bulk, self.density)
+    def core(self) -> _core.Material:
+        """What the Rust core takes."""
+        return _core.Material.lattice(edge=self.edge, bulk=self.bulk, density=self.density)
 
 
 class CompliantLattice(Record):
@@ -116,11 +116,11 @@ class CompliantLattice(Record):
 
     def young(self, voxel_size: float | str) -> float:
         """Young's modulus in Pa at a voxel size in m, for small strain along the axes."""
-        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[0]
+        return self.core.young(to_si(voxel_size, "length", "voxel_size"))
 
     def poisson(self, voxel_size: float | str) -> float:
         """Poisson's ratio under the same conditions as :meth:`young`."""
-        return _core.lattice_constants(self.core, to_si(voxel_size, "length", "voxel_size"))[1]
+        return self.core.poisson(to_si(voxel_size, "length", "voxel_size"))
 
     def to_moduli(self, voxel_size: float | str, bulk: float | str) -> Lattice:
         """Return the lattice of the same Young's modulus with a bulk modulus of your choice.
@@ -147,6 +147,8 @@ class CompliantLattice(Record):
         return Lattice(edge=edge, bulk=bulk, density=self.density)
 
     @property
-    def core(self) -> tuple[str, list[float], float, float]:
-        """What the Rust core takes: model, constants, bulk modulus (none here), density."""
-        return (self.model, [self.edge_compliance, self.volume_compliance], 0.0, self.density)
+    def core(self) -> _core.Material:
+        """What the Rust core takes."""
+        return _core.Material.lattice_compliance(
+            edge=self.edge_compliance, volume=self.volume_compliance, density=self.density
+        )

@@ -6,6 +6,7 @@ from typing import Literal
 
 import numpy as np
 
+from voxsoft import _core
 from voxsoft.materials.hyperelastic import Floats, InvariantModel, SignedModulus
 
 
@@ -47,6 +48,13 @@ the material to resist at all. Try: check signs and units, or fit another model
     def constants(self) -> list[float]:
         """``[C10, C01]`` in Pa."""
         return [self.c10, self.c01]
+
+    @property
+    def elastic_core(self) -> _core.Material:
+        """What the Rust core takes, without branches."""
+        return _core.Material.mooney_rivlin(
+            c10=self.c10, c01=self.c01, bulk=self.bulk, density=self.density
+        )
 
     def invariant_energy(self, i1: Floats, i2: Floats) -> Floats:
         """Strain energy in J/m³."""

@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
+from voxsoft import _core
 from voxsoft.materials.hyperelastic import Floats, InvariantModel
 from voxsoft.units import Modulus
 
@@ -55,6 +56,13 @@ infinite. Try: use 0.499, or 0.4999 for a stiffer volume; the elements do not lo
     def constants(self) -> list[float]:
         """``[μ/2]`` in Pa."""
         return [self.shear / 2.0]
+
+    @property
+    def elastic_core(self) -> _core.Material:
+        """What the Rust core takes, without branches."""
+        return _core.Material.neo_hookean(
+            c10=self.shear / 2.0, bulk=self.bulk, density=self.density
+        )
 
     def invariant_energy(self, i1: Floats, i2: Floats) -> Floats:
         """Strain energy in J/m³."""

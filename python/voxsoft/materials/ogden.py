@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field, model_validator
 
+from voxsoft import _core
 from voxsoft.errors import MaterialError
 from voxsoft.materials.hyperelastic import Floats, Hyperelastic, SignedModulus
 from voxsoft.records import plain_values
@@ -112,6 +113,12 @@ modulus
     def constants(self) -> list[float]:
         """``[μ₁, α₁, μ₂, α₂, ...]``, the moduli in Pa."""
         return [number for term in zip(self.mu, self.alpha, strict=True) for number in term]
+
+    @property
+    def elastic_core(self) -> _core.Material:
+        """What the Rust core takes, without branches."""
+        terms = list(zip(self.mu, self.alpha, strict=True))
+        return _core.Material.ogden(terms=terms, bulk=self.bulk, density=self.density)
 
     def energy(self, stretches: ArrayLike) -> Floats:
         """Strain energy in J/m³ at principal stretches whose product is 1, (3, ...) → (...)."""

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field
 
+from voxsoft import _core
 from voxsoft.materials.hyperelastic import Floats, InvariantModel, SignedModulus
 
 
@@ -50,6 +51,11 @@ class Yeoh(InvariantModel):
     def constants(self) -> list[float]:
         """``[C10, C20, C30]`` in Pa, with zeros for those not given."""
         return [*self.c, *[0.0] * (3 - len(self.c))]
+
+    @property
+    def elastic_core(self) -> _core.Material:
+        """What the Rust core takes, without branches."""
+        return _core.Material.yeoh(c=self.constants, bulk=self.bulk, density=self.density)
 
     def invariant_energy(self, i1: Floats, i2: Floats) -> Floats:
         """Strain energy in J/m³."""

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
@@ -54,7 +53,7 @@ def solid_materials(design: Design) -> list[Material]:
     ]
 
 
-def core_materials(design: Design, materials: list[Material]) -> list[Any]:
+def core_materials(design: Design, materials: list[Material]) -> list[_core.Material]:
     """What the core takes for each part of a design: its material and its fibers.
 
     Parameters
@@ -65,7 +64,7 @@ def core_materials(design: Design, materials: list[Material]) -> list[Any]:
         One for each part, such as :func:`solid_materials` gives.
     """
     return [
-        (*material.core[:4], [fiber.core for fiber in part.fibers], *material.core[5:])
+        material.core.with_fibers([fiber.core for fiber in part.fibers])
         if part.fibers
         else material.core
         for part, material in zip(design.parts, materials, strict=True)

@@ -281,7 +281,9 @@ def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | Non
     return max(loose, key=len, default=None)
 
 
-def core_problem(mesh: Mesh, materials: list[Any], parts: _core.ProblemParts) -> _core.Problem:
+def core_problem(
+    mesh: Mesh, materials: list[_core.Material], parts: _core.ProblemParts
+) -> _core.Problem:
     """The problem of the Rust core.
 
     Parameters

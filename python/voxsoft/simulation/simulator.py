@@ -156,9 +156,7 @@ class Simulator:
         self._values: dict[int, Value] = {}
         self._command(self._commands.at_first)
         self._steps, self._time, self._ahead = 0, 0.0, 0.0
-        self._state = self._observe(
-            {"status": "moving", "residual": np.inf, "elastic": 0.0, "kinetic": 0.0}
-        )
+        self._state = self._observe(None)
         return self._state
 
     def step(self, loads: Mapping[LoadName, Any] | None = None) -> Observation:
@@ -206,20 +204,21 @@ class Simulator:
                     self._live.set_load(core, size)
         self._values = {**self._values, **values}
 
-    def _advance(self) -> dict[str, Any]:
+    def _advance(self) -> _core.Advance:
         """Take the steps inside until the time is up, to the nearest of them; less at rest."""
         goal = self._time - self._ahead + self._settings.time_step
         report = self._live.advance(0)
-        while report["status"] == "moving":
-            count = round((goal - report["time"]) / report["substep"])
+        while report.status == _core.LiveStatus.MOVING:
+            count = round((goal - report.time) / report.substep)
             if count < 1:
                 break
             report = self._live.advance(count)
-        self._time = report["time"]
-        self._ahead = self._time - goal if report["status"] == "moving" else 0.0
+        self._time = report.time
+        self._ahead = self._time - goal if report.status == _core.LiveStatus.MOVING else 0.0
         return report
 
-    def _observe(self, report: Mapping[str, Any]) -> Observation:
+    def _observe(self, report: _core.Advance | None) -> Observation:
+        """The body after an advance; None: as it starts."""
         mesh, positions = self._setup.mesh, self._live.positions()
         velocities = self._live.velocities()
         positions.flags.writeable = velocities.flags.writeable = False
@@ -241,20 +240,20 @@ class Simulator:
                 for cavity, pressure in zip(mesh.cavities, self._pressures(), strict=True)
             ),
             loads=self._commands.named(self._values),
-            residual=float(report["residual"]),
-            elastic_energy=float(report["elastic"]),
-            kinetic_energy=float(report["kinetic"]),
+            residual=report.residual if report else np.inf,
+            elastic_energy=report.elastic if report else 0.0,
+            kinetic_energy=report.kinetic if report else 0.0,
             _setup=self._setup,
             _commands=self._commands,
             _values=dict(self._values),
         )
 
     def _judged(
-        self, report: Mapping[str, Any], positions: np.ndarray[Any, Any]
+        self, report: _core.Advance | None, positions: np.ndarray[Any, Any]
     ) -> tuple[MotionStatus, str]:
-        """The status, and what it means: sound bodies move or rest, others are told of."""
-        if report["status"] == "diverged":
-            _, place, when = report["breakdown"]
+        """The status, and what it means: sound bodies move or rest, others are reported."""
+        if report and report.status == _core.LiveStatus.DIVERGED and report.breakdown:
+            _, place, when = report.breakdown
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             what = f"diverged at ({point}) mm, after {when:.6g} s: the loads are too much for it"
             return "diverged", what
@@ -262,8 +261,8 @@ class Simulator:
         inverted = int((fields.volume_ratio <= 0.0).sum())
         if inverted:
             return "inverted", f"{inverted:,} of {len(fields.volume_ratio):,} voxels are inside out"
-        if report["status"] == "at-rest":
-            return "at-rest", f"at rest, residual {report['residual']:.2g} of the load"
+        if report and report.status == _core.LiveStatus.AT_REST:
+            return "at-rest", f"at rest, residual {report.residual:.2g} of the load"
         return "moving", "moving"
 
     def _pressures(self) -> list[float]:
