@@ -8,7 +8,7 @@ use numpy::{
 use pyo3::exceptions::{PyArithmeticError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, State};
+use voxsoft_solid::{Load, Progress, State};
 use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings};
 use voxsoft_xpbd::{Answer, Status};
 
@@ -111,7 +111,7 @@ pub fn equilibrium(
     let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
     let problem_of_work = Arc::clone(inner);
     let (answer, watch) = gate::run_owned(py, move |cancel| {
-        let mut see = |now: &voxsoft_statics::Progress<'_>| watch.see_equilibrium(now, cancel);
+        let mut see = |now: &Progress<'_>| watch.see(now, cancel);
         let answer =
             voxsoft_statics::solve(&problem_of_work, start.as_deref(), &settings, &mut see);
         (answer, watch)

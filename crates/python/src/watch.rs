@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
+use voxsoft_solid::Progress;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_xpbd::Progress;
 
 /// How often a Python progress callback is called at most.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
@@ -63,28 +63,12 @@ impl Watch {
 
     pub(crate) fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
         if now.record {
-            self.record(&now.state.positions, now.state.time);
+            self.record(now.positions, now.time);
         }
-        self.tell((now.steps, now.state.time, now.residual), cancel)
+        self.report((now.steps, now.time, now.residual), cancel)
     }
 
-    /// The same for statics, where the load factor takes the place of time and every converged point of
-    /// the path is recorded.
-    pub(crate) fn see_equilibrium(
-        &mut self,
-        now: &voxsoft_statics::Progress<'_>,
-        cancel: &AtomicBool,
-    ) -> ControlFlow<()> {
-        if now.converged {
-            self.record(now.positions, now.factor);
-        }
-        self.tell(
-            (u64::from(now.iterations), now.factor, now.residual),
-            cancel,
-        )
-    }
-
-    fn tell(&mut self, arguments: (u64, f64, f64), cancel: &AtomicBool) -> ControlFlow<()> {
+    fn report(&mut self, arguments: (u64, f64, f64), cancel: &AtomicBool) -> ControlFlow<()> {
         if cancel.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }

@@ -54,10 +54,16 @@ impl Status {
 pub struct Progress<'a> {
     /// Steps or iterations so far.
     pub steps: u64,
+    /// The time in s; for statics, which knows none, the load factor.
+    pub time: f64,
     /// The current positions in m.
     pub positions: &'a [Vec3],
+    /// The current velocities in m/s; none for statics.
+    pub velocities: &'a [Vec3],
     /// The residual force without units.
     pub residual: f64,
+    /// Whether this is to be recorded: an instant of the recording, or a converged point of a load path.
+    pub record: bool,
 }
 
 /// Called now and then during a solution; `Break` cancels it.

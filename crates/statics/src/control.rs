@@ -9,12 +9,12 @@
 use std::ops::ControlFlow;
 
 use voxsoft_solid::vector::{Vec3, add, scale};
+use voxsoft_solid::{Progress, Status};
 
 use crate::equilibrium::Failure;
 use crate::path::{Ending, Path, status_of};
 use crate::point::Point;
-use crate::settings::{Progress, Settings};
-use voxsoft_solid::Status;
+use crate::settings::Settings;
 
 /// Steps of the look for a limit, and how long they are against the last step that converged.
 const LOOK_STEPS: u32 = 60;
@@ -131,11 +131,12 @@ fn arc_step(
             .place_clamps(f64::INFINITY, factor, &mut positions);
         let forces = path.equilibrium.forces(&positions, point);
         let progress = Progress {
-            iterations: path.equilibrium.iterations,
-            factor,
+            steps: u64::from(path.equilibrium.iterations),
+            time: factor,
             residual: forces.relative(),
             positions: &positions,
-            converged: false,
+            velocities: &[],
+            record: false,
         };
         if let ControlFlow::Break(()) = (path.observer)(&progress) {
             return Err(Failure::Cancelled);

@@ -7,10 +7,10 @@ use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::axial;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Body, Brick, Problem, elastic};
+use voxsoft_solid::{Body, Brick, Observer, Problem, Progress, elastic};
 
 use crate::point::Point;
-use crate::settings::{LinearSolver, Observer, Progress, Settings};
+use crate::settings::{LinearSolver, Settings};
 use crate::system::{Factor, FactorError, Means, System};
 
 /// Why Newton's method stopped without an equilibrium.
@@ -347,11 +347,12 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<(), Failure> {
         let progress = Progress {
-            iterations: self.iterations,
-            factor: point.pressure,
+            steps: u64::from(self.iterations),
+            time: point.pressure,
             residual,
             positions,
-            converged: false,
+            velocities: &[],
+            record: false,
         };
         match observer(&progress) {
             ControlFlow::Break(()) => Err(Failure::Cancelled),

@@ -56,5 +56,5 @@ pub use adjoint::{AdjointError, adjoint};
 pub use ensemble::{Ensemble, Settled, Variant};
 pub use implicit::{Implicit, ImplicitSettings};
 pub use path::solve;
-pub use settings::{Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings};
+pub use settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 pub use voxsoft_solid::Status;

@@ -1,15 +1,14 @@
 //! The load path: steps that grow and back off, and what to say when there is no way on.
 
-use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Observer, Problem, Progress, Status};
 
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure, Found};
 use crate::point::Point;
-use crate::settings::{Answer, Control, LinearSolver, Observer, PathPoint, Progress, Settings};
+use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::system::{FactorError, Means, System};
 use crate::volume;
-use voxsoft_solid::Status;
 
 /// A step that took no more iterations than this lets the next one grow.
 pub(crate) const EASY: u32 = 6;
@@ -205,11 +204,12 @@ impl Path<'_, '_> {
         });
         // A converged point is worth telling; whether to stop is asked at the next iteration.
         let _ = (self.observer)(&Progress {
-            iterations: self.equilibrium.iterations,
-            factor: point.pressure,
+            steps: u64::from(self.equilibrium.iterations),
+            time: point.pressure,
             residual,
             positions: &self.positions,
-            converged: !self.looking,
+            velocities: &[],
+            record: !self.looking,
         });
     }
 

@@ -1,7 +1,5 @@
-use std::ops::ControlFlow;
-
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem, Solution, Solver, State, Status};
+use voxsoft_solid::{Load, Observer, Problem, Solution, Solver, State, Status};
 
 use crate::path::solve;
 use crate::point::Point;
@@ -84,15 +82,9 @@ impl Solver for Settings {
         &self,
         problem: &Problem,
         start: Option<&[Vec3]>,
-        observer: &mut voxsoft_solid::Observer<'_>,
+        observer: &mut Observer<'_>,
     ) -> Solution {
-        let answer = solve(problem, start, self, &mut |progress| {
-            observer(&voxsoft_solid::Progress {
-                steps: u64::from(progress.iterations),
-                positions: progress.positions,
-                residual: progress.residual,
-            })
-        });
+        let answer = solve(problem, start, self, observer);
         Solution {
             state: State {
                 positions: answer.positions,
@@ -158,21 +150,3 @@ impl Answer {
         point.factor_of()(load)
     }
 }
-
-/// What an observer is told.
-#[derive(Debug)]
-pub struct Progress<'a> {
-    /// Newton iterations so far.
-    pub iterations: u32,
-    /// The load factor.
-    pub factor: f64,
-    /// The relative residual.
-    pub residual: f64,
-    /// The current positions in m.
-    pub positions: &'a [Vec3],
-    /// Whether this is a converged point of the path.
-    pub converged: bool,
-}
-
-/// Called at each iteration; `Break` cancels.
-pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;

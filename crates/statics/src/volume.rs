@@ -15,14 +15,14 @@ use std::ops::ControlFlow;
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
+use voxsoft_solid::{Progress, Status};
 
 use crate::control::{Unknown, load_direction, product};
 use crate::equilibrium::{Failure, Forces};
 use crate::path::{Ending, Path, UNSTABLE_CUTS, status_of};
 use crate::point::Point;
-use crate::settings::{Progress, Settings};
+use crate::settings::Settings;
 use crate::system::Factor;
-use voxsoft_solid::Status;
 
 /// The volume counts as reached within this part of it.
 const VOLUME_TOLERANCE: f64 = 1e-9;
@@ -166,11 +166,12 @@ fn look(
     let missing = target - volume(path, positions);
     let relative = forces.relative();
     let progress = Progress {
-        iterations: path.equilibrium.iterations,
-        factor,
+        steps: u64::from(path.equilibrium.iterations),
+        time: factor,
         residual: relative,
         positions,
-        converged: false,
+        velocities: &[],
+        record: false,
     };
     if let ControlFlow::Break(()) = (path.observer)(&progress) {
         return Err(Failure::Cancelled);

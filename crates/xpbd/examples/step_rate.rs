@@ -113,7 +113,7 @@ impl<'a> Sweeping<'a> {
     }
 }
 
-fn go_on(_: &voxsoft_xpbd::Progress<'_>) -> ControlFlow<()> {
+fn go_on(_: &voxsoft_solid::Progress<'_>) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 

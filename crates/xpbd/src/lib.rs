@@ -32,6 +32,6 @@ mod stiffness;
 mod viscosity;
 
 pub use dynamics::{Dynamics, Live, simulate};
-pub use outcome::{Answer, Progress};
+pub use outcome::Answer;
 pub use relaxation::{Relaxation, Trial, relax};
 pub use voxsoft_solid::{Damping, Status};

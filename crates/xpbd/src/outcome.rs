@@ -1,5 +1,3 @@
-use std::ops::ControlFlow;
-
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Breakdown, Problem, Solution, State, Status};
 
@@ -43,35 +41,6 @@ pub(crate) fn start_at(problem: &Problem, positions: Option<&[Vec3]>) -> State {
     }
     state
 }
-
-/// Shows an observer of any solver what one of this crate is shown.
-pub(crate) fn shown<'a>(
-    observer: &'a mut voxsoft_solid::Observer<'_>,
-) -> impl FnMut(&Progress<'_>) -> ControlFlow<()> + 'a {
-    |progress| {
-        observer(&voxsoft_solid::Progress {
-            steps: progress.steps,
-            positions: &progress.state.positions,
-            residual: progress.residual,
-        })
-    }
-}
-
-/// What an observer is told now and then.
-#[derive(Debug)]
-pub struct Progress<'a> {
-    /// Steps so far.
-    pub steps: u64,
-    /// The current state.
-    pub state: &'a State,
-    /// The residual force without units.
-    pub residual: f64,
-    /// Whether the state falls on the recording grid of [`crate::Dynamics::record_interval`].
-    pub record: bool,
-}
-
-/// Called now and then during a run; `Break` cancels it.
-pub type Observer<'a> = dyn FnMut(&Progress<'_>) -> ControlFlow<()> + 'a;
 
 /// How often the step may be halved before a run counts as diverged.
 pub(crate) const MAX_BACK_OFFS: u32 = 10;

@@ -58,12 +58,12 @@ fn swing(material: HyperelasticMaterial, settings: &Dynamics) -> Vec<(f64, f64)>
     }
     let mut seen = Vec::new();
     let answer = simulate(&problem, start, settings, &mut |now| {
-        let moved = |v: usize| now.state.positions[v][0] - rest[v][0];
+        let moved = |v: usize| now.positions[v][0] - rest[v][0];
         let masses = problem.body().masses();
         let size = (0..rest.len())
             .map(|v| masses[v] * shape[v] * moved(v))
             .sum();
-        seen.push((now.state.time, size));
+        seen.push((now.time, size));
         ControlFlow::Continue(())
     });
     assert_eq!(answer.status, Status::EndTime);
@@ -156,8 +156,8 @@ fn prony_branches_creep_to_the_constants_at_rest() {
     let start = State::at_rest(problem.body());
     let mut stretch = Vec::new();
     let answer = simulate(&problem, start, &settings, &mut |now| {
-        let x = now.state.positions.iter().map(|x| x[0]).fold(0.0, f64::max);
-        stretch.push((now.state.time, x / LENGTH - 1.0));
+        let x = now.positions.iter().map(|x| x[0]).fold(0.0, f64::max);
+        stretch.push((now.time, x / LENGTH - 1.0));
         ControlFlow::Continue(())
     });
     assert_eq!(answer.status, Status::EndTime);

@@ -60,11 +60,8 @@ fn a_heavy_column_swings_at_its_closed_form_frequency() {
     let mut track = Vec::new();
     let start = voxsoft_solid::State::at_rest(problem.body());
     voxsoft_xpbd::simulate(&problem, start, &settings, &mut |now| {
-        if now.record && now.state.time > 1.0 {
-            track.push((
-                now.state.time,
-                now.state.positions[end[0] as usize][0] - rest,
-            ));
+        if now.record && now.time > 1.0 {
+            track.push((now.time, now.positions[end[0] as usize][0] - rest));
         }
         std::ops::ControlFlow::Continue(())
     });

@@ -287,7 +287,7 @@ fn a_crumpled_body_unfolds() {
         "{} inside out",
         inverted(&crumpled)
     );
-    let watch = &mut |_: &voxsoft_xpbd::Progress<'_>| std::ops::ControlFlow::Continue(());
+    let watch = &mut |_: &voxsoft_solid::Progress<'_>| std::ops::ControlFlow::Continue(());
     let unfolded = [
         voxsoft_xpbd::relax(&problem, crumpled.clone(), &Relaxation::default(), watch),
         voxsoft_xpbd::simulate(&problem, crumpled, &Dynamics::default(), watch),

@@ -51,7 +51,7 @@ pub fn settled(problem: &Problem, settings: &Settings) -> Answer {
         if std::env::var_os("VERBOSE").is_some() {
             println!(
                 "{} {:.4} {:.2e} {}",
-                now.iterations, now.factor, now.residual, now.converged
+                now.steps, now.time, now.residual, now.record
             );
         }
         ControlFlow::Continue(())

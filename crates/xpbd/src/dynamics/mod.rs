@@ -12,9 +12,11 @@ use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Damping, Grab, Problem, Solution, Solver, State, Status};
+use voxsoft_solid::{
+    Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status,
+};
 
-use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, shown, start_at};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 pub use live::Live;
@@ -105,10 +107,10 @@ impl Solver for Dynamics {
         &self,
         problem: &Problem,
         start: Option<&[Vec3]>,
-        observer: &mut voxsoft_solid::Observer<'_>,
+        observer: &mut Observer<'_>,
     ) -> Solution {
         let start = start_at(problem, start);
-        simulate(problem, start, self, &mut shown(observer)).into_solution()
+        simulate(problem, start, self, observer).into_solution()
     }
 }
 
@@ -211,7 +213,9 @@ fn run(
             recorded = recorded.max(slot);
             let progress = Progress {
                 steps,
-                state: &state,
+                time: state.time,
+                positions: &state.positions,
+                velocities: &state.velocities,
                 residual,
                 record,
             };

@@ -9,9 +9,9 @@ use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Problem, Solution, Solver, State, Status, elastic};
+use voxsoft_solid::{Observer, Problem, Progress, Solution, Solver, State, Status, elastic};
 
-use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, Observer, Progress, shown, start_at};
+use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
 
 /// Settings of [`relax`].
@@ -88,10 +88,10 @@ impl Solver for Relaxation {
         &self,
         problem: &Problem,
         start: Option<&[Vec3]>,
-        observer: &mut voxsoft_solid::Observer<'_>,
+        observer: &mut Observer<'_>,
     ) -> Solution {
         let start = start_at(problem, start);
-        relax(problem, start, self, &mut shown(observer)).into_solution()
+        relax(problem, start, self, observer).into_solution()
     }
 }
 
@@ -198,7 +198,9 @@ fn run(
             }
             let progress = Progress {
                 steps: taken,
-                state: &state,
+                time: state.time,
+                positions: &state.positions,
+                velocities: &state.velocities,
                 residual,
                 record: false,
             };
