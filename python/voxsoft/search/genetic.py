@@ -78,9 +78,9 @@ class Genetic:
     - individuals of equal fitness rank in the order of their index;
     - where every fitness is zero, the wheel has no widths and parents are drawn uniformly.
 
-    The paper counts N evaluations per generation. Elites come back unchanged, so a caller whose
-    fitness has no noise can skip them: :attr:`known_fitness` holds what they scored. That makes
-    N + (G - 1)(N - E) evaluations for G generations instead of N G.
+    The paper counts N evaluations per generation. Elites come back unchanged and first, so a caller
+    whose fitness has no noise can keep what they scored. That makes N + (G - 1)(N - E) evaluations
+    for G generations instead of N G.
 
     Examples
     --------
@@ -112,7 +112,6 @@ class Genetic:
         self.generation = 0
         self._random = np.random.default_rng(seed)
         self._current = self._random.random((population, genes))
-        self._known = np.full(population, np.nan)
         self._best: Individual | None = None
 
     def ask(self) -> NDArray[np.float64]:
@@ -123,18 +122,13 @@ class Genetic:
         return self._current.copy()
 
     @property
-    def known_fitness(self) -> NDArray[np.float64]:
-        """Fitness carried over with the elites, NaN for individuals that are new, (N,)."""
-        return self._known.copy()
-
-    @property
     def best(self) -> Individual:
-        """The fittest individual of all generations told so far.
+        """The fittest individual of all generations so far.
 
         Raises
         ------
         StudyError
-            Nothing was told yet.
+            No generation was evaluated yet.
         """
         if self._best is None:
             raise StudyError("best", "no generation has been evaluated", "call tell(fitness) first")
@@ -160,7 +154,6 @@ class Genetic:
             self._best = Individual(self._current[fittest].copy(), float(fitness[fittest]))
         kept = order[: self.elites]
         self._current = np.concatenate([self._current[kept], self._children(fitness)])
-        self._known = np.concatenate([fitness[kept], np.full(len(order) - len(kept), np.nan)])
         self.generation += 1
 
     def _children(self, fitness: NDArray[np.float64]) -> NDArray[np.float64]:
