@@ -101,8 +101,8 @@ def page(
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         if not (np.fromfile(folder / "positions").reshape(expected.shape) == expected).all():
             raise SystemExit(f"{body}: the page's core comes to other bits")
-        told = json.loads(done.stdout)
-    return 1e-3 * told["advance_ms"] / substeps, 1e-3 * told["frame_ms"]
+        answer = json.loads(done.stdout)
+    return 1e-3 * answer["advance_ms"] / substeps, 1e-3 * answer["frame_ms"]
 
 
 def frame_times(report: Report, body: str, live: _core.Live) -> None:

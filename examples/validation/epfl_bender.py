@@ -69,10 +69,10 @@ def predicted(ratio: float = RATIO, film: float = 41 * MPa) -> Curve:
     assert result.status == "ok", result.message
     load = design.loads[0]
     assert isinstance(load, vs.Pressure)
-    moved = result.history.probes["tip"]
+    moved = result.recording.probes["tip"]
     length = float(np.ptp(result.mesh.vertices[:, 0]))
     angle = np.arctan2(-moved[:, 2], length + moved[:, 0])
-    return Curve(load.value * result.history.times, angle)
+    return Curve(load.value * result.recording.times, angle)
 
 
 def from_start(curve: Curve) -> Curve:

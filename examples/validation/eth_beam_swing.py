@@ -100,7 +100,7 @@ def released(mass: float, young: float, damping: Damping, constant: float) -> tu
         **damping.settings(constant),
     )
     assert result.status == "ok", result.message
-    return result.history.times, result.history.probes["tip"][:, 2] / mm
+    return result.recording.times, result.recording.probes["tip"][:, 2] / mm
 
 
 def fitted(young: float, damping: Damping, target: float) -> float:

@@ -84,7 +84,7 @@ def penetration(
     positions: NDArray[np.float64],
     tets: NDArray[np.int32],
     triangles: NDArray[np.int32],
-    sheets: NDArray[np.int32],
+    membranes: NDArray[np.int32],
 ) -> tuple[
     NDArray[np.uint32],
     list[tuple[float, list[float], list[list[float]], list[int], bool]],

@@ -75,7 +75,7 @@ def test_each_module_of_the_package_is_an_attribute_without_an_import():
         ("kPa", "voxsoft.units.kPa"),
     ],
 )
-def test_a_name_that_is_elsewhere_is_told_where(name, place):
+def test_a_name_that_is_elsewhere_points_there(name, place):
     voxsoft = importlib.import_module("voxsoft")
     with pytest.raises(AttributeError, match=f"has no attribute '{name}': it is .*{place}"):
         getattr(voxsoft, name)

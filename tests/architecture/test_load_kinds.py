@@ -37,7 +37,7 @@ def sites(text):
     return sum(asks(node) for node in ast.walk(ast.parse(text)))
 
 
-def test_loads_are_told_apart_in_one_place():
+def test_loads_are_distinguished_in_one_place():
     found = {
         path.relative_to(PACKAGE).as_posix(): count
         for path in PACKAGE.rglob("*.py")

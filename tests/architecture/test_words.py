@@ -172,7 +172,7 @@ ORDINARY = {
 def rows():
     """Each retired word of the table with what it is now, and where it is retired."""
     page = (ROOT / "docs/reference/words.md").read_text(encoding="utf-8")
-    table = re.findall(r"^\| (`.*) \| (.*) \| (all|text) \|$", page, re.MULTILINE)
+    table = re.findall(r"^\| (`.*) \| (.*) \| (all|text|names) \|$", page, re.MULTILINE)
     return [
         pytest.param(re.findall(r"`([^`]+)`", words), now, scope, id=words.replace("`", ""))
         for words, now, scope in table
@@ -202,12 +202,31 @@ def messages(path, text):
     return "\n".join(lines)
 
 
+@cache
+def names(path, text):
+    """The names of a Python or Rust file, each where it stands."""
+    if path.suffix == ".rs":
+        blank = re.sub(r"//[^\n]*|\"(?:\\.|[^\"\\])*\"", lambda m: "\n" * m[0].count("\n"), text)
+        return apart(blank)
+    if path.suffix not in (".py", ".pyi"):
+        return ""
+    lines = [""] * (text.count("\n") + 2)
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type == tokenize.NAME:
+            lines[token.start[0] - 1] += f" {apart(token.string)}"
+    return "\n".join(lines)
+
+
+#: What of a file each scope of the table reads.
+SCOPES = {"all": lambda _, text: apart(text), "text": messages, "names": names}
+
+
 @pytest.mark.parametrize(("words", "now", "scope"), rows())
 def test_a_retired_word_does_not_come_back(words, now, scope):
     pattern = re.compile(rf"(?<![a-z])(?:{'|'.join(words)})(?![a-z])", re.IGNORECASE)
     found = []
     for path, text in tracked().items():
-        read = apart(text) if scope == "all" else messages(path, text)
+        read = SCOPES[scope](path, text)
         lines = text.splitlines()
         for match in pattern.finditer(read):
             number = read.count("\n", 0, match.start())
@@ -224,6 +243,14 @@ def test_there_are_retired_words():
 
 def test_parts_of_identifiers_are_words():
     assert apart("may_fly mayFly") == "may fly may Fly"
+
+
+def test_names_are_read_without_what_surrounds_them():
+    python = 'toldAt = f"said {x}"  # said\n'
+    assert names(Path("a.py"), python).split() == ["told", "At"]
+    rust = 'let was_told = "said \\" said"; // said\n'
+    assert names(Path("a.rs"), rust).split() == ["let", "was", "told", "=", ";"]
+    assert names(Path("a.md"), "told") == ""
 
 
 def rewrite():

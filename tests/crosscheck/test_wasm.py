@@ -101,7 +101,7 @@ def test_a_thousand_substeps_have_the_same_bits(tmp_path, design, damping):
     seconds = 1000 * substep
     done = run_in_node(tmp_path, scene.pack(json.dumps(commands)), seconds)
     assert done.returncode == 0, done.stderr
-    told = json.loads(done.stdout)
+    reported = json.loads(done.stdout)
 
     player, stat = played(scene, seconds, commands, deterministic=True)
     native = player.positions()
@@ -112,8 +112,8 @@ def test_a_thousand_substeps_have_the_same_bits(tmp_path, design, damping):
     off = np.abs(wasm - native).max()
     hint = "if the solver has changed: make wasm"
     assert differ.size == 0, f"{differ.size} vertices differ, by up to {off:.1e} m; {hint}"
-    assert {key: told["stat"][key] for key in stat} == stat
-    assert base64.b64decode(told["frame"]) == player.pack_frame(0)
+    assert {key: reported["stat"][key] for key in stat} == stat
+    assert base64.b64decode(reported["frame"]) == player.pack_frame(0)
 
 
 @pytest.mark.parametrize("layers", [(), [SILK]], ids=["rubber beam", "rubber beam on a layer"])
@@ -134,7 +134,7 @@ def test_implicit_steps_agree(tmp_path, layers):
     assert np.abs(wasm - native).max() < 2e-3 * moved, hint
 
 
-def test_a_damaged_scene_is_told(tmp_path):
+def test_a_damaged_scene_is_reported(tmp_path):
     scene = scene_of(Setup.of(cantilever(LATTICE))).pack()
     for damaged, message in [
         (scene[:-3], "cut off or damaged"),

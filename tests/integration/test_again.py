@@ -100,12 +100,12 @@ def test_a_study_that_was_resumed_is_repeated_the_way_it_went():
     for sampler, budget in (("tpe", 12), ("tpe", 16), ("tpe", 16), ("random", 17), ("random", 18)):
         search = ["--sampler", sampler, "--budget", budget, "--workers", 2]
         done("optimize", CYLINDER, *search, "--out", "s")
-    told = jobs.load("s").spec
-    stages = [(stage.sampler, stage.budget) for stage in told.earlier]
+    reported = jobs.load("s").spec
+    stages = [(stage.sampler, stage.budget) for stage in reported.earlier]
     assert stages == [("tpe", 12), ("tpe", 16), ("random", 17)]
     assert printed("again", "s")["same"]
-    went = [trial.parameters for trial in jobs.run_job(told, "s").found.trials]
-    in_one_go = jobs.run_job(told.replace(sampler="tpe", budget=16, earlier=()), "one")
+    went = [trial.parameters for trial in jobs.run_job(reported, "s").found.trials]
+    in_one_go = jobs.run_job(reported.replace(sampler="tpe", budget=16, earlier=()), "one")
     assert [trial.parameters for trial in in_one_go.found.trials] != went[:16]
 
 
@@ -122,9 +122,9 @@ def test_a_study_that_was_interrupted_keeps_its_tables_and_is_repeated_once_it_i
 
     until(has_stored_three, "three trials")
     os.killpg(process.pid, signal.SIGINT)
-    _, told = process.communicate(timeout=120)
-    assert process.returncode == INTERRUPTED, told
-    assert "which are kept in s" in told
+    _, reported = process.communicate(timeout=120)
+    assert process.returncode == INTERRUPTED, reported
+    assert "which are kept in s" in reported
     assert Path("s", JOB).is_file()
     kept = len(Path("s", "table.csv").read_text().splitlines()) - 1
     assert 3 <= kept < 105
@@ -203,7 +203,7 @@ def beam():
     return Path("beam")
 
 
-def test_a_result_that_was_changed_is_told(beam):
+def test_a_result_that_was_changed_is_reported(beam):
     tampered(beam / "summary.json", '"sag": ', '"sag": 1')
     assert (
         "differs: summary.json, metrics.sag: was 10.0" in done("again", beam, code=DIFFERS).stderr
@@ -212,7 +212,7 @@ def test_a_result_that_was_changed_is_told(beam):
     assert (found["file"], found["where"]) == ("summary.json", "metrics.sag")
 
 
-def test_a_state_that_differs_in_one_bit_is_told(beam):
+def test_a_state_that_differs_in_one_bit_is_reported(beam):
     file = beam / "result.vtu"
     content = meshio.read(file)
     moved = content.point_data["displacement"]
@@ -229,7 +229,7 @@ def test_a_state_that_differs_in_one_bit_is_told(beam):
     assert "damaged" in done("again", beam, code=DIFFERS).stderr
 
 
-def test_a_resolved_design_that_was_changed_is_told(beam):
+def test_a_resolved_design_that_was_changed_is_reported(beam):
     tampered(beam / "design.toml", 'voxel_size = "5 mm"', 'voxel_size = "4 mm"')
     (found,) = printed("again", beam, code=DIFFERS)["differences"]
     assert found == {
@@ -240,7 +240,7 @@ def test_a_resolved_design_that_was_changed_is_told(beam):
     }
 
 
-def test_a_trial_and_a_parameter_that_were_changed_are_told():
+def test_a_trial_and_a_parameter_that_were_changed_are_reported():
     done("sweep", CYLINDER, *FEW, "--out", "s", "--workers", 2)
     tampered("s/table.csv", ",ok,", ",diverged,")
     (found,) = printed("again", "s", code=DIFFERS)["differences"]
@@ -265,12 +265,12 @@ def test_what_went_into_a_job_must_be_as_it_was(folder, file):
     outcome = done("again", folder, code=INVALID)
     assert f"{Path(file).name}: was changed since the job was begun" in outcome.stderr
     Path(folder, file).unlink()
-    told = printed("again", folder, code=INVALID)
-    assert "is missing" in told["problems"][0]["what"]
+    reported = printed("again", folder, code=INVALID)
+    assert "is missing" in reported["problems"][0]["what"]
     assert not Path(f"{folder}-again").exists()
 
 
-def test_another_version_and_machine_are_told_as_reasons(beam):
+def test_another_version_and_machine_are_reported_as_reasons(beam):
     tampered(beam / "summary.json", '"sag": ', '"sag": 1')
     tampered(beam / JOB, 'version = "', 'version = "0.0.')
     tampered(beam / JOB, 'machine = "', 'machine = "VAX ')
@@ -285,7 +285,7 @@ def test_a_run_that_never_came_to_rest_is_the_same_again():
     assert printed("again", "r")["status"] == "not-at-rest"
 
 
-def test_what_cannot_be_repeated_is_said(beam):
+def test_what_cannot_be_repeated_is_reported(beam):
     Path("empty").mkdir()
     assert "holds no job.toml" in done("again", "empty", code=INVALID).stderr
     assert "is not empty" in done("again", beam, "--out", beam, code=5).stderr

@@ -32,7 +32,7 @@ def call(*arguments):
 @pytest.mark.parametrize(
     ("change", "words"), [*NO_DESIGN, *NOT_SOLVABLE, ("radius", "is not an assignment")]
 )
-def test_a_bad_design_is_said_in_words(change, words):
+def test_a_bad_design_is_reported_in_words(change, words):
     outcome = call("run", CYLINDER, "--set", change, "--json")
     assert outcome.exit_code == 3, outcome.stderr
     assert words in outcome.stderr
@@ -67,8 +67,8 @@ def test_a_broken_file_is_invalid(verb, content):
     outcome = call(verb, "broken.toml", "--json")
     assert outcome.exit_code == 3
     assert json.loads(outcome.stdout)["problems"]
-    said = outcome.stdout + outcome.stderr
-    assert "broken.toml" in said or "is missing" in said
+    reported = outcome.stdout + outcome.stderr
+    assert "broken.toml" in reported or "is missing" in reported
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ HEADER = "arc_position_from_clamp_mm,x_mm,dz_mm\n"
         ("\0\0", "not a text file"),
     ],
 )
-def test_a_bad_measurement_is_said_in_words(content, words):
+def test_a_bad_measurement_is_reported_in_words(content, words):
     Path("data.csv").write_text(content)
     outcome = call("calibrate", BEAM, "data.csv", "--json")
     assert outcome.exit_code == 3

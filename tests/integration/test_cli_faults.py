@@ -73,7 +73,7 @@ def call(verb, arguments):
     return CliRunner().invoke(app, [*verb.split(), *map(str, arguments)])
 
 
-def assert_told(outcome, code, *words):
+def assert_reported(outcome, code, *words):
     assert outcome.exit_code == code, outcome.output
     assert isinstance(outcome.exception, SystemExit | None)
     for word in words:
@@ -106,14 +106,14 @@ def test_what_cannot_be_written_for_want_of_room_is_5(verb):
     # 300 bytes hold a semaphore of Python's, but none of the files.
     with files_of_at_most(300):
         outcome = call(verb, arguments)
-    assert_told(outcome, 5, "cannot be written: File too large")
+    assert_reported(outcome, 5, "cannot be written: File too large")
 
 
 @pytest.mark.parametrize("verb", OUT)
 def test_a_folder_that_cannot_be_made_is_5(verb):
     Path("in-the-way").write_text("a file\n")
     outcome = call(verb, [argument.replace("OUT", "in-the-way/out") for argument in OUT[verb]])
-    assert_told(outcome, 5, "in-the-way", "Not a directory")
+    assert_reported(outcome, 5, "in-the-way", "Not a directory")
 
 
 @pytest.mark.parametrize("verb", READING)
@@ -128,34 +128,34 @@ def test_a_folder_that_cannot_be_made_is_5(verb):
 )
 def test_what_is_not_valid_is_3(verb, content, words):
     Path("wrong.toml").write_text(content, encoding="utf-8")
-    assert_told(call(verb, ["wrong.toml", *more(verb)]), 3, words)
+    assert_reported(call(verb, ["wrong.toml", *more(verb)]), 3, words)
 
 
 @pytest.mark.parametrize("verb", READING)
 def test_a_file_that_is_not_there_is_2(verb):
-    assert_told(call(verb, ["missing.toml", *more(verb)]), 2)
+    assert_reported(call(verb, ["missing.toml", *more(verb)]), 2)
 
 
 @pytest.mark.parametrize("verb", ["sweep", "optimize"])
 def test_a_package_that_is_missing_is_2(verb, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     outcome = call(verb, ["design.toml", "--scheduler", "tcp://localhost:1"])
-    assert_told(outcome, 2, "distributed")
+    assert_reported(outcome, 2, "distributed")
 
 
 @pytest.mark.parametrize("verb", ["sweep", "optimize"])
 def test_a_storage_that_does_not_answer_is_5(verb):
     outcome = call(verb, ["design.toml", "--storage", "sqlite:////no/such/folder/a.db"])
-    assert_told(outcome, 5, "the storage failed")
+    assert_reported(outcome, 5, "the storage failed")
 
 
-def test_memory_that_is_short_is_5_and_told_in_json(monkeypatch):
+def test_memory_that_is_short_is_5_and_reported_in_json(monkeypatch):
     def none_left(*_, **__):
         raise MemoryError
 
     monkeypatch.setattr("voxsoft.simulation.simulate", none_left)
     outcome = call("run", ["design.toml", "--json"])
-    assert_told(outcome, 5, "memory: is short")
+    assert_reported(outcome, 5, "memory: is short")
     assert json.loads(outcome.stdout)["problems"][0]["where"] == "memory"
 
 

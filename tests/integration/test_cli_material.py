@@ -116,7 +116,7 @@ def test_forces_and_displacements():
         (None, ["--modulus", "curve.csv"], "curve.csv"),
     ],
 )
-def test_bad_input_is_said_in_words(content, options, words):
+def test_bad_input_is_reported_in_words(content, options, words):
     text = ECOFLEX.read_text(encoding="utf-8") if content is None else content
     Path("curve.csv").write_text(text, encoding="utf-8")
     outcome = call("fit", "curve.csv", *options, "--json")

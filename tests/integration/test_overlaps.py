@@ -29,19 +29,19 @@ def call(*arguments):
     return outcome
 
 
-def overlaps(told):
-    return {each["where"]: each for each in told["warnings"] if "overlap" in each["what"]}
+def overlaps(reported):
+    return {each["where"]: each for each in reported["warnings"] if "overlap" in each["what"]}
 
 
-def test_a_gripper_in_its_ball_and_in_itself_is_told():
+def test_a_gripper_in_its_ball_and_in_itself_is_reported():
     """Fingers are in the ball by millimeters, and chambers in their neighbors."""
-    told = json.loads(call("run", DATA / "gripper.toml", "--json").stdout)
-    assert told["status"] == "ok"
-    assert told["penetration"] > 2e-3
-    found = {frozenset(where.split(" and ")) for where in overlaps(told)}
+    reported = json.loads(call("run", DATA / "gripper.toml", "--json").stdout)
+    assert reported["status"] == "ok"
+    assert reported["penetration"] > 2e-3
+    found = {frozenset(where.split(" and ")) for where in overlaps(reported)}
     assert {frozenset({"ball", "right"}), frozenset({"ball", "left"})} <= found
     assert {frozenset({"right"}), frozenset({"left"})} <= found
-    for warning in overlaps(told).values():
+    for warning in overlaps(reported).values():
         assert warning["what"].endswith("contact is not simulated")
         x, y, z = warning["at"]  # on the unloaded body
         assert abs(x) <= 0.0375
@@ -50,13 +50,13 @@ def test_a_gripper_in_its_ball_and_in_itself_is_told():
     # Both fingers are one another's image, and so is what is said of them.
     depths = [
         each["what"].split(" near")[0]
-        for each in told["warnings"]
+        for each in reported["warnings"]
         if each["where"] in ("left", "right")
     ]
     assert depths[0] == depths[1]
 
 
-def test_chambers_that_meet_are_told_from_the_load_where_they_do():
+def test_chambers_that_meet_are_distinguished_from_the_load_where_they_do():
     free = json.loads(call("run", *PNEUNET, "--json").stdout)
     assert free["penetration"] == 0.0
     assert overlaps(free) == {}
@@ -68,13 +68,13 @@ def test_chambers_that_meet_are_told_from_the_load_where_they_do():
 
 def test_best_designs_that_overlap_are_not_green():
     outcome = call("sweep", DATA / "pushed.toml", "--workers", "1")
-    said = [line for line in outcome.stderr.splitlines() if line.startswith("warning: rank")]
-    assert len(said) == 1
-    assert said[0].startswith("warning: rank 1: ")
-    assert "overlap by 2 mm near" in said[0]
-    told = json.loads(call("sweep", DATA / "pushed.toml", "--json").stdout)
-    assert "overlap by 2 mm near" in told["best"]["warnings"][0]
-    table = Path(told["folder"], "table.csv").read_text().splitlines()
+    printed = [line for line in outcome.stderr.splitlines() if line.startswith("warning: rank")]
+    assert len(printed) == 1
+    assert printed[0].startswith("warning: rank 1: ")
+    assert "overlap by 2 mm near" in printed[0]
+    reported = json.loads(call("sweep", DATA / "pushed.toml", "--json").stdout)
+    assert "overlap by 2 mm near" in reported["best"]["warnings"][0]
+    table = Path(reported["folder"], "table.csv").read_text().splitlines()
     assert "penetration" in table[0]
     assert "warnings" in table[0]
     assert sum("contact is not simulated" in row for row in table) == 1

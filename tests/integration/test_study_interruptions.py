@@ -64,12 +64,12 @@ def test_a_killed_study_resumes_and_repeats_no_finished_trial(start, tmp_path):
     process = start()
     wait_for(process, 30)
     process.kill()
-    told = 30 + len(process.stdout.read().split())
+    reported = 30 + len(process.stdout.read().split())
     process.wait()
 
     output, errors = start().communicate(timeout=120)
     assert output.split()[-2:] == ["finished", "110"], errors
-    assert output.split()[0] in {str(told + 1), str(told + 2)}  # stored, and not yet told
+    assert output.split()[0] in {str(reported + 1), str(reported + 2)}  # stored, and not yet told
     evaluated = (tmp_path / "mark").read_text().splitlines()
     assert len(set(evaluated)) == 110
     # Only trials that were on the workers at the kill (two run, two wait) ran twice.
@@ -146,6 +146,6 @@ def test_a_full_disk_names_the_file_and_what_was_finished_stays(start):
     assert output.split()[0] in {str(done + 1), str(done + 2)}
 
 
-def test_a_script_without_a_main_guard_is_told_so(start):
+def test_a_script_without_a_main_guard_learns_so(start):
     _, errors = start(NO_GUARD).communicate(timeout=60)
     assert '`if __name__ == "__main__":`' in errors

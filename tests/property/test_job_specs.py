@@ -111,7 +111,7 @@ def test_the_ends_of_lines_stay(tmp_path):
 
 @settings(max_examples=60)
 @given(st.text(max_size=200) | st.binary(max_size=200).map(lambda raw: raw.decode("latin-1")))
-def test_a_damaged_job_is_told_as_one(text):
+def test_a_damaged_job_is_reported_as_one(text):
     with tempfile.TemporaryDirectory() as home:
         head = 'schema = "voxsoft-job/1"\n'
         for content in (text, head + text, f"{head}[job]\n{text}"):

@@ -93,7 +93,7 @@ def test_two_cells_on_whole_numbers(seed):
     shift = random.integers(-1, 2, 3) * random.choice([0.5, 1.0])
     positions[second] = (positions[second] - [2.0, 0.0, 0.0]) @ turn + shift
     found = find_penetration(mesh, positions)
-    assert bool(found.regions) == overlaps(mesh, positions)
+    assert bool(found.overlaps) == overlaps(mesh, positions)
 
 
 @pytest.mark.parametrize("seed", some(12, 3))
@@ -110,7 +110,7 @@ def test_a_bent_strip_in_any_floats(seed):
     side = pitch * x + (y - 0.5) * np.cos(tilt) + (z - 0.5) * np.sin(tilt)
     positions = np.column_stack([out * np.sin(angle), side, out * np.cos(angle)])
     assert (np.linalg.det(np.diff(positions[mesh.tets], axis=1)) > 0).all()
-    assert bool(find_penetration(mesh, positions).regions) == overlaps(mesh, positions)
+    assert bool(find_penetration(mesh, positions).overlaps) == overlaps(mesh, positions)
 
 
 def test_both_answers_occur():
@@ -157,7 +157,7 @@ def test_order_and_rigid_motion_change_nothing():
         turn = np.linalg.qr(random.normal(size=(3, 3)))[0]
         turn *= np.sign(np.linalg.det(turn))
         again = find_penetration(other, moved @ turn + random.normal(size=3))
-        assert len(again.regions) == len(found.regions)
+        assert len(again.overlaps) == len(found.overlaps)
         assert len(again.covered) == len(found.covered)
         # Rounding of positions of about 5 m.
         assert again.depth == pytest.approx(found.depth, abs=1e-14)

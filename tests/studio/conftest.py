@@ -169,8 +169,8 @@ class OwnProcess:
     def end(self, how, seconds=60):
         """Send a signal and wait; returns the exit code and what was written to stderr."""
         self.process.send_signal(how)
-        _, said = self.process.communicate(timeout=seconds)
-        return self.process.returncode, said
+        _, reported = self.process.communicate(timeout=seconds)
+        return self.process.returncode, reported
 
 
 @pytest.fixture

@@ -36,7 +36,7 @@ def test_it_prints_its_address_and_ends_with_ctrl_c(tmp_path):
         process.stderr.close()
 
 
-def test_a_port_that_is_taken_is_said(tmp_path, monkeypatch):
+def test_a_port_that_is_taken_is_reported(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with socket.create_server(("127.0.0.1", 0)) as taken:
         port = str(taken.getsockname()[1])
@@ -46,7 +46,7 @@ def test_a_port_that_is_taken_is_said(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("content", [None, b"\xff\xfe"])
-def test_a_source_that_cannot_be_read_is_said(tmp_path, monkeypatch, content):
+def test_a_source_that_cannot_be_read_is_reported(tmp_path, monkeypatch, content):
     monkeypatch.chdir(tmp_path)
     source = tmp_path / "folder"
     if content is None:

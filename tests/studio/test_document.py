@@ -36,13 +36,13 @@ def marked(text, found):
         ('name = "cylinder"', 'name = "cylinder', "is not TOML", None),
     ],
 )
-def test_an_error_stands_under_what_is_wrong(old, new, said, under):
+def test_an_error_stands_under_what_is_wrong(old, new, reported, under):
     text = CYLINDER.replace(old, new, 1)
     assert text != CYLINDER
     broken = document(text)
     assert not broken.valid
     found = broken.diagnostics[0]
-    assert said in f"{found.what} {found.hint}"
+    assert reported in f"{found.what} {found.hint}"
     line = text.splitlines()[found.line - 1]
     assert (new.splitlines()[0] in line) or under in line
     if under is not None:
@@ -117,7 +117,7 @@ def test_an_edit_says_in_toml_what_it_says_in_data(path, value):
         (["name"], object()),
     ],
 )
-def test_an_edit_that_leads_nowhere_is_said_and_changes_nothing(path, value):
+def test_an_edit_that_leads_nowhere_is_reported_and_changes_nothing(path, value):
     edited = document()
     with pytest.raises(DesignError, match="cannot be set"):
         edited.edit(path, value)

@@ -75,13 +75,13 @@ def test_text_tables_voxels_pictures_and_folders(at_rest):
         ("stl", {"run": "never"}, "not in the list"),
     ],
 )
-def test_what_cannot_be_exported_is_said(at_rest, format, options, words):
+def test_what_cannot_be_exported_is_reported(at_rest, format, options, words):
     answer = export(at_rest, format, **options)
     assert answer.status_code == 422
     assert words in f"{answer.json()['where']} {answer.json()['what']}"
 
 
-def test_a_download_that_is_not_there_is_said(at_rest):
+def test_a_download_that_is_not_there_is_reported(at_rest):
     answer = httpx.get(f"{at_rest.origin}/download/nothing", params={"token": at_rest.token})
     assert answer.status_code == 404
     assert "export it again" in answer.json()["hint"]

@@ -229,7 +229,7 @@ def test_a_run_may_have_a_name_of_any_language(studio):
     run(scenario())
 
 
-def test_a_runs_folder_that_cannot_be_written_is_said(make_studio, tmp_path):
+def test_a_runs_folder_that_cannot_be_written_is_reported(make_studio, tmp_path):
     runs = tmp_path / "runs"
     runs.write_text("a file stands where the folder should be")
     studio = make_studio(runs=runs)
@@ -285,7 +285,7 @@ def test_ctrl_c_ends_the_studio_whatever_it_does(in_own_process, tmp_path, doing
         exports = tmp_path / "runs" / ".studio" / "exports"
         while not exports.exists():
             assert waiting.is_alive()
-    code, said = studio.end(signal.SIGINT)
+    code, reported = studio.end(signal.SIGINT)
     assert code == 0
-    assert "Traceback" not in said
+    assert "Traceback" not in reported
     assert "1 mm" in (tmp_path / "runs" / ".studio" / "draft.json").read_text()

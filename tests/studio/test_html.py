@@ -107,7 +107,7 @@ def test_a_body_with_a_layer_has_a_page():
     assert fabric["center"] == pytest.approx([0.04, 0.012, 0.0])
 
 
-def test_what_cannot_be_shown_live_is_said():
+def test_what_cannot_be_shown_live_is_reported():
     with pytest.raises(DesignError, match="nothing holds the body"):
         families.cylinder().with_values("clamps=[]").show()
 
@@ -130,7 +130,7 @@ def test_the_command_writes_a_page_of_a_file_and_of_a_run(tmp_path, monkeypatch)
     assert runner.invoke(app, ["export", "run", "--html", "a.html", "--set", "a=1"]).exit_code == 3
 
 
-def test_a_missing_viewer_is_said(monkeypatch, tmp_path):
+def test_a_missing_viewer_is_reported(monkeypatch, tmp_path):
     monkeypatch.setattr("voxsoft.studio.page.ARCHIVE", tmp_path / "page.zip")
     with pytest.raises(FileError, match="make studio"):
         families.beam().show()

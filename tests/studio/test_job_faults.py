@@ -65,7 +65,7 @@ def test_a_worker_of_a_study_that_is_killed_costs_time_only(studio):
 
 @pytest.mark.slow
 @linux
-def test_a_full_disk_is_said_and_the_study_goes_on_once_there_is_room(studio):
+def test_a_full_disk_is_reported_and_the_study_goes_on_once_there_is_room(studio):
     import resource
 
     async def scenario():

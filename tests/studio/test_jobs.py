@@ -78,9 +78,9 @@ def test_a_study_goes_on_while_no_tab_is_open(studio):
             return await ended(page), [e for e in page.log if e["t"] in ("trial", "trials")]
 
     run(begin())
-    job, told = run(come_back())
+    job, reported = run(come_back())
     assert (job.state, job.done) == ("done", 8)
-    assert len(next(e for e in reversed(told) if e["t"] == "trials")["trials"]) == 8
+    assert len(next(e for e in reversed(reported) if e["t"] == "trials")["trials"]) == 8
 
 
 @pytest.mark.slow
@@ -136,7 +136,7 @@ def test_a_restart_of_the_server_costs_no_trial(make_studio, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_is_said_and_its_trials_are_kept(studio):
+def test_a_process_that_is_killed_is_reported_and_its_trials_are_kept(studio):
     async def scenario():
         async with studio.page() as page:
             await page.send("job_start", spec=small_study())
@@ -165,7 +165,7 @@ def test_a_process_that_is_killed_is_said_and_its_trials_are_kept(studio):
         ({"kind": "calibrate", "data": [{"name": "x.csv"}]}, "was not sent"),
     ],
 )
-def test_a_job_that_cannot_be_is_said_in_words(studio, spec, words):
+def test_a_job_that_cannot_be_is_reported_in_words(studio, spec, words):
     async def scenario():
         async with studio.page() as page:
             await page.send("job_start", spec=spec)
@@ -263,8 +263,8 @@ def test_runs_are_renamed_deleted_and_restored_and_broken_ones_listed(studio, tm
             await page.send("run_rename", id="old", name="new")
             assert {r["id"] for r in (await page.until("runs")).rows} == {"new", "broken", "alien"}
             await page.send("run_delete", id="broken")
-            told = await page.until("runs")
-            assert [r["id"] for r in told.trash] == ["broken"]
+            reported = await page.until("runs")
+            assert [r["id"] for r in reported.trash] == ["broken"]
             await page.send("run_restore", id="broken")
             assert "broken" in {r["id"] for r in (await page.until("runs")).rows}
             for tag, fields in (

@@ -36,8 +36,8 @@ async def solved(page):
     """Solve for the equilibrium; gives what the page is told of it, and its frame."""
     await page.send("rest")
     _, frame = await page.shown(lambda s: s.state == "at-rest")
-    told = [event for event in page.log if event["t"] == "equilibrium"]
-    return SimpleNamespace(**told[-1]) if told else await page.until("equilibrium"), frame
+    reported = [event for event in page.log if event["t"] == "equilibrium"]
+    return SimpleNamespace(**reported[-1]) if reported else await page.until("equilibrium"), frame
 
 
 async def kept(page):
@@ -72,8 +72,8 @@ def test_a_run_that_is_kept_is_the_state_on_the_screen(studio):
     bits = np.ptp(shown, axis=0).max() / 6e4
     assert np.abs(positions[body.surface.vertices] - shown).max() < bits
     again = vs.simulate(design)
-    told = {metric["name"]: metric["value"] for metric in equilibrium.metrics}
-    for name, value in told.items():
+    reported = {metric["name"]: metric["value"] for metric in equilibrium.metrics}
+    for name, value in reported.items():
         assert value == pytest.approx(again.metrics[name], rel=1e-3)
         assert summary["metrics"][name] == pytest.approx(value, rel=1e-6)
     as_written = vs.simulate(vs.load(EXAMPLE))
@@ -130,7 +130,7 @@ def test_another_material_leaves_loads_and_pulls_as_they_are(studio):
     run(scenario())
 
 
-def test_an_equilibrium_is_told_in_numbers_and_as_a_table(studio):
+def test_an_equilibrium_is_reported_in_numbers_and_as_a_table(studio):
     async def scenario():
         async with studio.page() as page:
             await ready(page)

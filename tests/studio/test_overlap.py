@@ -13,19 +13,19 @@ from voxsoft.studio.overlap_event import overlap_of
 PUSHED = Path(__file__).parents[1] / "data" / "pushed.toml"
 
 
-def test_a_solved_body_in_itself_is_told_with_its_places(make_studio):
+def test_a_solved_body_in_itself_is_reported_with_its_places(make_studio):
     studio = make_studio(PUSHED)
 
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda stat: stat.state == "paused")
             await page.send("rest")
-            found = await page.until("overlap", lambda told: told.places, seconds=60.0)
+            found = await page.until("overlap", lambda reported: reported.places, seconds=60.0)
             equilibrium = await page.until("equilibrium")
             async with studio.page() as other:
                 again = await other.until("overlap")
             await page.send("reset")
-            free = await page.until("overlap", lambda told: not told.places)
+            free = await page.until("overlap", lambda reported: not reported.places)
         assert found.depth == pytest.approx(0.002, abs=3e-6)
         assert found.sentence == "bar and slab: overlap by 2 mm: contact is not simulated"
         assert found.places[0]["now"][2] == pytest.approx(0.008, abs=1e-5)
@@ -51,7 +51,7 @@ def test_a_body_that_moves_is_looked_over_as_it_does(make_studio, tmp_path):
         async with studio.page() as page:
             await page.until("body")
             await page.send("play")
-            await page.until("overlap", lambda told: told.places, seconds=60.0)
+            await page.until("overlap", lambda reported: reported.places, seconds=60.0)
             states = [each["state"] for each in page.log if each["t"] == "stat"]
         assert "playing" in states
         assert not any("overlap" in each for each in page.log if each["t"] == "error")

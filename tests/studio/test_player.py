@@ -57,7 +57,7 @@ def test_events_have_the_names_of_the_protocol(body):
 @pytest.mark.parametrize("command", Command.__args__, ids=lambda command: command.__name__)
 def test_every_command_is_understood_with_all_it_may_say(body, command):
     """A field that the core did not know would go unheard: it must make a difference there."""
-    said = {
+    reported = {
         commands.Step: {"n": 3},
         commands.Pace: {"factor": 0.1},
         commands.Load: {"index": 0, "value": 5e3},
@@ -71,7 +71,7 @@ def test_every_command_is_understood_with_all_it_may_say(body, command):
     player.do(commands.Step(seq=1, n=2))
     for _ in range(2):
         player.advance(1 / 60, 1.0)
-    player.do(command(seq=2, **said))
+    player.do(command(seq=2, **reported))
     stat = player.stat()
     if command is commands.Pace:
         assert stat.pace_chosen == 0.1
@@ -96,7 +96,7 @@ def test_what_cannot_be_done_says_where_and_what(body):
         player.do(commands.Seek(seq=1, frame=3))
 
 
-def test_before_there_is_a_player_the_same_is_told(body):
+def test_before_there_is_a_player_the_same_is_reported(body):
     playback = Playback()
     playback.begin(body)
     without = (playback.stat(), playback.plot(), playback.frame, playback.state)

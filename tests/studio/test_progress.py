@@ -10,16 +10,16 @@ from waiting import until
 from voxsoft.studio.progress import Progress
 
 
-class Told:
+class Report:
     """What a job said."""
 
     def __init__(self, kind):
-        self.said = []
-        self.progress = Progress(kind, Path("runs/a"), self.said.append)
+        self.sent = []
+        self.progress = Progress(kind, Path("runs/a"), self.sent.append)
 
     @property
     def last(self):
-        return (self.said[-1].state, self.said[-1].stage)
+        return (self.sent[-1].state, self.sent[-1].stage)
 
     def until(self, *last):
         until(lambda: self.last == last, lambda: f"{last} after {self.last}")
@@ -27,12 +27,12 @@ class Told:
 
 @pytest.fixture
 def study():
-    return Told("study")
+    return Report("study")
 
 
 @pytest.fixture
 def calibration():
-    return Told("calibrate")
+    return Report("calibrate")
 
 
 def test_a_study_tells_how_many_designs_are_being_finished(study):
@@ -48,7 +48,7 @@ def test_a_study_tells_how_many_designs_are_being_finished(study):
     study.until("pausing", "1 design is being finished")
     workers.begun.value = 0
     study.until("paused", "")
-    assert study.said[-1].done == 4
+    assert study.sent[-1].done == 4
     progress.resume()
     assert not gate.closed
     assert study.last == ("running", "")
@@ -78,13 +78,13 @@ def test_other_work_is_held_where_it_next_says_how_far_it_is(calibration):
 def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("voxsoft.studio.progress.time.monotonic", lambda: now[0])
-    told = Told("calibrate")
-    progress = told.progress
+    reported = Report("calibrate")
+    progress = reported.progress
     progress.pause()
     now[0] += 2  # what was begun is being finished
     work = threading.Thread(target=progress.at, args=(1, 3))
     work.start()
-    while told.said[-1].state != "paused":
+    while reported.sent[-1].state != "paused":
         pass
     now[0] += 1000
     assert progress.elapsed == 2

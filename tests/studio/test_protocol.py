@@ -70,7 +70,7 @@ def test_numbers_that_are_not_finite_become_null():
     assert '"rows":[[null,1.0]]' in encode(row)
 
 
-def test_the_page_is_told_what_a_calibration_fits_by_itself(tmp_path):
+def test_the_page_gets_what_a_calibration_fits_by_itself(tmp_path):
     ranges = hello(tmp_path).fit_ranges
     assert {one.name: (one.low, one.high) for one in ranges["lattice"]} == {
         "edge": (1e3, 1e6),

@@ -69,9 +69,9 @@ def test_a_study_is_done_again_with_the_same_best(tmp_path, sampler):
     assert recipe.seed == 7
     assert recipe.version
     assert str(best["parameters"]) in script(recipe, tmp_path)
-    told = again(recipe, tmp_path / "out")
-    assert told["same"]
-    assert told["best"]["parameters"] == best["parameters"]
+    reported = again(recipe, tmp_path / "out")
+    assert reported["same"]
+    assert reported["best"]["parameters"] == best["parameters"]
 
 
 @pytest.mark.slow
@@ -86,21 +86,21 @@ def test_a_calibration_is_done_again_with_the_same_constants(tmp_path):
     )
     folder = begun(tmp_path / "runs" / "fit", asked, "paper-beam", [("tip.csv", TABLE)])
     do(folder)
-    told = json.loads((folder / "summary.json").read_text())
+    reported = json.loads((folder / "summary.json").read_text())
     recipe = recipe_of(folder)
-    assert str(told["parameters"]) in script(recipe, tmp_path)
+    assert str(reported["parameters"]) in script(recipe, tmp_path)
     assert again(recipe, tmp_path / "out")["same"]
 
 
 def test_a_run_is_done_again_with_the_same_rise(tmp_path):
     folder = begun(tmp_path / "runs" / "one", commands.RunSpec(solver={"method": "xpbd"}))
     do(folder)
-    told = json.loads((folder / "summary.json").read_text())["metrics"]["rise"]
+    reported = json.loads((folder / "summary.json").read_text())["metrics"]["rise"]
     recipe = recipe_of(folder)
-    assert f"'rise': {told}" in script(recipe, tmp_path)
+    assert f"'rise': {reported}" in script(recipe, tmp_path)
     found = again(recipe, tmp_path / "out")
     assert found["same"]
-    assert found["metrics"]["rise"] == told
+    assert found["metrics"]["rise"] == reported
     assert recipe.seed is None
 
 
@@ -112,6 +112,6 @@ def test_the_design_of_a_state_that_was_kept_is_what_can_be_solved_again(tmp_pat
     assert again(recipe, tmp_path / "out")["status"] == "ok"
 
 
-def test_a_folder_without_a_job_is_said(tmp_path):
+def test_a_folder_without_a_job_is_reported(tmp_path):
     with pytest.raises(FileError, match="holds no job"):
         recipe_of(tmp_path)

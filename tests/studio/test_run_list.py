@@ -35,7 +35,7 @@ def test_the_best_of_a_run_has_the_units_of_its_design(tmp_path):
     assert rows(tmp_path)["one"].best == "rise 2 mm"
 
 
-def test_values_whose_metric_is_not_told_stand_without_a_unit(tmp_path):
+def test_values_whose_metric_is_not_reported_stand_without_a_unit(tmp_path):
     best = {"objectives": {"rise": 0.5}}
     write(tmp_path / "old", study_json="no JSON", summary_json={"best": best, "trials": 1})
     assert rows(tmp_path)["old"].best == "rise 0.5"

@@ -343,7 +343,7 @@ def test_another_version_of_the_protocol_is_refused_in_words(studio):
     ],
     ids=["no hello", "no json", "a long answer"],
 )
-def test_who_says_no_hello_is_told_why_it_is_sent_away(studio, first, code):
+def test_who_says_no_hello_learns_why_it_is_sent_away(studio, first, code):
     async def scenario():
         async with studio.page(hello=False) as page:
             await page.send_raw(first)
@@ -482,7 +482,7 @@ def test_an_upload_of_a_gigabyte_is_refused_after_64_mb(studio):
         assert "larger than 64 MB" in answer.json()["what"]
 
 
-def test_a_length_that_is_told_is_refused_before_anything_is_read(studio):
+def test_a_length_that_is_declared_is_refused_before_anything_is_read(studio):
     head = (
         f"POST /upload?name=a.stl&token={studio.token} HTTP/1.1\r\n"
         f"Host: 127.0.0.1:{studio.port}\r\n"
@@ -606,7 +606,7 @@ def test_a_body_that_takes_its_time_is_announced(studio, monkeypatch):
     run(scenario())
 
 
-def test_a_panic_of_the_core_is_said_and_the_next_body_comes(studio, monkeypatch):
+def test_a_panic_of_the_core_is_reported_and_the_next_body_comes(studio, monkeypatch):
     class Panic(BaseException):
         pass
 

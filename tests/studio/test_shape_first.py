@@ -95,29 +95,29 @@ class Heard:
     """A bus that keeps what it is told."""
 
     def __init__(self):
-        self.said = []
+        self.reported = []
         self._tab = Tab(socket=None)
 
     def tabs(self):
         return [self._tab]
 
     def topology(self, packed, mode):
-        self.said.append("topology")
+        self.reported.append("topology")
 
     def publish(self, event):
-        self.said.append(type(event).__name__)
+        self.reported.append(type(event).__name__)
 
     def frame(self, tab, packed):
-        self.said.append("frame")
+        self.reported.append("frame")
 
 
-def test_the_shape_is_sent_before_all_that_is_said_of_it(body):
+def test_the_shape_is_sent_before_all_that_is_reported_of_it(body):
     heard, playback = Heard(), Playback()
     playback.begin(body)
     pictures = Pictures(playback, heard)
     pictures.begin(body)
     pictures.paint_all()
-    assert heard.said == ["topology", "Body", "frame"]
+    assert heard.reported == ["topology", "Body", "frame"]
 
 
 def drawn(packed):

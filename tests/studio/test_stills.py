@@ -86,11 +86,11 @@ def test_a_stored_run_is_shown_where_it_came_to_rest(studio):
     folder = files.write_run(result, studio.session.runs / "rest")
     answer = asked(studio, "rest")
     rest, frames = read(answer.content)
-    told = json.loads((folder / "summary.json").read_text())
+    reported = json.loads((folder / "summary.json").read_text())
     assert len(rest) == 660
     assert sorted(frames) == [0, 1, 2, 3, 4, 5, 6, 7]
     positions, largest, flags = frames[0]
-    assert largest == pytest.approx(told["metrics"]["max_displacement"], rel=1e-6)
+    assert largest == pytest.approx(reported["metrics"]["max_displacement"], rel=1e-6)
     assert flags == 1 | 4
     # To the 16 bits of a frame.
     assert positions[:, 2].max() == pytest.approx(result.positions[:, 2].max(), rel=1e-6)
@@ -132,7 +132,7 @@ def test_the_view_is_left_alone(studio, study):
     run(scenario())
 
 
-def test_what_cannot_be_shown_is_said(studio, study):
+def test_what_cannot_be_shown_is_reported(studio, study):
     runs = studio.session.runs
     (runs / "begun").mkdir()
     (runs / "begun" / "design.toml").write_text(BAR)
@@ -159,9 +159,9 @@ def test_what_cannot_be_shown_is_said(studio, study):
         "": "is no name for a folder",
     }.items():
         answer = asked(studio, name)
-        told = answer.json()
+        reported = answer.json()
         assert answer.status_code == 422, name
-        assert words in f"{told['where']}: {told['what']}", name
+        assert words in f"{reported['where']}: {reported['what']}", name
         assert "Traceback" not in answer.text
 
 
@@ -236,7 +236,7 @@ def test_the_specimen_of_a_calibration_stands_where_its_stations_are(make_studio
     assert largest > 0.01
 
 
-def test_a_damaged_specimen_is_said(studio):
+def test_a_damaged_specimen_is_reported(studio):
     folder = studio.session.runs / "fit"
     folder.mkdir(parents=True)
     (folder / "design.toml").write_text(families.family_text("paper-beam"))

@@ -14,7 +14,7 @@ from voxsoft.studio import events
 from voxsoft.studio.job_journal import JOURNAL, JobJournal, read_journal
 from voxsoft.studio.stored_job import stored_job
 
-TOLD = ("generation", "overlay", "calibrated")
+KINDS = ("generation", "overlay", "calibrated")
 TABLE = "arc_position_from_clamp_mm,dz_mm\n30,-15\n60,-44\n90,-75\n"
 FIT = {
     "kind": "calibrate",
@@ -49,18 +49,18 @@ async def shown(page, name):
     before = len(page.log)
     await page.send("job_show", id=name)
     await page.quiet(0.5)
-    return [e for e in page.log[before:] if e["t"] in (*TOLD, "trials", "job", "error")]
+    return [e for e in page.log[before:] if e["t"] in (*KINDS, "trials", "job", "error")]
 
 
 @pytest.mark.slow
-def test_a_past_calibration_is_told_as_it_was_also_under_another_name(make_studio, beam):
+def test_a_past_calibration_is_reported_as_it_was_also_under_another_name(make_studio, beam):
     first = make_studio(beam)
 
     async def fit():
         async with first.page() as page:
             job = await begin(page)
             await page.until("job", lambda j: j.state == "done", seconds=60)
-            return job.id, [e for e in page.log if e["t"] in TOLD]
+            return job.id, [e for e in page.log if e["t"] in KINDS]
 
     name, live = run(fit())
     first.stop()
@@ -75,11 +75,11 @@ def test_a_past_calibration_is_told_as_it_was_also_under_another_name(make_studi
 
     as_it_was, renamed = run(look())
     assert [e["t"] for e in live].count("generation") == 3
-    assert [e for e in as_it_was if e["t"] in TOLD] == live
+    assert [e for e in as_it_was if e["t"] in KINDS] == live
     (state,) = [e for e in as_it_was if e["t"] == "job"]
     assert (state["state"], state["done"], state["total"]) == ("done", 3, 3)
     assert "Mean error" in state["message"]
-    assert {e["job"] for e in renamed if e["t"] in TOLD} == {"tuesday"}
+    assert {e["job"] for e in renamed if e["t"] in KINDS} == {"tuesday"}
     assert [e["id"] for e in renamed if e["t"] == "job"] == ["tuesday"]
     assert renamed[-1]["card"] == live[-1]["card"]
 
@@ -112,15 +112,15 @@ def test_a_stopped_or_killed_calibration_shows_its_generations(make_studio, beam
         (stopped, "stopped", "kept"),
         ("killed", "failed", "killed by signal 9"),
     ):
-        told = run(look(name))
-        assert [e["index"] for e in told if e["t"] == "generation"][:2] == [1, 2]
-        assert any(e["t"] == "overlay" for e in told)
-        (job,) = [e for e in told if e["t"] == "job"]
+        reported = run(look(name))
+        assert [e["index"] for e in reported if e["t"] == "generation"][:2] == [1, 2]
+        assert any(e["t"] == "overlay" for e in reported)
+        (job,) = [e for e in reported if e["t"] == "job"]
         assert job["state"] == state
         assert words in job["message"]
 
 
-def test_a_calibration_of_the_command_line_is_told_from_its_files(tmp_path):
+def test_a_calibration_of_the_command_line_is_reported_from_its_files(tmp_path):
     design = families.beam()
     found = calibrate(
         Experiment(design, read_measurement(TABLE, name="tip")),
@@ -142,7 +142,7 @@ def test_a_calibration_of_the_command_line_is_told_from_its_files(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_study_is_told_again_after_a_restart(make_studio):
+def test_a_study_is_reported_again_after_a_restart(make_studio):
     first = make_studio()
 
     async def study():
@@ -180,9 +180,9 @@ def test_the_journal_ignores_cut_off_and_repeated_lines(tmp_path):
     journal.keep(state(state="stopping"))
     with (tmp_path / JOURNAL).open("a") as file:
         file.write('{"t":"generation","job":"a","ind')
-    told = read_journal(tmp_path)
-    assert [each.state for each in told] == ["running", "stopping"]
-    assert told[0].id == tmp_path.name
+    reported = read_journal(tmp_path)
+    assert [each.state for each in reported] == ["running", "stopping"]
+    assert reported[0].id == tmp_path.name
     assert not journal.trouble
 
 

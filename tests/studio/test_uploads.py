@@ -37,7 +37,7 @@ def test_an_archive_that_leads_outside_is_refused_whole(tmp_path, inside):
     assert not (tmp_path / "outside.txt").exists()
 
 
-def test_an_archive_that_is_none_is_said(tmp_path):
+def test_an_archive_that_is_none_is_reported(tmp_path):
     archive = tmp_path / "run.zip"
     archive.write_bytes(b"PK\x03\x04 and no more")
     with pytest.raises(FileError, match="is no archive"):

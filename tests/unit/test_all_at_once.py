@@ -60,7 +60,7 @@ def with_mistakes(*names):
     return document
 
 
-def told(document):
+def reported(document):
     with pytest.raises(DesignError) as caught:
         Design.from_document(document)
     return [problem.where for problem in caught.value.problems]
@@ -71,15 +71,15 @@ def test_the_sound_design_is_sound():
 
 
 @pytest.mark.parametrize("pair", [*itertools.combinations(MISTAKES, 2)], ids=" and ".join)
-def test_two_mistakes_are_told_together(pair):
+def test_two_mistakes_are_reported_together(pair):
     places = {MISTAKES[name][2] for name in pair}
-    found = told(with_mistakes(*pair))
+    found = reported(with_mistakes(*pair))
     assert set(found) == places
     assert len(found) == len(places)
 
 
-def test_all_mistakes_are_told_together():
-    assert set(told(with_mistakes(*MISTAKES))) == {where for *_, where in MISTAKES.values()}
+def test_all_mistakes_are_reported_together():
+    assert set(reported(with_mistakes(*MISTAKES))) == {where for *_, where in MISTAKES.values()}
 
 
 def test_formulas_alone_keep_their_type():

@@ -81,7 +81,7 @@ def test_in_python_a_path_is_meant_from_the_working_directory(folder, monkeypatc
         ("name = ", r"parts\[0\]\.material: card\.toml, line 1.*is not TOML"),
     ],
 )
-def test_a_card_that_is_none_is_told_with_the_place(folder, text, words):
+def test_a_card_that_is_none_is_reported_with_the_place(folder, text, words):
     file = folder / "designs" / "card.toml"
     if text is not None:
         file.write_text(text)

@@ -71,7 +71,7 @@ def test_a_named_chamber_stays_the_same_while_another_outgrows_it():
     )
 
 
-def test_names_stand_wherever_cavities_are_told():
+def test_names_stand_wherever_cavities_are_reported():
     result = vs.simulate(two(parameters={"w": "8 mm"}))
     right, left = result.summary()["cavities"]  # the largest first
     assert (right["name"], right["pressure"]) == ("right", 0.0)

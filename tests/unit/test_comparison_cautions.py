@@ -47,7 +47,7 @@ def design(shape, fill, *loads):
         pytest.param(ROUNDED, False, id="rounded box"),
     ],
 )
-def test_stairs_under_pressure_are_told_from_boxes(shape, round, fill):
+def test_stairs_under_pressure_are_distinguished_from_boxes(shape, round, fill):
     body = design(shape, fill)
     mesh = mesh_of(body)
     found = list(cautions_of(body, mesh))
@@ -60,7 +60,7 @@ def test_stairs_under_pressure_are_told_from_boxes(shape, round, fill):
 
 
 @pytest.mark.slow
-def test_it_is_said_where_the_estimates_are_shown(tmp_path, capsys):
+def test_it_is_reported_where_the_estimates_are_shown(tmp_path, capsys):
     body = design(SPHERE, "binary").replace(voxel_size=5 * mm)
     found = vs.compare(body, solvers=["statics"], outside="none", voxel_sizes=[], splits=[1, 2])
     words = "may be low by up to five times"

@@ -56,12 +56,12 @@ def made(name):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_newton_iterations_lie_in_the_range_that_was_said(name):
+def test_newton_iterations_lie_in_the_range_that_was_reported(name):
     design = made(name)
     setup = Setup.of(design)
-    said = newton_iterations(design, setup.mesh, WALL, setup.problem.mass)
+    reported = newton_iterations(design, setup.mesh, WALL, setup.problem.mass)
     taken = simulate(setup).steps
-    assert said.low <= taken <= (said.high or 3 * said.seconds), said
+    assert reported.low <= taken <= (reported.high or 3 * reported.seconds), reported
 
 
 def test_a_run_costs_more_the_farther_it_goes_and_the_finer_it_is():
@@ -81,7 +81,7 @@ def test_a_run_costs_more_the_farther_it_goes_and_the_finer_it_is():
     assert finer.seconds > 8 * cost[9.81].seconds
 
 
-def test_the_range_is_said(capsys):
+def test_the_range_is_reported(capsys):
     report = vs.check(made("a chamber by volume"))
     low, high = report.summary()["seconds_range"]
     assert 0 < low < report.summary()["seconds"]

@@ -9,13 +9,13 @@ import voxsoft as vs
 from voxsoft.errors import MaterialError
 from voxsoft.materials import StretchRange, nominal_stress
 from voxsoft.materials.coupon import (
-    BendingObservation,
+    BendingTest,
     Curve,
-    FrequencyObservation,
-    ObservedModulus,
+    FrequencyTest,
+    MeasuredModulus,
     fit_coupons,
     read_curve,
-    read_observations,
+    read_modulus_tests,
 )
 
 DATA = Path(__file__).parents[2] / "examples" / "data" / "tensile"
@@ -158,13 +158,13 @@ def test_unstable_ranges_are_warned_of():
     assert card.material.tested_stretch == StretchRange(largest=2.5)
 
 
-def test_an_observed_modulus_pulls_the_fit():
+def test_a_measured_modulus_pulls_the_fit():
     """A precise one moves the initial modulus to it, a vague one does nothing."""
     curve = made(vs.Yeoh(c=[10e3, 300.0, -2.0]), noise=100.0)[0]
     alone = _only("yeoh-3", curve).young.value
 
     def joined(uncertainty):
-        beam = ObservedModulus("beam", 1.2 * alone, uncertainty)
+        beam = MeasuredModulus("beam", 1.2 * alone, uncertainty)
         return fit_coupons([curve], [beam], toe="off", models=["yeoh-3"])
 
     precise, vague = joined(1.0), joined(1e6)
@@ -175,9 +175,9 @@ def test_an_observed_modulus_pulls_the_fit():
     assert precise.of("yeoh-3").young.half_width < alone * 0.01
 
 
-def test_a_contradiction_between_tests_is_said():
+def test_a_contradiction_between_tests_is_reported():
     curve = made(vs.NeoHookean(young=60e3), noise=50.0)[0]
-    beam = ObservedModulus("beam", 90e3, 3e3)
+    beam = MeasuredModulus("beam", 90e3, 3e3)
     fit = fit_coupons([curve], [beam], toe="off", models=["neo-hookean"])
     assert any("beam (90 kPa)" in warning for warning in fit.warnings)
 
@@ -224,20 +224,20 @@ def test_beam_formulas_against_the_slender_limit():
     """At L/h = 100 shear is 1e-4 of bending: E = 3 ρ g L⁴/(2 h² δ), f = β² h/(2π L²) √(E/12ρ)."""
     length, height, young, density = 1.0, 0.01, 60e3, 1000.0
     sag = 3 * density * 1e-4 * 9.80665 * length**4 / (2 * height**2 * young)
-    seen = BendingObservation(
+    seen = BendingTest(
         length=length,
         width=0.02,
         height=height,
         deflection=0.05,
         uncertainty="5 %",
         density=density * 1e-4 * 0.05 / sag,
-    ).observed()
+    ).modulus()
     assert seen.young == pytest.approx(young, rel=5e-4)
     assert seen.uncertainty == pytest.approx(0.05 * seen.young)
     frequency = 1.8751041**2 * height / (2 * np.pi * length**2) * np.sqrt(young / (12 * density))
-    swung = FrequencyObservation(
+    swung = FrequencyTest(
         length=length, height=height, frequency=frequency, density=density, uncertainty=0.1
-    ).observed()
+    ).modulus()
     assert swung.young == pytest.approx(young, rel=5e-4)
 
 
@@ -270,6 +270,6 @@ def test_beam_formulas_against_the_slender_limit():
         ),
     ],
 )
-def test_observations_that_cannot_be_used(table, words):
+def test_modulus_tests_that_cannot_be_used(table, words):
     with pytest.raises(vs.VoxSoftError, match=words):
-        read_observations({"observation": [table]})
+        read_modulus_tests({"observation": [table]})

@@ -84,7 +84,7 @@ def test_points_after_the_break_are_left_out():
         (["true_strain", "true_stress_kPa"], "expected engineering quantities"),
     ],
 )
-def test_wrong_columns_are_said_in_words(heads, words):
+def test_wrong_columns_are_reported_in_words(heads, words):
     with pytest.raises(MeasurementError, match=words):
         read_curve(table(heads, [STRAINS, STRESSES]))
 
@@ -105,7 +105,7 @@ def test_wrong_columns_are_said_in_words(heads, words):
         (table(["strain", "stress_kPa"], [[0, -1, -2, -3, -4], [0, 1, 2, 1, 2]]), "zero or less"),
     ],
 )
-def test_bad_tables_are_said_in_words(text, words):
+def test_bad_tables_are_reported_in_words(text, words):
     with pytest.raises(MeasurementError, match=words):
         read_curve(text)
 

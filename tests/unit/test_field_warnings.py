@@ -53,7 +53,7 @@ def squashed(by):
 @pytest.mark.parametrize(
     ("height", "severity"), [(1.0, None), (0.34, None), (0.32, "warning"), (-0.1, "error")]
 )
-def test_pressed_and_turned_voxels_are_told_apart(height, severity):
+def test_pressed_and_turned_voxels_are_distinguished(height, severity):
     design, mesh, positions = squashed(height)
     found = list(collapsed_voxels(design, fields_of(design, mesh, positions)))
     assert [each.severity for each in found] == ([] if severity is None else [severity])
@@ -74,7 +74,7 @@ def stretched(tested, share, by=1.5):
     return design, fields_of(design, mesh, positions)
 
 
-def test_a_strain_past_the_tests_is_told_with_its_place_and_share():
+def test_a_strain_past_the_tests_is_reported_with_its_place_and_share():
     design, fields = stretched("{largest = 1.4}", share=0.25)
     (warning,) = beyond_tests(design, fields)
     assert "25 % of its volume is stretched beyond 1.4 times its length" in warning.what
@@ -96,7 +96,7 @@ def test_a_hundredth_of_the_volume_may_go_farther():
     assert list(beyond_tests(design, fields)) == []
 
 
-def test_within_the_tests_or_without_any_nothing_is_said():
+def test_within_the_tests_or_without_any_nothing_is_reported():
     design, fields = stretched("{largest = 1.6}", share=1.0)
     assert list(beyond_tests(design, fields)) == []
     lattice = families.beam().with_values("parts.0.material=ecoflex-00-30-lattice")
@@ -115,8 +115,8 @@ def test_pressing_counts_where_it_was_tested():
 def test_the_command_line_says_stress_stretch_and_what_is_wrong(tmp_path):
     file = tmp_path / "pneunet.toml"
     file.write_text(pneunet("5 kPa").to_toml(), encoding="utf-8")
-    told = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")])
-    words = " ".join(told.stderr.split())
+    reported = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "run")])
+    words = " ".join(reported.stderr.split())
     assert "von Mises stress: up to 22" in words
     assert "99 % of the volume up to" in words
     assert "error: voxels: 16 of 1,392 voxels are inside out" in words

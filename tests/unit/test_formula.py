@@ -52,7 +52,7 @@ def test_wrong_formulas_say_what_is_wrong(text, words):
         assert word in str(caught.value)
 
 
-def test_the_page_is_told_the_units_and_the_dimensions_of_kinds():
+def test_the_page_gets_the_units_and_the_dimensions_of_kinds():
     assert sorted(COMMON_UNITS) == CASES["common_units"]
     assert {name: list(kind.dimension) for name, kind in KINDS.items()} == CASES["dimensions"]
 

@@ -194,7 +194,7 @@ def test_plain_arguments_take_units_too():
     )
     for interval in ("50 ms", 0.05, 50 * UREG.ms):
         result = vs.simulate(design, end_time="0.2 s", record_interval=interval)
-        assert result.history.times == pytest.approx([0, 0.05, 0.1, 0.15, 0.2], abs=0.012)
+        assert result.recording.times == pytest.approx([0, 0.05, 0.1, 0.15, 0.2], abs=0.012)
     for wrong, words in (
         (-1, "record_interval: -1 s is not positive"),
         (0, "record_interval: 0 is not positive"),
@@ -235,7 +235,7 @@ def test_plain_arguments_take_units_too():
     [vs.simulate, vs.check, vs.simulate_many, vs.Study, vs.mesh_of, vs.voxels_of, vs.compare],
     ids=lambda use: use.__name__,
 )
-def test_a_path_in_place_of_a_design_is_told_how_to_load_it(use):
+def test_a_path_in_place_of_a_design_learns_how_to_load_it(use):
     arguments = ([vs.Lattice(edge=1e4, bulk=1e4)],) if use is vs.simulate_many else ()
     for path in ("pad.toml", Path("pad.toml")):
         with pytest.raises(

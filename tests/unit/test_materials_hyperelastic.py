@@ -111,7 +111,7 @@ def test_fibers_and_branches_belong_to_hyperelastic_materials():
         ({"model": "neohooke", "young": "1 kPa"}, 'did you mean "neo-hookean"'),
     ],
 )
-def test_impossible_constants_are_said_in_words(table, words):
+def test_impossible_constants_are_reported_in_words(table, words):
     document = {"schema": "voxsoft-material/1", "name": "x", "material": table}
     with pytest.raises(vs.VoxSoftError, match=words) as caught:
         Card.from_document(document)

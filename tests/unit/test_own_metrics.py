@@ -45,7 +45,7 @@ def test_a_result_measures_it_in_si_units(pressed, own_metrics):
     assert pressed.metrics["tip_height"] == pressed.metric("tip_height")
 
 
-def test_a_metric_at_a_probe_is_told_which(pressed):
+def test_a_metric_at_a_probe_learns_which(pressed):
     rise = pressed.metric("displacement", axis="z")
     assert pressed.metric("lean", axis="z") == pytest.approx(rise, rel=1e-12)
     assert "lean" not in pressed.metrics

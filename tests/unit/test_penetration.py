@@ -35,7 +35,7 @@ def pressed():
 def test_no_shipped_example_is_in_itself_unloaded(path):
     setup = Setup.of(files.load(path), allow_loose=True)
     found = penetration_of(setup.design, setup.mesh, setup.mesh.vertices)
-    assert found.regions == ()
+    assert found.overlaps == ()
     assert len(found.pairs) == 0
 
 
@@ -45,14 +45,14 @@ def test_bodies_of_hinges_and_full_cavities_are_not_in_themselves():
     for density in (0.2, 0.5, 0.8):
         cells = (random.random((8, 8, 8)) < density).astype(np.uint8)
         mesh = Voxels.from_array(cells, voxel_size=0.01).mesh()
-        assert find_penetration(mesh, mesh.vertices).regions == ()
+        assert find_penetration(mesh, mesh.vertices).overlaps == ()
 
 
 def test_a_result_tells_depth_and_place(pressed):
     assert pressed.status == "ok"
     # The slab gives way to its weight by about rho g h^2 / E, 1e-6 m.
     assert pressed.penetration.depth == pytest.approx(0.002, abs=3e-6)
-    deepest = pressed.penetration.regions[0]
+    deepest = pressed.penetration.overlaps[0]
     assert deepest.at_now[2] == pytest.approx(0.008, abs=1e-5)
     assert deepest.parts == (2, 1)
     assert deepest.at_rest[2] == pytest.approx(0.02, abs=1e-9)
@@ -61,19 +61,19 @@ def test_a_result_tells_depth_and_place(pressed):
 
 def test_summary_metrics_and_warnings_say_the_same(pressed):
     depth = pressed.penetration.depth
-    told = json.loads(json.dumps(pressed.summary()))
+    reported = json.loads(json.dumps(pressed.summary()))
     assert (
-        told["penetration"]
-        == told["metrics"]["penetration"]
+        reported["penetration"]
+        == reported["metrics"]["penetration"]
         == depth
         == pressed.metric("penetration")
     )
-    warning = next(each for each in told["warnings"] if "overlap" in each["what"])
+    warning = next(each for each in reported["warnings"] if "overlap" in each["what"])
     assert warning["where"] in ("bar and slab", "slab and bar")
     assert warning["what"].startswith(f"overlap by {depth * 1e3:.2g} mm near (")
     assert warning["what"].endswith("contact is not simulated")
     assert warning["severity"] == "warning"
-    assert warning["at"] == list(pressed.penetration.regions[0].at_rest)
+    assert warning["at"] == list(pressed.penetration.overlaps[0].at_rest)
 
 
 def test_a_body_that_is_free_of_itself_has_no_warning_and_no_depth():
@@ -100,14 +100,14 @@ def test_a_design_can_ask_that_its_walls_stay_apart(pressed):
     assert simulate(asked).metrics["apart"] == pytest.approx(pressed.penetration.depth)
 
 
-def test_below_the_floor_is_told():
+def test_below_the_floor_is_reported():
     low = files.load(PUSHED).replace(floor={"z": "-20 mm"})
     mesh = mesh_of(low)
     assert list(overlap_warnings(low, mesh, mesh.vertices - [0.0, 0.0, 0.02])) == []
     sunk = mesh.vertices - [0.0, 0.0, 0.023]
     (found,) = overlap_warnings(low, mesh, sunk)
     assert (found.where, found.what[:32]) == ("slab", "is below the floor by 3 mm near ")
-    assert penetration_of(low, mesh, sunk).regions[0].parts == (1, -1)
+    assert penetration_of(low, mesh, sunk).overlaps[0].parts == (1, -1)
 
 
 def test_films_over_openings_count():
@@ -141,11 +141,11 @@ def test_films_over_openings_count():
     setup = Setup(cup, mesh_of(cup))
     plug = setup.mesh.vertices[:, 2] > 0.024
     moved = setup.mesh.vertices.copy()
-    assert penetration_of(cup, setup.mesh, moved).regions == ()
+    assert penetration_of(cup, setup.mesh, moved).overlaps == ()
     moved[plug] -= [0.0, 0.0, 0.007]
     found = penetration_of(cup, setup.mesh, moved)
-    assert find_penetration(setup.mesh, moved).regions == ()
-    assert 0 in found.regions[0].parts
+    assert find_penetration(setup.mesh, moved).overlaps == ()
+    assert 0 in found.overlaps[0].parts
     assert found.depth == pytest.approx(0.002)
 
 

@@ -8,7 +8,7 @@ from voxsoft.design.families import FAMILIES
 from voxsoft.units import kPa, mm
 
 
-def told(design):
+def reported(design):
     report = vs.check(design)
     return {finding.where: finding for finding in report.findings if finding.hint}
 
@@ -26,7 +26,7 @@ def block(**entries):
 
 def test_meters_for_millimeters():
     box = {"shape": vs.Box((40, 40, 20)), "material": "ecoflex-00-30"}
-    found = told(block(voxel_size=2, parts=[box]))
+    found = reported(block(voxel_size=2, parts=[box]))
     assert found.keys() >= {"voxel_size", "parts"}
     assert "2 m" in found["voxel_size"].what
     assert 'write 2*mm or "2 mm"' in found["parts"].hint
@@ -47,15 +47,15 @@ def test_meters_for_millimeters():
     ],
 )
 def test_loads_in_other_units(loads, words):
-    assert words in told(block(loads=[loads]))["loads[0].value"].what
-    assert told(block(loads=[{"kind": "pressure", "value": 2 * kPa}])).keys() <= {"loads[0]"}
+    assert words in reported(block(loads=[loads]))["loads[0].value"].what
+    assert reported(block(loads=[{"kind": "pressure", "value": 2 * kPa}])).keys() <= {"loads[0]"}
 
 
 def test_a_file_states_its_units(tmp_path):
     block(loads=[vs.Traction(region=vs.Region(z=("20 mm", "20 mm")), value=4)]).save(
         tmp_path / "a.toml"
     )
-    assert "loads[0].value" not in told(vs.load(tmp_path / "a.toml"))
+    assert "loads[0].value" not in reported(vs.load(tmp_path / "a.toml"))
 
 
 @pytest.mark.parametrize(
@@ -69,7 +69,7 @@ def test_a_file_states_its_units(tmp_path):
 )
 def test_materials_in_other_units(material, words):
     part = {"shape": vs.Box((40 * mm, 40 * mm, 20 * mm)), "material": material}
-    assert words in told(block(parts=[part]))["parts[0].material"].what
+    assert words in reported(block(parts=[part]))["parts[0].material"].what
 
 
 @pytest.mark.parametrize("name", FAMILIES)

@@ -133,12 +133,12 @@ def test_parts_have_colors_of_their_own():
         ({"section": ("x", -1.0)}, "leaves nothing"),
     ],
 )
-def test_what_cannot_be_drawn_is_said(result, options, words):
+def test_what_cannot_be_drawn_is_reported(result, options, words):
     with pytest.raises(MeshError, match=words):
         plot_body(result.mesh, **options)
 
 
-def test_the_space_has_units_and_lost_trials_are_told_apart():
+def test_the_space_has_units_and_lost_trials_are_distinguished():
     figure = plot_scatter(study())
     assert labels(figure) == ["radius (mm)", "height (mm)", "wall (mm)"]
     assert figure.axes[1].get_ylabel() == "rise (mm)"

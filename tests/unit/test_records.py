@@ -73,7 +73,7 @@ def test_a_faulty_operand_is_reported_once_and_inside():
     assert not any("expected text" in p.what for p in found)
 
 
-def test_the_branches_of_a_union_are_told_in_one_sentence():
+def test_the_branches_of_a_union_are_reported_in_one_sentence():
     with pytest.raises(DesignError) as caught:
         Arrow(along="w")
     assert caught.value.problems == (
@@ -84,7 +84,7 @@ def test_the_branches_of_a_union_are_told_in_one_sentence():
     assert [p.where for p in caught.value.problems] == ["along[1]"]
 
 
-def test_a_wrong_kind_of_operand_is_all_that_is_said():
+def test_a_wrong_kind_of_operand_is_all_that_is_reported():
     (found,) = problems(shapes={"a": {"kind": "joint", "of": [{"kind": "bal"}]}})
     assert found.where == "shapes.a.of[0].kind"
 

@@ -72,7 +72,7 @@ def points_on(surface, level, nodes=96):
 
 @SURFACES
 @pytest.mark.parametrize("level", [0.0, 0.4])
-def test_distances_and_volumes_of_sheets_are_true_at_any_thickness(surface, level):
+def test_distances_and_volumes_of_walls_are_true_at_any_thickness(surface, level):
     known = cKDTree(points_on(surface, level), boxsize=1.0)
     places = np.random.default_rng(1).uniform(0, 1, (8_000, 3))
     nearest, _ = known.query(places)

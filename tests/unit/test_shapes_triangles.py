@@ -117,12 +117,12 @@ def test_an_open_surface_is_named_with_its_hole_and_what_to_do(tmp_path):
         for half in (0, 1)
     ]
     plate = saved(tmp_path, sheet, np.array(faces), "plate.off")
-    with pytest.raises(ShapeError) as told:
+    with pytest.raises(ShapeError) as reported:
         voxelize(Box(size=(0.03, 0.03, 0.03)) & plate, 0.001)
-    said = str(told.value)
-    assert "plate.off: is open: a hole of 12 edges, 30 mm wide, near (15, 15, 0) mm" in said
-    assert 'kind = "shell"' in said
-    assert "smaller voxel_size" not in said
+    printed = str(reported.value)
+    assert "plate.off: is open: a hole of 12 edges, 30 mm wide, near (15, 15, 0) mm" in printed
+    assert 'kind = "shell"' in printed
+    assert "smaller voxel_size" not in printed
     # And the advice works.
     assert voxelize(plate.shell(0.004), 0.001).count > 30 * 30 * 3
 
@@ -176,13 +176,13 @@ def test_a_soup_encloses_nothing(tmp_path):
 def test_a_file_that_cannot_be_read_is_an_error(tmp_path, content, suffix, capsys):
     path = tmp_path / f"part{suffix}"
     path.write_bytes(content)
-    with pytest.raises(ShapeError, match=r"mesh\.path") as told:
+    with pytest.raises(ShapeError, match=r"mesh\.path") as reported:
         TriangleMesh(path=str(path), unit="mm").build()
     assert capsys.readouterr() == ("", "")
-    said = str(told.value)
-    assert f"cannot be read as {suffix[1:].upper()}" in said or "holds" in said
+    printed = str(reported.value)
+    assert f"cannot be read as {suffix[1:].upper()}" in printed or "holds" in printed
     for noise in ("module", "Traceback", "(1)", "not enough values", "Errno", "codec"):
-        assert noise not in said
+        assert noise not in printed
 
 
 def test_a_damaged_stl_and_vtu_say_what_is_wrong(tmp_path):

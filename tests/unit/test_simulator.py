@@ -166,7 +166,7 @@ def test_a_wrong_command_moves_nothing(loads, words):
     assert simulator.step().loads == {"pressure": 0.0}
 
 
-def test_too_much_is_told_and_only_a_reset_leads_on():
+def test_too_much_is_reported_and_only_a_reset_leads_on():
     simulator = vs.Simulator(RUBBER)
     statuses = []
     while "diverged" not in statuses:

@@ -68,10 +68,10 @@ def box(material):
 
 def used(result, name, value):
     """Whether a result says that it used a setting."""
-    times = result.history.times
+    times = result.recording.times
     match name:
         case "frames":
-            return len(result.history.frames) == len(times) >= 1
+            return len(result.recording.frames) == len(times) >= 1
         case "record_interval":
             # After the first whole step from there on, so at most one later.
             gaps = np.diff(times)[:-1]
@@ -186,7 +186,7 @@ def test_a_record_between_two_steps_is_refused():
     with pytest.raises(SimulationError, match="record_interval: is shorter than the time_step"):
         vs.simulate(box("rubber"), record_interval=0.004, **settings)
     longer = vs.simulate(box("rubber"), end_time=0.1, time_step=0.05)
-    assert longer.history.times.tolist() == pytest.approx([0.0, 0.05, 0.1])
+    assert longer.recording.times.tolist() == pytest.approx([0.0, 0.05, 0.1])
 
 
 def test_a_setup_is_not_refined_afterwards():

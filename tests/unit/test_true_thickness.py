@@ -34,7 +34,7 @@ TRUE = {
 }
 
 
-def told(shape):
+def reported(shape):
     design = families.beam().replace(shapes={"solid": shape}, parts=[PART])
     return list(doubtful_thickness(design, MESH))
 
@@ -44,15 +44,15 @@ MESH = vs.mesh_of(families.beam())
 
 
 @pytest.mark.parametrize("name", TRUE)
-def test_true_distances_are_not_told_of(name):
-    assert told(TRUE[name].shell(1 * mm)) == []
-    assert told(TRUE[name].offset(1 * mm)) == []
+def test_true_distances_are_not_reported(name):
+    assert reported(TRUE[name].shell(1 * mm)) == []
+    assert reported(TRUE[name].offset(1 * mm)) == []
 
 
 def test_an_unequal_scale_thickens_a_shell_by_its_ratio():
     # s is the distance over the largest ratio of scales: along z, three times the distance counts
     # as one. At the poles the wall is three times as thick, at the equator as written.
-    (found,) = told(BALL.scale((1, 1, 3)).shell(1 * mm))
+    (found,) = reported(BALL.scale((1, 1, 3)).shell(1 * mm))
     assert found.where == "shapes.solid"
     low, high = _times(found.what)
     assert low == pytest.approx(1, abs=0.05)
@@ -64,18 +64,18 @@ def test_an_unequal_scale_thickens_a_shell_by_its_ratio():
 def test_an_expression_is_off_by_its_slope():
     # |grad (x^2 + y^2 + z^2 - r^2)| = 2 r.
     sheet = Expression(text=f"x**2 + y**2 + z**2 - {(10 * mm) ** 2}").offset(1e-6)
-    (found,) = told(sheet)
+    (found,) = reported(sheet)
     assert _times(found.what) == pytest.approx((1 / (2 * 10 * mm),) * 2, rel=0.02)
 
 
-def test_a_bar_that_is_twisted_and_one_that_is_tapered_are_told_of():
+def test_a_bar_that_is_twisted_and_one_that_is_tapered_are_reported():
     bar = Box(size=(20 * mm, 20 * mm, 60 * mm), center=(0, 0, 30 * mm))
-    assert told(Twist(of=bar, angle=3 * np.pi, height=60 * mm).shell(1 * mm))
+    assert reported(Twist(of=bar, angle=3 * np.pi, height=60 * mm).shell(1 * mm))
     # Its sides are within 2 %; its end, some hundredth of it, is 1/0.3 times as thick.
-    assert told(Taper(of=bar, factor=0.3, height=60 * mm).offset(1 * mm))
+    assert reported(Taper(of=bar, factor=0.3, height=60 * mm).offset(1 * mm))
 
 
-def test_it_is_told_by_check_and_by_the_result():
+def test_it_is_reported_by_check_and_by_the_result():
     egg = BALL.scale((1, 1, 3)).shell(8 * mm)
     design = families.sphere().replace(
         shapes={"solid": egg},
@@ -85,9 +85,9 @@ def test_it_is_told_by_check_and_by_the_result():
         probes={},
         objectives={},
     )
-    told_of = "times as thick as written (8 mm)"
-    assert any(told_of in str(found) for found in vs.check(design).findings)
-    assert any(told_of in str(found) for found in vs.simulate(design).warnings)
+    reported = "times as thick as written (8 mm)"
+    assert any(reported in str(found) for found in vs.check(design).findings)
+    assert any(reported in str(found) for found in vs.simulate(design).warnings)
 
 
 def _times(what):

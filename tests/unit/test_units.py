@@ -90,7 +90,7 @@ def test_wrong_text_is_refused_in_plain_words(text, kind, words):
         assert word in str(caught.value)
 
 
-def test_an_error_names_the_place_it_is_told():
+def test_an_error_names_the_place_it_is_reported():
     with pytest.raises(UnitError, match=r"^parts\[0\]\.wall: "):
         parse("5", "length", where="parts[0].wall")
 

@@ -30,13 +30,13 @@ def test_a_long_step_to_an_unstable_branch_is_cut(lean):
     assert result.status == "ok", result.message
     assert result.stable is True
     assert result.back_offs > 0
-    sideways = result.history.probes["top"][:, 0]
+    sideways = result.recording.probes["top"][:, 0]
     # A path from rest leans one way only, and ever farther.
     assert np.all(np.diff(sideways) > 0.0)
     assert sideways[-1] > HEIGHT / 2
 
 
-def test_a_bifurcation_is_passed_and_said_to_be_one():
+def test_a_bifurcation_is_passed_and_reported_to_be_one():
     result = simulate(column(0.0), method="statics")
     assert result.status == "ok", result.message
     assert result.stable is False
@@ -66,8 +66,8 @@ def test_a_path_that_is_cut_short_keeps_what_was_found():
     assert f"followed for {100 * growth / 5.0:.4g} % of the growth in volume" in result.message
     assert "kept are the path so far" in result.message
     # The path goes to the state that is kept, which is an equilibrium.
-    assert len(result.history.times) > 2
-    assert result.history.times[-1] == result.load_factor
+    assert len(result.recording.times) > 2
+    assert result.recording.times[-1] == result.load_factor
     assert result.residual < 1e-8
 
 

@@ -173,7 +173,7 @@ def test_a_history_ramps_a_load_over_real_time():
     result = simulate(slow, end_time=3.0, damping=20.0, record_interval=0.1)
     assert result.status == "ok"
     assert result.time == pytest.approx(3.0)
-    track = result.history.probes["station-9"][:, 2]
+    track = result.recording.probes["station-9"][:, 2]
     assert len(track) == 31
     assert abs(track[1]) < 0.2 * abs(track[-1])
     rest = simulate(design).probes["station-9"][2]

@@ -257,7 +257,7 @@ def test_voxels_on_one_edge_are_refused_as_a_hinge():
     ],
     ids=["slides", "turns about an edge"],
 )
-def test_a_body_that_its_clamps_let_go_is_said_to_move_freely(clamps):
+def test_a_body_that_its_clamps_let_go_reported_to_move_freely(clamps):
     design = box_design(
         (4 * SIDE, SIDE, SIDE),
         SIDE,

@@ -17,7 +17,7 @@ pub(crate) struct Crossings {
 }
 
 impl Crossings {
-    /// Looks at a closed `surface` of tetrahedra, and sheets whose triangles follow it in `all`.
+    /// Looks at a closed `surface` of tetrahedra, and membranes whose triangles follow it in `all`.
     pub(crate) fn of(
         points: &[Point],
         all: &[[i32; 3]],
@@ -71,7 +71,7 @@ fn decided(
     let mut counts = |[i, j]: [u32; 2], found: Meeting| match found {
         Meeting::Apart => false,
         Meeting::Cross => true,
-        // A sheet has no inside.
+        // A membrane has no inside.
         Meeting::Touch if i.max(j) as usize >= surface => false,
         Meeting::Touch => {
             let others = star(j);

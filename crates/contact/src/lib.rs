@@ -8,7 +8,7 @@
 //! # Depth
 //!
 //! A vertex of the surface in foreign material is as deep as it is far from the surface of *that* material: the
-//! distance to the nearest face that it sees through it. The depth of a region is the largest one of its vertices, and
+//! distance to the nearest face that it sees through it. The depth of an overlap is the largest one of its vertices, and
 //! of the middles of the stretches of edges that lie in foreign material.
 //!
 //! ```
@@ -25,11 +25,11 @@
 //!     positions: &positions,
 //!     tets: &[[0, 1, 2, 3], [4, 5, 6, 7]],
 //!     triangles: &triangles,
-//!     sheets: &[],
+//!     membranes: &[],
 //! };
 //! let found = penetration(&body);
-//! assert_eq!(found.regions.len(), 1);
-//! assert!((found.regions[0].depth - 0.1).abs() < 1e-12);
+//! assert_eq!(found.overlaps.len(), 1);
+//! assert!((found.overlaps[0].depth - 0.1).abs() < 1e-12);
 //! ```
 #![forbid(unsafe_code)]
 
@@ -39,8 +39,8 @@ mod expansion;
 mod groups;
 mod incidence;
 mod material;
+mod overlaps;
 mod predicates;
-mod regions;
 mod shells;
 mod tetrahedra;
 mod tree;
@@ -63,31 +63,31 @@ pub struct Body<'a> {
     pub tets: &'a [[i32; 4]],
     /// Their boundary, outward.
     pub triangles: &'a [[i32; 3]],
-    /// Triangles of sheets without volume, which nothing may pass through either.
-    pub sheets: &'a [[i32; 3]],
+    /// Triangles of membranes without volume, which nothing may pass through either.
+    pub membranes: &'a [[i32; 3]],
 }
 
 /// Where a body overlaps itself.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Penetration {
-    /// Triangles that pass through each other, ascending; those of the sheets are numbered on from the surface's.
+    /// Triangles that pass through each other, ascending; those of the membranes are numbered on from the surface's.
     pub pairs: Vec<[u32; 2]>,
     /// The places where they do, the deepest first.
-    pub regions: Vec<Region>,
+    pub overlaps: Vec<Overlap>,
     /// Vertices of the surface in foreign material.
     pub covered: Vec<Covered>,
 }
 
 /// One place where a component overlaps itself or another.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region {
-    /// How deep [m]; for sheets, how far an edge reaches through at least.
+pub struct Overlap {
+    /// How deep [m]; for membranes, how far an edge reaches through at least.
     pub depth: f64,
     /// The deepest point now [m].
     pub now: Point,
     /// The two points of the unloaded body that are there [m]: of the surface, and of what it is in.
     pub rest: [Point; 2],
-    /// The tetrahedra of both; -1 where a sheet has none.
+    /// The tetrahedra of both; -1 where a membrane has none.
     pub tets: [i32; 2],
     /// Whether there is no overlap but a surface turned inside out, at tetrahedra that are.
     pub inverted: bool,
@@ -100,8 +100,8 @@ pub struct Covered {
     pub vertex: i32,
     /// The tetrahedron that it is in.
     pub tet: i32,
-    /// The region, as they are listed.
-    pub region: u32,
+    /// The overlap, as they are listed.
+    pub overlap: u32,
 }
 
 /// Finds where a body overlaps itself. The answer has the same bits for any number of threads.
@@ -110,20 +110,20 @@ pub struct Covered {
 ///
 /// If an index has no vertex.
 pub fn penetration(body: &Body<'_>) -> Penetration {
-    let all: Cow<'_, [[i32; 3]]> = if body.sheets.is_empty() {
+    let all: Cow<'_, [[i32; 3]]> = if body.membranes.is_empty() {
         body.triangles.into()
     } else {
-        [body.triangles, body.sheets].concat().into()
+        [body.triangles, body.membranes].concat().into()
     };
     let surface = body.triangles.len();
     let crossings = crossings::Crossings::of(body.positions, &all, surface, body.tets);
     if crossings.pairs.is_empty() && crossings.swallowed.is_empty() {
         return Penetration::default();
     }
-    let (regions, covered) = regions::regions(body, &all, &crossings);
+    let (overlaps, covered) = overlaps::overlaps(body, &all, &crossings);
     Penetration {
         pairs: crossings.pairs,
-        regions,
+        overlaps,
         covered,
     }
 }

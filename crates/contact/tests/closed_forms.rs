@@ -37,7 +37,7 @@ impl Bodies {
             positions: &self.points,
             tets: &self.tets,
             triangles: &self.triangles,
-            sheets: &[],
+            membranes: &[],
         })
     }
 }
@@ -80,9 +80,9 @@ proptest! {
             .with(&block([6, 6, 3]), &turn)
             .with(&block([2, 2, 3]), |p| turn(push(p)))
             .find();
-        prop_assert_eq!(found.regions.len(), 1);
+        prop_assert_eq!(found.overlaps.len(), 1);
         // Positions have about 10 m, so rounding of 2e-15.
-        prop_assert!((found.regions[0].depth - depth).abs() < 1e-13, "{:?}", found.regions);
+        prop_assert!((found.overlaps[0].depth - depth).abs() < 1e-13, "{:?}", found.overlaps);
     }
 
     #[test]
@@ -93,7 +93,7 @@ proptest! {
             .with(&block([3, 2, 2]), moved(by.map(f64::from)))
             .find();
         let common = by[0] > -3 && by[0] < 2 && by[1].abs() < 2 && by[2].abs() < 2;
-        prop_assert_eq!(!found.regions.is_empty(), common);
+        prop_assert_eq!(!found.overlaps.is_empty(), common);
     }
 }
 
@@ -105,12 +105,12 @@ fn touching_is_no_overlap_and_the_last_bit_is() {
             .with(&block([2, 2, 2]), moved([0.7, 0.9, z]))
             .find()
     };
-    assert!(at(2.0).regions.is_empty());
-    assert!(at(2.0_f64.next_up()).regions.is_empty());
+    assert!(at(2.0).overlaps.is_empty());
+    assert!(at(2.0_f64.next_up()).overlaps.is_empty());
     let least = at(2.0_f64.next_down());
-    assert_eq!(least.regions.len(), 1);
+    assert_eq!(least.overlaps.len(), 1);
     let bit = 2.0 - 2.0_f64.next_down();
-    assert!(least.regions[0].depth <= 2.0 * bit && least.regions[0].depth > 0.0);
+    assert!(least.overlaps[0].depth <= 2.0 * bit && least.overlaps[0].depth > 0.0);
 }
 
 #[test]
@@ -120,8 +120,8 @@ fn a_block_wholly_in_another_is_found_without_a_crossing() {
         .with(&block([1, 1, 1]), moved([1.25, 2.25, 2.25]))
         .find();
     assert!(found.pairs.is_empty());
-    assert_eq!(found.regions.len(), 1);
-    assert_eq!(found.regions[0].depth, 2.25);
+    assert_eq!(found.overlaps.len(), 1);
+    assert_eq!(found.overlaps[0].depth, 2.25);
 }
 
 #[test]
@@ -132,8 +132,8 @@ fn what_lies_in_one_block_and_crosses_another_is_in_two_places() {
         .with(&block([1, 1, 2]), moved([2.25, 2.5, 3.0]))
         .find();
     // The second and third in the first, and the third in the second.
-    assert_eq!(found.regions.len(), 3);
-    let depths: Vec<f64> = found.regions.iter().map(|region| region.depth).collect();
+    assert_eq!(found.overlaps.len(), 3);
+    let depths: Vec<f64> = found.overlaps.iter().map(|overlap| overlap.depth).collect();
     assert_eq!(depths[0], 2.0);
     assert!((depths[2] - 0.25).abs() < 1e-15, "{depths:?}");
 }
@@ -152,10 +152,10 @@ fn a_block_in_a_cavity_is_free() {
             .with(&block([1, 1, 1]), moved(by))
             .find()
     };
-    assert!(within([2.0; 3]).regions.is_empty());
-    assert!(within([1.0; 3]).regions.is_empty());
+    assert!(within([2.0; 3]).overlaps.is_empty());
+    assert!(within([1.0; 3]).overlaps.is_empty());
     let off = within([2.0, 2.0, 0.75]);
-    assert!((off.regions[0].depth - 0.25).abs() < 1e-15);
+    assert!((off.overlaps[0].depth - 0.25).abs() < 1e-15);
 }
 
 #[test]
@@ -179,12 +179,12 @@ fn crossed_bars_overlap_though_no_vertex_is_inside() {
         .with(&block([1, 1, 1]), across)
         .find();
     assert!(found.covered.is_empty());
-    assert_eq!(found.regions.len(), 1);
+    assert_eq!(found.overlaps.len(), 1);
     // The edge of one runs within the other, 0.2 below its edge: the faces there slope by 45 degrees.
     assert!(
-        (found.regions[0].depth - depth * half).abs() < 1e-12,
+        (found.overlaps[0].depth - depth * half).abs() < 1e-12,
         "{:?}",
-        found.regions
+        found.overlaps
     );
 }
 
@@ -200,14 +200,14 @@ fn rolled(turns: f64) -> Bodies {
 
 #[test]
 fn a_strip_that_is_rolled_up_overlaps_itself_past_one_turn() {
-    assert!(rolled(0.99).find().regions.is_empty());
+    assert!(rolled(0.99).find().overlaps.is_empty());
     let found = rolled(1.1).find();
-    assert_eq!(found.regions.len(), 1);
+    assert_eq!(found.overlaps.len(), 1);
     // The ends lie in the same ring of chords: no point of it is deeper than half its thickness.
-    assert!(found.regions[0].depth > 0.4 && found.regions[0].depth < 0.51);
-    let [here, there] = found.regions[0].rest;
+    assert!(found.overlaps[0].depth > 0.4 && found.overlaps[0].depth < 0.51);
+    let [here, there] = found.overlaps[0].rest;
     assert!((here[0] - there[0]).abs() > 35.0, "{here:?} {there:?}");
-    assert_ne!(found.regions[0].tets[0], found.regions[0].tets[1]);
+    assert_ne!(found.overlaps[0].tets[0], found.overlaps[0].tets[1]);
 }
 
 #[test]
@@ -240,16 +240,16 @@ fn a_tube_drawn_through_its_own_wall_overlaps_there_alone() {
         [a - across * angle.sin(), y, b + across * angle.cos()]
     });
     let found = body.find();
-    assert_eq!(found.regions.len(), 1);
-    let region = found.regions[0];
+    assert_eq!(found.overlaps.len(), 1);
+    let overlap = found.overlaps[0];
     assert!(
-        (region.now[0] - 14.0).abs() < 1.5 && region.now[2].abs() < 1.5,
-        "{region:?}"
+        (overlap.now[0] - 14.0).abs() < 1.5 && overlap.now[2].abs() < 1.5,
+        "{overlap:?}"
     );
-    // Two sheets of 2 m that cross at a right angle: nowhere deeper than half a sheet.
+    // Two membranes of 2 m that cross at a right angle: nowhere deeper than half a membrane.
     assert!(
-        region.depth > 0.7 && region.depth < 1.0 + 1e-9,
-        "{region:?}"
+        overlap.depth > 0.7 && overlap.depth < 1.0 + 1e-9,
+        "{overlap:?}"
     );
 }
 
@@ -259,7 +259,7 @@ fn a_vertex_pushed_through_its_own_cell_is_a_dent_and_no_overlap() {
     let mut body = Bodies::default().with(&mesh, still);
     let corner = mesh.vertices.iter().position(|p| *p == [3.0; 3]).unwrap();
     body.points[corner] = [2.4; 3];
-    assert!(body.find().regions.is_empty());
+    assert!(body.find().overlaps.is_empty());
 }
 
 #[test]

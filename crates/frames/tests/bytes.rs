@@ -111,7 +111,7 @@ fn shrunk_tets_have_their_own_points() {
 }
 
 #[test]
-fn bad_indices_and_tags_are_told() {
+fn bad_indices_and_tags_are_reported() {
     let (body, triangles, tags, _) = hollow();
     assert!(Display::surface(&body, &[[0, 1, 64]], &[0], SIDE).is_err());
     assert!(Display::surface(&body, &triangles, &tags[1..], SIDE).is_err());

@@ -56,9 +56,9 @@ impl Player {
         }
         let (now, moving) = (clock.now(), self.mode == Mode::Playing);
         let [rows, stat] = std::array::from_fn(|which| {
-            let due = !moving || now - self.told[which] >= TELL_EVERY[which];
+            let due = !moving || now - self.reported[which] >= TELL_EVERY[which];
             if due {
-                self.told[which] = now;
+                self.reported[which] = now;
             }
             due
         });

@@ -101,8 +101,8 @@ mod tests {
         let because = "Shown 50 times slower than real time, as it comes to rest within 49.7 ms.";
         assert_eq!((pace.factor(), pace.words().as_str()), (0.02, because));
         pace.chosen = Some(0.5);
-        let said = "Shown 2 times slower than real time.";
-        assert_eq!((pace.factor(), pace.words().as_str()), (0.5, said));
+        let sentence = "Shown 2 times slower than real time.";
+        assert_eq!((pace.factor(), pace.words().as_str()), (0.5, sentence));
     }
 
     #[test]

@@ -69,7 +69,7 @@ pub struct Player {
     pub(crate) shown: Option<Arc<Recorded>>,
     pub(crate) plots: Plots,
     /// When the last rows and the last numbers were told.
-    pub(crate) told: [f64; 2],
+    pub(crate) reported: [f64; 2],
 }
 
 impl Player {
@@ -97,7 +97,7 @@ impl Player {
             recording: Recording::default(),
             shown: None,
             plots: Plots::of(cast.probes),
-            told: [f64::NEG_INFINITY; 2],
+            reported: [f64::NEG_INFINITY; 2],
         }
     }
 

@@ -72,12 +72,13 @@ mod tests {
 
     #[test]
     fn rest_and_breakdown_say_when_where_and_what_to_try() {
-        let said = "At rest after 0.8 s: forces balance within 0.01 % of the load.";
-        assert_eq!(at_rest(0.8, 1e-4), said);
-        let said = diverged(0.31, Some([0.01, 0.0, 0.02]));
-        assert!(said.starts_with("Diverged at 0.31 s near (10.0, 0.0, 20.0) mm: the material"));
+        let sentence = "At rest after 0.8 s: forces balance within 0.01 % of the load.";
+        assert_eq!(at_rest(0.8, 1e-4), sentence);
+        let sentence = diverged(0.31, Some([0.01, 0.0, 0.02]));
+        assert!(sentence.starts_with("Diverged at 0.31 s near (10.0, 0.0, 20.0) mm: the material"));
         assert!(
-            said.ends_with("Try a smaller load, a stiffer material or thicker walls, then reset.")
+            sentence
+                .ends_with("Try a smaller load, a stiffer material or thicker walls, then reset.")
         );
         assert!(diverged(2.0, None).starts_with("Diverged at 2 s: the"));
     }

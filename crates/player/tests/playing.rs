@@ -64,36 +64,36 @@ fn beam(damping: Damping) -> Player {
 
 /// Lets time run until it stands still; gives all that was told.
 fn settle(player: &mut Player, clock: &Ticking) -> Vec<Event> {
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for _ in 0..5000 {
         if !player.moving() {
-            return told;
+            return reported;
         }
-        told.extend(player.advance(FRAME_TIME, f64::INFINITY, clock));
+        reported.extend(player.advance(FRAME_TIME, f64::INFINITY, clock));
     }
     panic!("it never rests: {:?}", player.stat());
 }
 
-fn last<'a>(told: &'a [Event]) -> &'a Stat {
+fn last<'a>(reported: &'a [Event]) -> &'a Stat {
     let stat = |event: &'a Event| match event {
         Event::Stat(stat) => Some(stat),
         _ => None,
     };
-    told.iter().rev().find_map(stat).unwrap()
+    reported.iter().rev().find_map(stat).unwrap()
 }
 
 #[test]
-fn it_sags_to_rest_slowly_enough_to_be_seen_and_all_rows_are_told() {
+fn it_sags_to_rest_slowly_enough_to_be_seen_and_all_rows_are_reported() {
     let (mut player, clock) = (beam(Damping::Critical), Ticking::default());
-    let told = player.command(Command::Play).unwrap();
-    let stat = last(&told);
+    let reported = player.command(Command::Play).unwrap();
+    let stat = last(&reported);
     assert_eq!((stat.state, stat.substeps), (Mode::Playing, 0));
     assert!(stat.pace < 1.0 && stat.sentence.contains("as it comes to rest within"));
-    let told = settle(&mut player, &clock);
-    let stat = last(&told);
+    let reported = settle(&mut player, &clock);
+    let stat = last(&reported);
     assert_eq!(stat.state, Mode::AtRest);
     assert!(stat.sentence.starts_with("At rest after "));
-    let rows = told.iter().filter_map(|event| match event {
+    let rows = reported.iter().filter_map(|event| match event {
         Event::Plot(plot) => Some(plot.rows.len()),
         _ => None,
     });
@@ -114,15 +114,18 @@ fn what_is_at_rest_wakes_for_a_load_if_time_ran_and_only_then() {
     assert_eq!(player.mode(), Mode::Paused);
     player.command(Command::Play).unwrap();
     settle(&mut player, &clock);
-    let told = player.command(change(2.0)).unwrap();
-    assert_eq!(last(&told).state, Mode::Playing);
-    assert_eq!((last(&told).pace, &*last(&told).loads), (1.0, &[19.62][..]));
+    let reported = player.command(change(2.0)).unwrap();
+    assert_eq!(last(&reported).state, Mode::Playing);
+    assert_eq!(
+        (last(&reported).pace, &*last(&reported).loads),
+        (1.0, &[19.62][..])
+    );
     settle(&mut player, &clock);
     player.command(Command::Pause).unwrap();
     player.command(change(1.0)).unwrap();
     assert_eq!(player.mode(), Mode::Paused);
-    let told = player.command(Command::Reset).unwrap();
-    let stat = last(&told);
+    let reported = player.command(Command::Reset).unwrap();
+    let stat = last(&reported);
     assert_eq!((stat.time, stat.frame, stat.frames_stored), (0.0, 0, 0));
     assert_eq!(stat.loads, [9.81]);
 }
@@ -158,15 +161,15 @@ fn a_recorded_frame_is_looked_at_and_the_present_is_as_it_was() {
     player.command(Command::Play).unwrap();
     settle(&mut player, &clock);
     let present = player.state().into_owned();
-    let told = player.command(seek(2, None)).unwrap();
-    let stat = last(&told);
+    let reported = player.command(seek(2, None)).unwrap();
+    let stat = last(&reported);
     assert_eq!((stat.state, stat.frame), (Mode::Past, 2));
     let time = stat.time;
     assert!(player.state().positions != present.positions);
     let of = |bytes: Vec<u8>| u32::from_le_bytes(bytes[12..16].try_into().unwrap());
     assert_eq!(of(player.pack_frame(Field::Z, 0, None)), 2);
-    let told = player.command(seek(0, Some(time + 1e-9))).unwrap();
-    assert_eq!(last(&told).frame, 2);
+    let reported = player.command(seek(0, Some(time + 1e-9))).unwrap();
+    assert_eq!(last(&reported).frame, 2);
     player.command(Command::Live).unwrap();
     assert_eq!(player.state().into_owned(), present);
 }
@@ -207,10 +210,10 @@ fn commands_and_events_have_the_names_of_the_protocol() {
     assert_eq!(n, Command::Step { n: 1 });
     assert!(read(r#"{"t": "dance"}"#).is_err());
     let player = beam(Damping::Critical);
-    let told = serde_json::to_value(Event::Stat(player.stat())).unwrap();
+    let reported = serde_json::to_value(Event::Stat(player.stat())).unwrap();
     assert_eq!(
-        (&told["t"], &told["state"]),
+        (&reported["t"], &reported["state"]),
         (&"stat".into(), &"paused".into())
     );
-    assert!(told["residual"].is_null());
+    assert!(reported["residual"].is_null());
 }

@@ -2,17 +2,17 @@
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use voxsoft_contact::{Body, Covered, Region, penetration as find};
+use voxsoft_contact::{Body, Covered, Overlap, penetration as find};
 
 use crate::gate;
 
-/// Depth, point now, both points of the unloaded body, both tets, whether inverted: of each region.
-type PyRegion = (f64, [f64; 3], [[f64; 3]; 2], [i32; 2], bool);
+/// Depth, point now, both points of the unloaded body, both tets, whether inverted: of each overlap.
+type PyOverlap = (f64, [f64; 3], [[f64; 3]; 2], [i32; 2], bool);
 
-/// Pairs of triangles, regions, and of covered vertices each with the tet that it is in and its region.
+/// Pairs of triangles, overlaps, and of covered vertices each with the tet that it is in and its overlap.
 type PyPenetration<'py> = (
     Bound<'py, PyArray2<u32>>,
-    Vec<PyRegion>,
+    Vec<PyOverlap>,
     Bound<'py, PyArray2<i32>>,
 );
 
@@ -23,20 +23,20 @@ pub fn penetration<'py>(
     positions: PyReadonlyArray2<'py, f64>,
     tets: PyReadonlyArray2<'py, i32>,
     triangles: PyReadonlyArray2<'py, i32>,
-    sheets: PyReadonlyArray2<'py, i32>,
+    membranes: PyReadonlyArray2<'py, i32>,
 ) -> PyResult<PyPenetration<'py>> {
     let body = Body {
         rest: rows(&rest)?,
         positions: rows(&positions)?,
         tets: rows(&tets)?,
         triangles: rows(&triangles)?,
-        sheets: rows(&sheets)?,
+        membranes: rows(&membranes)?,
     };
     let found = gate::run(py, |_| find(&body))?;
-    let rows = |c: &Covered| [c.vertex, c.tet, c.region as i32];
+    let rows = |c: &Covered| [c.vertex, c.tet, c.overlap as i32];
     let covered: Vec<[i32; 3]> = found.covered.iter().map(rows).collect();
     let count = covered.len();
-    let plain = |r: &Region| (r.depth, r.now, r.rest, r.tets, r.inverted);
+    let plain = |o: &Overlap| (o.depth, o.now, o.rest, o.tets, o.inverted);
     let pairs = found.pairs.len();
     Ok((
         found
@@ -44,7 +44,7 @@ pub fn penetration<'py>(
             .into_flattened()
             .into_pyarray(py)
             .reshape([pairs, 2])?,
-        found.regions.iter().map(plain).collect(),
+        found.overlaps.iter().map(plain).collect(),
         covered
             .into_flattened()
             .into_pyarray(py)

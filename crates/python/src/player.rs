@@ -199,7 +199,7 @@ fn refused(refusal: Refusal) -> PyErr {
 }
 
 /// `value` as JSON.
-fn told<'py>(py: Python<'py>, value: &impl Serialize) -> Bound<'py, PyBytes> {
+fn json<'py>(py: Python<'py>, value: &impl Serialize) -> Bound<'py, PyBytes> {
     let json = to_vec(value).expect("events have names and numbers alone");
     PyBytes::new(py, &json)
 }
@@ -213,7 +213,7 @@ impl PyPlayer {
         let mut guard = self.lock(py)?;
         let player = &mut *guard;
         let events = gate::run(py, |_| player.command(command))?;
-        Ok(told(py, &events.map_err(refused)?))
+        Ok(json(py, &events.map_err(refused)?))
     }
 
     /// Lets time go on by some seconds, within a budget of the clock; gives the events.
@@ -228,7 +228,7 @@ impl PyPlayer {
         let events = gate::run(py, |cancel| {
             player.advance(seconds, budget, &Wall { began, cancel })
         })?;
-        Ok(told(py, &events))
+        Ok(json(py, &events))
     }
 
     /// Takes positions (m) where a solver ended; gives the events.
@@ -253,7 +253,7 @@ impl PyPlayer {
             elastic,
         };
         let events = self.with(py, |player| player.go_to_rest(rest))?;
-        Ok(told(py, &events.map_err(to_python)?))
+        Ok(json(py, &events.map_err(to_python)?))
     }
 
     /// Stops time for now, and says why: a load or a pull lets it run again if it was asked to.
@@ -300,19 +300,19 @@ impl PyPlayer {
 
     fn stat<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let stat = self.with(py, |player| Event::Stat(player.stat()))?;
-        Ok(told(py, &stat))
+        Ok(json(py, &stat))
     }
 
     /// All rows of the plots.
     fn plot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let plot = self.with(py, |player| Event::Plot(player.whole_plot()))?;
-        Ok(told(py, &plot))
+        Ok(json(py, &plot))
     }
 
     /// Frame, time, loads and grabs of what is looked at.
     fn shown<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let shown = self.with(py, |player| player.shown())?;
-        Ok(told(py, &shown))
+        Ok(json(py, &shown))
     }
 
     /// Positions (m) of what is looked at.

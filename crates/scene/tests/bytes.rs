@@ -160,7 +160,7 @@ fn what_is_written_is_read_again() {
 }
 
 #[test]
-fn what_is_cut_off_or_too_long_is_told() {
+fn what_is_cut_off_or_too_long_is_reported() {
     let bytes = full().write();
     for length in 0..bytes.len() {
         assert!(Scene::read(&bytes[..length]).is_err(), "{length} bytes");
@@ -177,13 +177,13 @@ fn what_is_cut_off_or_too_long_is_told() {
 }
 
 #[test]
-fn what_could_not_be_is_told() {
+fn what_could_not_be_is_reported() {
     let spoilt = |spoil: fn(&mut Scene)| {
         let mut scene = full();
         spoil(&mut scene);
         Scene::read(&scene.write())
     };
-    let what = |told| Err(SceneError::Value(told));
+    let what = |place| Err(SceneError::Value(place));
     let found = spoilt(|scene| scene.cast.controls[0].loads.push(3));
     assert_eq!(found, what("a control"));
     let found = spoilt(|scene| scene.cast.probes[0].vertices[0] = 999);

@@ -293,7 +293,7 @@ fn volume_ratio_and_stretches_of_an_affine_deformation() {
 
 /// Of positions that are carried off rigidly, what is left of strain and stress is rounding.
 #[test]
-fn rounding_is_told_as_zero() {
+fn rounding_is_reported_as_zero() {
     for body in [lattice(), rubber()] {
         let rigid = diagonal([1.0; 3]);
         for (field, zero) in [

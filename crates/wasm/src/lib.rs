@@ -72,11 +72,11 @@ struct Refused {
     refusal: Refusal,
 }
 
-fn json(told: &impl Serialize) -> Vec<u8> {
-    serde_json::to_vec(told).expect("events have names and numbers alone")
+fn json(value: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(value).expect("events have names and numbers alone")
 }
 
-fn told(events: Result<Vec<Event>, Refusal>) -> Vec<u8> {
+fn reply(events: Result<Vec<Event>, Refusal>) -> Vec<u8> {
     let t = "error";
     match events {
         Ok(events) => json(&events),
@@ -148,14 +148,14 @@ pub extern "C" fn vx_command() -> usize {
             hint: "",
         };
         let command = serde_json::from_slice(input).map_err(refused);
-        told(command.and_then(|command| player.command(command)))
+        reply(command.and_then(|command| player.command(command)))
     })
 }
 
 /// Lets time go on by some seconds, within a budget of the clock, and answers with the events.
 #[unsafe(no_mangle)]
 pub extern "C" fn vx_advance(seconds: f64, budget: f64) -> usize {
-    answer_of(|player, _| told(Ok(player.advance(seconds, budget, &PageClock))))
+    answer_of(|player, _| reply(Ok(player.advance(seconds, budget, &PageClock))))
 }
 
 /// All numbers of the moment.

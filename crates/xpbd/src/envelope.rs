@@ -1,7 +1,7 @@
 //! A symmetric positive definite matrix whose entries lie near its diagonal, and its Cholesky factor.
 //!
 //! A row is kept from its first entry that is not zero to the diagonal; the factor fills no other place. Vertices of
-//! a sheet numbered along it ([`along`]) make rows about as long as the sheet is wide.
+//! a membrane numbered along it ([`along`]) make rows about as long as the membrane is wide.
 
 use voxsoft_solid::vector::{Vec3, axpy, scale};
 

@@ -1,4 +1,4 @@
-//! Bodies with layers over time: the rest and the motion of body and sheets together.
+//! Bodies with layers over time: the rest and the motion of body and membranes together.
 
 mod common;
 
@@ -33,26 +33,26 @@ fn lattice() -> Material {
         .into()
 }
 
-/// Bonds a sheet to all faces of voxels of the side `h` in a plane across z: two triangles each.
+/// Bonds a membrane to all faces of voxels of the side `h` in a plane across z: two triangles each.
 fn bond(mesh: &mut Mesh, h: f64, z: f64, material: MembraneMaterial) {
     let at = |x: f64, y: f64| {
         let here = |p: &Vec3| norm(sub(*p, [x, y, z])) < 1e-6 * h;
         mesh.vertices.iter().position(here).map(|v| v as u32)
     };
-    let mut sheet = Vec::new();
+    let mut membrane = Vec::new();
     for [x, y, _] in mesh.vertices.iter().filter(|p| (p[2] - z).abs() < 1e-6 * h) {
         let corners = [at(*x, *y), at(x + h, *y), at(x + h, y + h), at(*x, y + h)];
         if let [Some(a), Some(b), Some(c), Some(d)] = corners {
             for triangle in [[a, b, c], [a, c, d]] {
                 let corners = triangle.map(|v| mesh.vertices[v as usize]);
-                sheet.push(Membrane::new(triangle, corners, material).unwrap());
+                membrane.push(Membrane::new(triangle, corners, material).unwrap());
             }
         }
     }
-    mesh.membranes.extend(sheet);
+    mesh.membranes.extend(membrane);
 }
 
-/// A cantilever of 8 × 2 × 2 voxels that sags, its upper side or its lower one bonded to a sheet.
+/// A cantilever of 8 × 2 × 2 voxels that sags, its upper side or its lower one bonded to a membrane.
 fn cantilever(material: Material, upper: bool, fabric: MembraneMaterial) -> Problem {
     let h = 5e-3;
     let mut mesh = block([8, 2, 2], h);
@@ -103,7 +103,7 @@ fn a_stiff_sheet_comes_to_rest_with_substeps_beyond_what_its_waves_would_stand()
     };
     let problem = cantilever(rubber(), true, stiff);
     let body = problem.body();
-    // Rows of the sheet that swing against each other: their Rayleigh quotient is at most the square of the
+    // Rows of the membrane that swing against each other: their Rayleigh quotient is at most the square of the
     // highest frequency, two over which explicit forces stand.
     let h = 5e-3;
     let zigzag: Vec<Vec3> = body
@@ -201,9 +201,9 @@ fn a_free_body_keeps_its_momenta() {
             ControlFlow::Continue(())
         });
         assert_eq!((answer.status, answer.back_offs), (Status::EndTime, 0));
-        // Rounding. Angular momentum is kept with the inertia that sheets are given (h⁴ beyond the masses: 2 %
+        // Rounding. Angular momentum is kept with the inertia that membranes are given (h⁴ beyond the masses: 2 %
         // of it here, 0.1 % with half the substep); energy but for what explicit steps let swing, and what
-        // goes in where sheets change between taut and slack.
+        // goes in where membranes change between taut and slack.
         assert!(worst[0] < 1e-10, "{case}: {worst:?}");
         assert!(worst[1] < 0.03, "{case}: {worst:?}");
         assert!(worst[2] < sway, "{case}: {worst:?}");
@@ -225,9 +225,9 @@ fn bits_do_not_depend_on_threads() {
     }
 }
 
-/// A bar of rubber between two sheets, pulled a little so that they stay taut, let go from its lowest mode: the
+/// A bar of rubber between two membranes, pulled a little so that they stay taut, let go from its lowest mode: the
 /// frequency in rad/s.
-fn bar_between_sheets(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
+fn bar_between_membranes(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
     let (h, cells) = (0.02, 10);
     let length = h * cells as f64;
     let mut mesh = block([cells, 1, 1], h);
@@ -277,9 +277,8 @@ fn bar_between_sheets(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
     let mut seen: Vec<(f64, f64)> = Vec::new();
     let masses = problem.body().masses();
     let answer = voxsoft_xpbd::simulate(&problem, start, &settings, &mut |now| {
-        let moved = |v: usize| {
-            masses[v] * (wave * rest[v][0]).sin() * (now.positions[v][0] - still[v][0])
-        };
+        let moved =
+            |v: usize| masses[v] * (wave * rest[v][0]).sin() * (now.positions[v][0] - still[v][0]);
         seen.push((now.time, (0..rest.len()).map(moved).sum()));
         ControlFlow::Continue(())
     });
@@ -295,9 +294,9 @@ fn bar_between_sheets(fabric: MembraneMaterial, step: f64) -> (f64, f64) {
 }
 
 #[test]
-fn a_bar_between_sheets_swings_at_its_closed_form_frequency() {
+fn a_bar_between_membranes_swings_at_its_closed_form_frequency() {
     // Ten voxels with lumped masses are 0.1 % slow and the lateral inertia of ν = 0.45 adds less (see
-    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a sheet by 0.3 %. The third has 2,000 times the stiffness of
+    // `hyperelastic.rs`); a strain of 10⁻³ stiffens a membrane by 0.3 %. The third has 2,000 times the stiffness of
     // the bar, and its substep is 4 over the highest frequency.
     for (young, step, slack) in [(3e6, 2e-3, 5e-3), (18e6, 1e-3, 5e-3), (2e9, 1e-3, 1e-2)] {
         let fabric = MembraneMaterial {
@@ -305,7 +304,7 @@ fn a_bar_between_sheets_swings_at_its_closed_form_frequency() {
             poisson: 0.45,
             ..FABRIC
         };
-        let (frequency, expected) = bar_between_sheets(fabric, step);
+        let (frequency, expected) = bar_between_membranes(fabric, step);
         let error = (frequency / expected - 1.0).abs();
         assert!(error < slack, "{young:.0e} {step}: {frequency} {expected}");
     }

@@ -227,7 +227,7 @@ fn loads_follow_at_once_and_get_their_histories_back() {
 
 /// A step far too long blows up, is halved until it holds, and one that no halving helps is told.
 #[test]
-fn a_step_too_long_is_halved_and_a_hopeless_one_is_told() {
+fn a_step_too_long_is_halved_and_a_hopeless_one_is_reported() {
     let long = |substeps| Dynamics {
         time_step: 0.02,
         substeps: Some(substeps),

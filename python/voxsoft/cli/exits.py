@@ -94,11 +94,13 @@ def errors_in_words(*, json: bool = False, invalid: dict[str, Any] | None = None
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         raise typer.Exit(OK) from None
     except MemoryError as error:
-        told = OutputError("memory", "is short", "make the voxels larger, or start fewer workers")
-        raise _leave(told, json, invalid) from error
+        reported = OutputError(
+            "memory", "is short", "make the voxels larger, or start fewer workers"
+        )
+        raise _leave(reported, json, invalid) from error
     except OSError as error:
-        told = OutputError(str(error.filename or "a file"), error.strerror or str(error))
-        raise _leave(told, json, invalid) from error
+        reported = OutputError(str(error.filename or "a file"), error.strerror or str(error))
+        raise _leave(reported, json, invalid) from error
 
 
 def _leave(error: VoxSoftError, json: bool, invalid: dict[str, Any] | None) -> typer.Exit:

@@ -85,7 +85,7 @@ def fit(
 ) -> None:
     """Fit all hyperelastic models to coupon tests, rank them, and write a card with a picture."""
     from voxsoft.files.cards import card_name
-    from voxsoft.files.coupons import load_curve, load_observations, write_coupon_fit
+    from voxsoft.files.coupons import load_curve, load_modulus_tests, write_coupon_fit
     from voxsoft.materials import NeoHookean
     from voxsoft.materials.coupon import fit_coupons
     from voxsoft.units import UnitOf
@@ -102,7 +102,7 @@ def fit(
             for mode, paths in files
             for path in paths or []
         ]
-        observed = [seen for path in modulus or [] for seen in load_observations(path)]
+        observed = [seen for path in modulus or [] for seen in load_modulus_tests(path)]
         answer = fit_coupons(
             curves,
             observed,
@@ -165,11 +165,11 @@ def show(
 
 def _show_fit(answer: CouponFit, chosen: str) -> None:
     for curve, raw, toe in zip(answer.curves, answer.measured, answer.toes, strict=True):
-        said = f"{curve.name}: {curve.mode}, {len(curve.strain)} of {len(raw.strain)} points"
+        line = f"{curve.name}: {curve.mode}, {len(curve.strain)} of {len(raw.strain)} points"
         if toe is not None:
-            said += f", toe ({100.0 * toe.strain:.2f} ± {100.0 * toe.uncertainty:.2f}) % strain"
-            said += f" or load-cell offset {_kpa(toe.offset)}"
-        say(plain(said))
+            line += f", toe ({100.0 * toe.strain:.2f} ± {100.0 * toe.uncertainty:.2f}) % strain"
+            line += f" or load-cell offset {_kpa(toe.offset)}"
+        say(plain(line))
     rows = [
         [
             f"{found.name} *" if found.name == chosen else found.name,

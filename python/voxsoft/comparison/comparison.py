@@ -237,7 +237,7 @@ class Comparison(Shown):
         )
 
     @property
-    def told_apart(self) -> tuple[SeriesEstimate, ...]:
+    def distinguished(self) -> tuple[SeriesEstimate, ...]:
         """The estimates without those of voxel sizes whose voxels are the split ones."""
         split = {e.quantity: e.estimate.values for e in self.estimates if e.series == _SPLIT}
         return tuple(

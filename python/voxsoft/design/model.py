@@ -211,7 +211,7 @@ class Design(Record):
         try:
             design = handler(document)
         except ValidationError as error:
-            wrong = problems_of(error, cls, document, found.told)
+            wrong = problems_of(error, cls, document, found.reported)
             problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
         dangling = list(dangling_references(document, empty))
         if problems or dangling:

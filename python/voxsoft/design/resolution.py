@@ -68,13 +68,13 @@ class Resolution:
         The values; :data:`UNREAD` stands for a formula that has none.
     problems
         What is wrong, each once.
-    told
+    reported
         Paths of what is wrong.
     """
 
     document: Document
     problems: list[ErrorDetail]
-    told: set[Path]
+    reported: set[Path]
 
     @classmethod
     def of(cls, document: Mapping[str, Any]) -> Resolution:
@@ -252,8 +252,8 @@ def _evaluated(
         found.problems.append(ErrorDetail(error.where or place(path), what, error.hint))
     except VoxSoftError as error:  # the value of a parameter that the formula uses
         found.problems.append(ErrorDetail(error.where, error.what, error.hint))
-        found.told.add(tuple(steps_of(error.where)))
-    found.told.add(path)
+        found.reported.add(tuple(steps_of(error.where)))
+    found.reported.add(path)
     return UNREAD
 
 

@@ -86,7 +86,7 @@ def run_calculix(
         folder = Path(name)
         (folder / f"{_JOB}.inp").write_text(deck, encoding="ascii")
         started = time.perf_counter()
-        code, said = _run(program, folder, time_limit, threads)
+        code, log = _run(program, folder, time_limit, threads)
         seconds = time.perf_counter() - started
         printed = _printed(folder)
     moved = [each for each in printed if each.name == VERTICES]
@@ -98,14 +98,14 @@ def run_calculix(
             f"did not end within {time_limit:g} s; it had reached {reached} of the load",
             "allow more time (--time-limit), split voxels less, or load less",
         )
-    gave_up = "increment size smaller than minimum" in said or "too many cutbacks" in said
+    gave_up = "increment size smaller than minimum" in log or "too many cutbacks" in log
     if not complete or (code != 0 and not gave_up):
         raise OutsideCodeError(
             "CalculiX",
-            f"ended with code {code}; its last lines: {_last_lines(said)}",
+            f"ended with code {code}; its last lines: {_last_lines(log)}",
             "run the exported mesh by hand, or compare with scikit-fem",
         )
-    return _answer(model, element, printed, complete[-1], said, seconds)
+    return _answer(model, element, printed, complete[-1], log, seconds)
 
 
 def _answer(
@@ -113,7 +113,7 @@ def _answer(
     element: Element,
     printed: list[Printed],
     last: Printed,
-    said: str,
+    log: str,
     seconds: float,
 ) -> OutsideAnswer:
     row = np.full(len(model.nodes), -1)
@@ -122,7 +122,7 @@ def _answer(
     held = pulls[-1].nodes if pulls else np.zeros(0, np.int64)
     inner = pulls[-1].values if pulls else np.zeros((0, 3))
     whole = last.time > 1.0 - 1e-9
-    version = re.search(r"[Vv]ersion (\d+\.\d+)", said)
+    version = re.search(r"[Vv]ersion (\d+\.\d+)", log)
     return OutsideAnswer(
         code="CalculiX",
         version=version[1] if version else "",
@@ -145,15 +145,15 @@ def _answer(
 def _run(program: Path, folder: Path, time_limit: float, threads: int) -> tuple[int | None, str]:
     """Run the program; return its exit code (None past the limit) and what it said."""
     numbers = dict.fromkeys(("OMP_NUM_THREADS", "CCX_NPROC_EQUATION_SOLVER"), str(threads))
-    output = folder / "said.txt"
-    with output.open("wb") as said:
+    output = folder / "log.txt"
+    with output.open("wb") as log:
         # A session of its own, so that what the program starts is stopped with it.
         process = subprocess.Popen(
             [program, "-i", _JOB],
             cwd=folder,
             env={**os.environ, **numbers},
             stdin=subprocess.DEVNULL,
-            stdout=said,
+            stdout=log,
             stderr=subprocess.STDOUT,
             start_new_session=True,
         )
@@ -181,6 +181,6 @@ def _printed(folder: Path) -> list[Printed]:
     return read_printed(path.read_text(errors="replace")) if path.exists() else []
 
 
-def _last_lines(said: str) -> str:
-    lines = [line.strip() for line in said.splitlines() if line.strip()]
+def _last_lines(log: str) -> str:
+    lines = [line.strip() for line in log.splitlines() if line.strip()]
     return " | ".join(lines[-_LAST_LINES:]) or "none"

@@ -113,8 +113,8 @@ def _verdict(comparison: Comparison) -> str:
     if not base.ok:
         return f'<span class="bad">{escape(base.label)}: {escape(base.message)}</span>'
     if best is None:
-        said = comparison.note or "no outside code answered"
-        return f'<span class="bad">{escape(said)}</span>'
+        text = comparison.note or "no outside code answered"
+        return f'<span class="bad">{escape(text)}</span>'
     shares = [
         abs(share)
         for name in comparison.quantities
@@ -149,9 +149,9 @@ def _runs(comparison: Comparison) -> Iterator[str]:
     for run in comparison.runs:
         color = "good" if run.ok else "bad"
         status = f'<span class="{color}">{escape(run.status)}</span>'
-        said = escape(run.detail if run.ok else run.message)
+        text = escape(run.detail if run.ok else run.message)
         cells = f"{run.cells:,}" if run.cells else ""
-        rows.append([escape(run.label), status, cells, f"{run.seconds:.3g} s", said])
+        rows.append([escape(run.label), status, cells, f"{run.seconds:.3g} s", text])
     yield _table(head, rows, "words")
     if comparison.note:
         yield f"<p>{escape(comparison.note)}</p>"
@@ -199,7 +199,7 @@ def _estimates(comparison: Comparison) -> Iterator[str]:
         return
     head = ["quantity", "series", "finest", "limit", "error of the finest", "order", "from"]
     rows = []
-    for each in comparison.told_apart:
+    for each in comparison.distinguished:
         estimate = each.estimate
         kind = comparison.known(each.quantity).kind
         small = estimate.error < 1e-4 * comparison.known(each.quantity).scale

@@ -1,4 +1,4 @@
-"""Coupon tests on the disk: curves and observations in, a material card and its evidence out."""
+"""Coupon tests on the disk: curves and moduli in, a material card and its evidence out."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from voxsoft.materials.card import Card
 from voxsoft.materials.coupon import (
     CouponFit,
     Curve,
-    ObservedModulus,
+    MeasuredModulus,
     read_curve,
-    read_observations,
+    read_modulus_tests,
 )
 from voxsoft.plot.coupon import plot_coupons
 
@@ -65,15 +65,15 @@ def load_curve(
     return read_curve(text, name=name, mode=mode, area=area, length=length)
 
 
-def load_observations(path: FilePath) -> list[ObservedModulus]:
-    r"""Read observed moduli (bending, frequency, or known) from a TOML file.
+def load_modulus_tests(path: FilePath) -> list[MeasuredModulus]:
+    r"""Read measured moduli (bending, frequency, or known) from a TOML file.
 
     Raises
     ------
     FileError
         The file cannot be read, or is not TOML.
     MeasurementError
-        A table that is not an observation; every problem is listed.
+        A table that is no such test; every problem is listed.
 
     Examples
     --------
@@ -81,10 +81,10 @@ def load_observations(path: FilePath) -> list[ObservedModulus]:
     >>> file = pathlib.Path(tempfile.mkdtemp()) / "beam.toml"
     >>> table = '[[observation]]\nkind = "modulus"\nyoung = "60 kPa"\nuncertainty = "3 kPa"'
     >>> _ = file.write_text(table)
-    >>> load_observations(file)
-    [ObservedModulus(name='modulus', young=60000.0, uncertainty=3000.0)]
+    >>> load_modulus_tests(file)
+    [MeasuredModulus(name='modulus', young=60000.0, uncertainty=3000.0)]
     """
-    return read_observations(read_document(read_text(path), Path(path).name))
+    return read_modulus_tests(read_document(read_text(path), Path(path).name))
 
 
 def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]:

@@ -64,7 +64,7 @@ def write_run(
         cell_data=result.fields.cell_data(result.mesh),
         regions=named_regions(result.design, result.mesh),
     )
-    if len(result.history.times) > 1:
+    if len(result.recording.times) > 1:
         write_atomically(folder / "history.csv", _history_csv(result))
     return folder
 
@@ -104,9 +104,9 @@ def write_json(path: Path, value: Mapping[str, Any]) -> None:
 
 
 def _history_csv(result: Result) -> str:
-    names = list(result.history.probes)
+    names = list(result.recording.probes)
     header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
-    columns = [result.history.times[:, None], *(result.history.probes[name] for name in names)]
+    columns = [result.recording.times[:, None], *(result.recording.probes[name] for name in names)]
     return csv_text(header, np.hstack(columns).tolist())
 
 

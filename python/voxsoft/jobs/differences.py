@@ -68,15 +68,15 @@ def differences(before: Path, after: Path) -> Iterator[Difference]:
 def _file_differences(
     name: str, read: Callable[[Path], Any], before: Path, after: Path
 ) -> Iterator[Difference]:
-    told = []
+    contents = []
     for folder in (before, after):
         try:
-            told.append(read(folder / name))
+            contents.append(read(folder / name))
         except FileNotFoundError:
-            told.append(_ABSENT)
+            contents.append(_ABSENT)
         except Exception as error:  # whatever a reader finds wrong with a damaged file
-            told.append(f"damaged ({type(error).__name__})")
-    for steps, old, new in _different(told[0], told[1], ()):
+            contents.append(f"damaged ({type(error).__name__})")
+    for steps, old, new in _different(contents[0], contents[1], ()):
         yield Difference(name, place(steps) if steps else "", old, new)
 
 

@@ -21,15 +21,15 @@ def read_first(folder: Path) -> dict[str, Any]:
         It is damaged.
     """
     try:
-        told = json.loads((folder / FIRST).read_bytes())
-        spec = {key: value for key, value in told["spec"].items() if key not in ("name", "data")}
+        content = json.loads((folder / FIRST).read_bytes())
+        spec = {key: value for key, value in content["spec"].items() if key not in ("name", "data")}
         spec = {key: value for key, value in spec.items() if value is not None}
-        spec["design"] = {"text": told["design"], "folder": told["base"]}
+        spec["design"] = {"text": content["design"], "folder": content["base"]}
         if spec["kind"] == "calibrate":
-            spec["data"] = told["tables"]
+            spec["data"] = content["tables"]
         if spec["kind"] == "study" and spec.get("sampler", "grid") == "grid":
             spec.pop("budget", None)
-        return {"spec": spec, "version": told.get("version", "")}
+        return {"spec": spec, "version": content.get("version", "")}
     except OSError as error:
         raise FileError(str(folder), f"holds no job: {error.strerror}") from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:

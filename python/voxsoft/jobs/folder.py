@@ -156,12 +156,12 @@ def load(folder: FilePath, *, check: bool = True) -> Job:
     if not (place / JOB).is_file():
         hint = "name the folder of a run, a study, a calibration or a comparison"
         raise FileError(str(folder), f"holds no {JOB}", hint)
-    told = _read(place)
+    content = _read(place)
     if check:
-        for name, digest in told.files.items():
+        for name, digest in content.files.items():
             _check_file(place, name, digest)
-    fields = {name: getattr(told, name) for name in ("version", "machine", "written")}
-    return Job(spec=_spec(told.job, place), **fields)
+    fields = {name: getattr(content, name) for name in ("version", "machine", "written")}
+    return Job(spec=_spec(content.job, place), **fields)
 
 
 def holds_job(folder: Path) -> bool:
@@ -179,34 +179,34 @@ def kind_of_job(folder: Path) -> str | None:
 
 
 def _plain(spec: Spec) -> dict[str, Any]:
-    told = spec.model_dump(
+    content = spec.model_dump(
         mode="json", by_alias=True, exclude={"design", "data"}, exclude_none=True, context=EXACT
     )
-    told = {"kind": told.pop("kind"), "design": design_file(spec.kind), **told}
+    content = {"kind": content.pop("kind"), "design": design_file(spec.kind), **content}
     if spec.tables:
-        told["data"] = [
+        content["data"] = [
             {"file": _table_file(at), **table.model_dump(exclude={"text"}, exclude_none=True)}
             for at, table in enumerate(spec.tables, start=1)
         ]
-    return told
+    return content
 
 
 def _read(place: Path) -> _File:
     where = str(place / JOB)
-    told = read_document(read_text(place / JOB), where)
-    schema = told.get("schema")
+    content = read_document(read_text(place / JOB), where)
+    schema = content.get("schema")
     if schema != SCHEMA:
         what = f'is written as "{schema}"; expected "{SCHEMA}"'
         raise FileError(where, what, "use the VoxSoft that wrote it")
     try:
-        return _File(**told)
+        return _File(**content)
     except FileError as error:
         raise FileError.listing(_inside(error, where)) from None
 
 
-def _spec(told: Mapping[str, Any], place: Path) -> Spec:
+def _spec(content: Mapping[str, Any], place: Path) -> Spec:
     where = str(place / JOB)
-    fields = dict(told)
+    fields = dict(content)
     try:
         file = _within(place, fields.pop("design"))
         fields["design"] = {"text": read_text(file), "folder": str(file.parent)}

@@ -18,7 +18,7 @@ from voxsoft.simulation import Result
 from voxsoft.units import format_percent
 
 #: Seconds between two words on how far a run is.
-_SAID_EVERY: Final = 0.25
+_REPORT_EVERY: Final = 0.25
 
 
 def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[Result]:
@@ -47,7 +47,7 @@ def _reporting(nearness: Nearness, notify: Listener) -> Callable[[int, float, fl
         nonlocal last
         share = nearness.at(when, residual)
         now = time.monotonic()
-        if now - last < _SAID_EVERY:
+        if now - last < _REPORT_EVERY:
             return
         last = now
         left = f"residual {format_percent(residual)} of the load"

@@ -193,7 +193,7 @@ def plot_convergence(comparison: Comparison) -> Figure | None:
     panels = figure.subplots(1, len(names), squeeze=False)[0]
     for axes, (kind, name) in zip(panels, names.items(), strict=True):
         unit = scale_for([comparison.known(name).value], kind)
-        chosen = [each for each in comparison.told_apart if each.quantity == name]
+        chosen = [each for each in comparison.distinguished if each.quantity == name]
         for index, each in enumerate(chosen):
             estimate, color = each.estimate, SERIES[index % len(SERIES)]
             edges = np.array(estimate.sizes) * 1e3

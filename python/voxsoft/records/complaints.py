@@ -30,7 +30,7 @@ def plain_error(error: ValidationError, model: type[Record], document: object) -
 
 
 def problems_of(
-    error: ValidationError, model: type[Record], document: object, told: Collection[Path] = ()
+    error: ValidationError, model: type[Record], document: object, reported: Collection[Path] = ()
 ) -> list[ErrorDetail]:
     """List what pydantic found wrong in `document`.
 
@@ -42,16 +42,16 @@ def problems_of(
         What the document was read as.
     document
         What was read.
-    told
+    reported
         Paths at which something is known to be wrong already: nothing more is said of them.
     """
     found = _without_echo(error.errors(include_url=False), document)
     problems = [problem for details in found for problem in _problems(details, model, document)]
-    known = {place(path) for path in told}
-    return [*_merged([problem for problem in problems if not _is_told(problem, known)])]
+    known = {place(path) for path in reported}
+    return [*_merged([problem for problem in problems if not _is_reported(problem, known)])]
 
 
-def _is_told(problem: ErrorDetail, known: Collection[str]) -> bool:
+def _is_reported(problem: ErrorDetail, known: Collection[str]) -> bool:
     """Whether a problem is at or below one of the places that are known."""
     where = problem.where
     return any(where == each or where.startswith((f"{each}.", f"{each}[")) for each in known)

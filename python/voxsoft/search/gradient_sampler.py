@@ -103,9 +103,9 @@ class GradientSampler(PlacingSampler):
         self, study: Study, trial: FrozenTrial, search_space: dict[str, BaseDistribution]
     ) -> dict[str, Any]:
         """Return the next point of the first descent that waits for one."""
-        told = self.trials_by_place(study)
+        reported = self.trials_by_place(study)
         for start in itertools.count():
-            trials = told.get(start, {})
+            trials = reported.get(start, {})
             wanted = self._next(start, trials)
             if wanted is None or wanted.index in trials:
                 continue  # It has arrived, or its next point is being evaluated.
@@ -163,8 +163,8 @@ class GradientSampler(PlacingSampler):
 
     def answer(self, trial: FrozenTrial, genes: Floats) -> Answer | None:
         """Return what a trial told, by genes in place of parameters."""
-        told = self._answers(trial)
-        if told is None:
+        reported = self._answers(trial)
+        if reported is None:
             return None
         stretch = np.array(
             [
@@ -172,7 +172,9 @@ class GradientSampler(PlacingSampler):
                 for d, gene in zip(self._space.values(), genes, strict=True)
             ]
         )
-        return told._replace(slope=told.slope * stretch, limit_slopes=told.limit_slopes * stretch)
+        return reported._replace(
+            slope=reported.slope * stretch, limit_slopes=reported.limit_slopes * stretch
+        )
 
 
 class _Wanted(Exception):
@@ -209,15 +211,15 @@ class _Descent:
         genes = np.clip(np.asarray(genes, dtype=np.float64), 0.0, 1.0)
         key = genes.tobytes()
         if key not in self._seen:
-            self._seen[key] = self._told(len(self._seen), genes)
+            self._seen[key] = self._answer_at(len(self._seen), genes)
         return self._seen[key]
 
-    def _told(self, index: int, genes: Floats) -> Answer:
+    def _answer_at(self, index: int, genes: Floats) -> Answer:
         trial = self._trials.get(index)
         if trial is None or not trial.state.is_finished():
             raise _Wanted(index, genes)
-        told = self._sampler.answer(trial, genes)
-        if told is None:
+        reported = self._sampler.answer(trial, genes)
+        if reported is None:
             last = next(reversed(self._seen.values()), None)
             value = self._worst + _PENALTY * self._scale
             flat = np.zeros(len(genes))
@@ -225,6 +227,6 @@ class _Descent:
                 return Answer(value, flat, np.zeros(0), np.zeros((0, len(genes))))
             return last._replace(value=value, slope=flat)
         if not self._seen:
-            self._scale, self._worst = abs(told.value) or 1.0, told.value
-        self._worst = max(self._worst, told.value)
-        return told
+            self._scale, self._worst = abs(reported.value) or 1.0, reported.value
+        self._worst = max(self._worst, reported.value)
+        return reported

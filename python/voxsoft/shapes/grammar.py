@@ -57,7 +57,7 @@ def _grow(rng: Rng, depth: int, size: float) -> Shape:
     kind = _pick(rng, list(_OPERATORS))
     fields = _OPERATORS[kind](rng, size)
     if kind == "grade":
-        lattice = _make(_pick(rng, _SHEETS), _sheet(rng, size))
+        lattice = _make(_pick(rng, _PERIODIC), _sheet(rng, size))
         return _make(kind, {"of": lattice, **fields})
     operand = _grow(rng, depth - 1, size)
     if kind in _OF_TWO:
@@ -120,7 +120,7 @@ def _sheet_or_solid(rng: Rng, size: float) -> Fields:
     return {"period": _length(rng, size, 0.3, 1.0), "form": "solid", "level": level}
 
 
-_SHEETS = ("gyroid", "schwarz-p", "schwarz-d", "neovius", "iwp", "cubic", "bcc", "fcc", "octet")
+_PERIODIC = ("gyroid", "schwarz-p", "schwarz-d", "neovius", "iwp", "cubic", "bcc", "fcc", "octet")
 _OF_TWO = ("union", "intersection", "difference", "blend")
 
 _PRIMITIVES: dict[str, Callable[[Rng, float], Fields]] = {
@@ -162,8 +162,8 @@ _PRIMITIVES: dict[str, Callable[[Rng, float], Fields]] = {
         "axis": _axis(r),
     },
     "expression": lambda r, s: {"text": _pick(r, _EXPRESSIONS).format(r=_length(r, s))},
-    **dict.fromkeys(_SHEETS[:5], _sheet_or_solid),
-    **dict.fromkeys(_SHEETS[5:], _sheet),
+    **dict.fromkeys(_PERIODIC[:5], _sheet_or_solid),
+    **dict.fromkeys(_PERIODIC[5:], _sheet),
 }
 
 _OPERATORS: dict[str, Callable[[Rng, float], Fields]] = {

@@ -96,7 +96,7 @@ def _unreadable(path: Path, reasons: list[BaseException]) -> ShapeError:
     if isinstance(first, ImportError) and first.name:
         what = f"{path} needs the package {first.name} to be read"
         return ShapeError("path", what, f"pip install {first.name}, or export the part as STL")
-    why = str(first) if isinstance(first, (ShapeError, _SaidError)) else ""
+    why = str(first) if isinstance(first, (ShapeError, _ReportedError)) else ""
     if path.suffix.lower() == ".stl" and not _looks_like_stl(path):
         why = (
             'it neither begins with "solid", as text does, nor has the length that a binary file '
@@ -115,7 +115,7 @@ def _looks_like_stl(path: Path) -> bool:
     return head.lstrip()[:5].lower() == b"solid" or path.stat().st_size == 84 + 50 * count
 
 
-class _SaidError(Exception):
+class _ReportedError(Exception):
     """What a reader printed before it ended the program."""
 
 
@@ -127,18 +127,18 @@ def _read_by_meshio(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]
 
     # Some programs write the XML format of VTU under the older suffix.
     is_xml = path.suffix.lower() == ".vtk" and path.read_bytes()[:64].lstrip().startswith(b"<")
-    said = io.StringIO()
+    output = io.StringIO()
     with (
         warnings.catch_warnings(),
-        contextlib.redirect_stdout(said),
-        contextlib.redirect_stderr(said),
+        contextlib.redirect_stdout(output),
+        contextlib.redirect_stderr(output),
     ):
         warnings.simplefilter("ignore")
         try:
             mesh = meshio.read(path, file_format="vtu" if is_xml else None)
         except SystemExit:
-            words = " ".join(said.getvalue().split()).removeprefix("Error: ")
-            raise _SaidError(words[:200]) from None
+            words = " ".join(output.getvalue().split()).removeprefix("Error: ")
+            raise _ReportedError(words[:200]) from None
     points = np.asarray(mesh.points, dtype=np.float64)
     triangles = faces_of(points, [(block.type, block.data) for block in mesh.cells])
     if not len(triangles):

@@ -89,12 +89,12 @@ class CheckReport(Shown):
 
     def _lines(self) -> Iterator[str]:
         errors = sum(finding.severity == "error" for finding in self.findings)
-        told = [
+        reported = [
             counted(n, w)
             for n, w in ((errors, "error"), (len(self.findings) - errors, "warning"))
             if n
         ]
-        yield ", ".join(["valid" if self.valid else "not valid", *told])
+        yield ", ".join(["valid" if self.valid else "not valid", *reported])
         yield f"{counted(self.voxels, 'voxel')}, mass {format_quantity(rounded(self.mass), 'mass')}"
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"

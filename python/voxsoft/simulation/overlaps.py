@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 #: Depths below this part of a voxel are left out: solvers leave positions at rest open by about as
 #: much (a residual of 1e-6 of the load moves a body by 1e-6 of its displacement, which is of the
 #: size of a voxel or more), and what merely touches is then in each other by it.
-TOLD: Final = 1e-6
+NEGLIGIBLE: Final = 1e-6
 
 
 def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration:
@@ -55,12 +55,12 @@ def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration
     for known_design, known_mesh, known_digest, found in _latest:
         if known_design() is design and known_mesh() is mesh and known_digest == digest:
             return found
-    sheets = None
+    membranes = None
     if any(layer.seal for layer in design.layers):
         layers = all_layer_triangles(design, mesh)
-        sheets = np.concatenate([layer.spanning for layer in layers])
+        membranes = np.concatenate([layer.spanning for layer in layers])
     floor = None if design.floor is None else design.floor.z
-    found = find_penetration(mesh, positions, sheets=sheets, floor=floor)
+    found = find_penetration(mesh, positions, membranes=membranes, floor=floor)
     if mesh.fractions is not None:
         found = _of_shapes(design, mesh, positions, found)
     _latest[:] = [(weakref.ref(design), weakref.ref(mesh), digest, found)]
@@ -77,11 +77,11 @@ def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
 
     One warning for each two parts that are in each other, the deepest first.
     """
-    least = TOLD * voxel_size(mesh)
+    least = NEGLIGIBLE * voxel_size(mesh)
     groups: dict[tuple[bool, frozenset[int]], list[Overlap]] = {}
-    for region in penetration_of(design, mesh, positions).regions:
-        if region.inverted or region.depth > least:
-            groups.setdefault((region.inverted, frozenset(region.parts)), []).append(region)
+    for overlap in penetration_of(design, mesh, positions).overlaps:
+        if overlap.inverted or overlap.depth > least:
+            groups.setdefault((overlap.inverted, frozenset(overlap.parts)), []).append(overlap)
     for (inverted, _), reported in groups.items():
         deepest = reported[0]
         where, what = _turned(design, deepest) if inverted else overlapping(design, deepest)
@@ -95,19 +95,19 @@ def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
         yield Diagnostic("warning", where, what, hint, deepest.at_rest)
 
 
-def overlapping(design: Design, region: Overlap) -> tuple[str, str]:
+def overlapping(design: Design, overlap: Overlap) -> tuple[str, str]:
     """The parts that are in each other, and how deep, in words."""
-    by = f"by {region.depth * 1e3:.2g} mm"
-    names = [part_name(design, part) for part in region.parts]
-    if region.parts[1] == FLOOR:
+    by = f"by {overlap.depth * 1e3:.2g} mm"
+    names = [part_name(design, part) for part in overlap.parts]
+    if overlap.parts[1] == FLOOR:
         return names[0], f"is below the floor {by}"
     if names[0] == names[1]:
         return names[0], f"walls overlap {by}"
     return " and ".join(names), f"overlap {by}"
 
 
-def _turned(design: Design, region: Overlap) -> tuple[str, str]:
-    return part_name(design, region.parts[0]), "the surface is turned inside out"
+def _turned(design: Design, overlap: Overlap) -> tuple[str, str]:
+    return part_name(design, overlap.parts[0]), "the surface is turned inside out"
 
 
 def part_name(design: Design, part: int) -> str:
@@ -128,27 +128,27 @@ def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration
     What is at one place are a point of the surface of the voxels, outside the shapes by a distance,
     and a point inside by another, both unloaded. The shapes overlap by the second less the first.
     """
-    if not found.regions:
+    if not found.overlaps:
         return found
     vertices, tets, numbers = found.covered.T
     surface = mesh.vertices[vertices]
     inside = _rest_places(mesh, positions, positions[vertices], tets)
-    ends = [(region.at_rest, region.against) for region in found.regions]
+    ends = [(overlap.at_rest, overlap.against) for overlap in found.overlaps]
     first = np.concatenate([surface, [start for start, _ in ends]])
     second = np.concatenate([inside, [end for _, end in ends]])
-    now = np.concatenate([positions[vertices], [region.at_now for region in found.regions]])
+    now = np.concatenate([positions[vertices], [overlap.at_now for overlap in found.overlaps]])
     owner = np.concatenate([numbers, np.arange(len(ends))])
     depths = -_distances(design, mesh, first) - _distances(design, mesh, second)
     kept: list[tuple[int, Overlap]] = []
-    for index, region in enumerate(found.regions):
-        if region.inverted or region.parts[1] == FLOOR:
-            kept.append((index, region))
+    for index, overlap in enumerate(found.overlaps):
+        if overlap.inverted or overlap.parts[1] == FLOOR:
+            kept.append((index, overlap))
             continue
         mine = np.flatnonzero(owner == index)
         best = int(mine[np.argmax(depths[mine])])
         if depths[best] > 0.0:
             moved = replace(
-                region,
+                overlap,
                 depth=float(depths[best]),
                 at_rest=point(first[best]),
                 against=point(second[best]),
@@ -159,7 +159,7 @@ def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration
     renumbered = {index: number for number, (index, _) in enumerate(kept)}
     covered = [[v, t, renumbered[r]] for v, t, r in found.covered.tolist() if r in renumbered]
     rows = np.array(covered, dtype=np.int32).reshape(-1, 3)
-    return Penetration(tuple(region for _, region in kept), found.pairs, rows)
+    return Penetration(tuple(overlap for _, overlap in kept), found.pairs, rows)
 
 
 def _rest_places(mesh: Mesh, positions: Floats, points: Floats, tets: NDArray[np.int32]) -> Floats:

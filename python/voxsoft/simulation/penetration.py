@@ -67,16 +67,16 @@ class Penetration:
 
     Attributes
     ----------
-    regions
+    overlaps
         The places, the deepest first; empty where nothing overlaps.
     pairs
         Numbers of the triangles of the surface that pass through each other, (p, 2).
     covered
         For each vertex of the surface in other material its number, that of the tetrahedron that
-        it is in, and that of the region, (c, 3).
+        it is in, and that of the overlap, (c, 3).
     """
 
-    regions: tuple[Overlap, ...] = ()
+    overlaps: tuple[Overlap, ...] = ()
     pairs: NDArray[np.uint32] = field(
         default_factory=lambda: np.zeros((0, 2), dtype=np.uint32), repr=False
     )
@@ -87,14 +87,14 @@ class Penetration:
     @cached_property
     def depth(self) -> float:
         """The largest depth in m; 0 where nothing overlaps."""
-        return max((region.depth for region in self.regions), default=0.0)
+        return max((overlap.depth for overlap in self.overlaps), default=0.0)
 
 
 def find_penetration(
     mesh: Mesh,
     positions: Floats,
     *,
-    sheets: NDArray[np.int32] | None = None,
+    membranes: NDArray[np.int32] | None = None,
     floor: float | None = None,
 ) -> Penetration:
     """Find where a body overlaps itself at some positions.
@@ -107,7 +107,7 @@ def find_penetration(
         The body, with as many components as it has.
     positions
         Its vertices now in m, (n, 3).
-    sheets
+    membranes
         Triangles of films between vertices of the body, (s, 3), which have no volume and which
         nothing may pass through either.
     floor
@@ -135,17 +135,17 @@ def find_penetration(
         raise MeshError("positions", f"have the shape {now.shape}; {expected}")
     if not np.isfinite(now).all():
         raise MeshError("positions", "are not all finite")
-    films = np.zeros((0, 3), dtype=np.int32) if sheets is None else sheets
+    films = np.zeros((0, 3), dtype=np.int32) if membranes is None else membranes
     pairs, found, covered = _core.penetration(
         mesh.vertices, now, mesh.tets, mesh.triangles, np.ascontiguousarray(films, dtype=np.int32)
     )
-    regions = [_overlap(mesh, *region) for region in found]
+    overlaps = [_overlap(mesh, *overlap) for overlap in found]
     sunk = None if floor is None else _below(mesh, now, floor)
     if sunk is not None:
-        place = sum(region.depth > sunk.depth for region in regions)
-        regions.insert(place, sunk)
+        place = sum(overlap.depth > sunk.depth for overlap in overlaps)
+        overlaps.insert(place, sunk)
         covered[:, 2] += covered[:, 2] >= place
-    return Penetration(tuple(regions), pairs, covered)
+    return Penetration(tuple(overlaps), pairs, covered)
 
 
 def _overlap(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +83,7 @@ class Result(Shown):
         Simulated time in s; 0 for relaxation, which has none.
     seconds
         Wall-clock time of the solution.
-    history
+    recording
         What was recorded, for runs over time; for statics one entry for each point of the load
         path, with the load factor as time.
     load_factor
@@ -116,10 +116,15 @@ class Result(Shown):
     back_offs: int
     time: float
     seconds: float
-    history: Recording = field(repr=False)
+    recording: Recording = field(repr=False)
     load_factor: float = 1.0
     limit_factor: float | None = None
     stable: bool | None = None
+
+    @property
+    def history(self) -> NoReturn:
+        """Refused, as loads have histories: what was recorded is :attr:`recording`."""
+        raise AttributeError("a Result has no history: what was recorded is its recording")
 
     @property
     def displacements(self) -> NDArray[np.float64]:

@@ -171,7 +171,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
     rest = setup.mesh.vertices
     still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
     records = answer.records
-    history = Recording(
+    recording = Recording(
         times=answer.record_times,
         probes={
             name: records[:, index] - still[index] if len(records) else np.zeros((0, 3))
@@ -200,7 +200,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         back_offs=answer.back_offs,
         time=answer.time,
         seconds=seconds,
-        history=history,
+        recording=recording,
         load_factor=1.0 if path is None else path.factor,
         limit_factor=None if path is None else path.limit,
         stable=None if path is None else path.stable,

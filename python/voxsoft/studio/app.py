@@ -260,8 +260,8 @@ async def _body_within(request: Request, limit: int, name: str) -> bytes:
     """Read the body of a request, and stop as soon as it is too large."""
     what = f"is larger than {limit // 2**20} MB"
     hint = "coarsen the mesh, or open the file by its path: voxsoft studio FILE"
-    told = request.headers.get("content-length", "0")
-    if told.isdigit() and int(told) > limit:
+    declared = request.headers.get("content-length", "0")
+    if declared.isdigit() and int(declared) > limit:
         raise _TooLargeError(name, what, hint)
     parts, size = [], 0
     async for part in request.stream():

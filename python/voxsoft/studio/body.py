@@ -245,14 +245,14 @@ def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
         found = setup.layers
     except VoxSoftError:
         return []
-    told = []
+    reported = []
     drawn = np.full(len(setup.mesh.vertices), -1)
     drawn[surface.vertices] = np.arange(len(surface.vertices))
     for index, (layer, triangles) in enumerate(zip(setup.design.layers, found, strict=True)):
         # Those inside the body are not drawn, as its vertices there are not.
         shown = drawn[triangles.all]
         shown = shown[(shown >= 0).all(axis=1)]
-        told.append(
+        reported.append(
             events.BodyLayer(
                 name=layer.name or f"layer {index + 1}",
                 stiffness=layer.young * layer.thickness,
@@ -260,7 +260,7 @@ def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
                 triangles=shown.ravel().tolist(),
             )
         )
-    return told
+    return reported
 
 
 def _attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:

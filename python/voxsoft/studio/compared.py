@@ -53,10 +53,10 @@ def _side(runs: RunList, name: str) -> tuple[events.Side, dict[str, Any]]:
             design = Design.from_document(with_absolute_paths(document, folder))
             parameters = {key: each.value for key, each in design.parameters.items()}
         with suppress(OSError, VoxSoftError):
-            told = read_summary(folder)
-            status = str(told.get("status", "ok"))
+            content = read_summary(folder)
+            status = str(content.get("status", "ok"))
             if kind_of(folder) == "run":
-                metrics = dict(told.get("metrics", {}))
+                metrics = dict(content.get("metrics", {}))
     side = events.Side(
         id=name,
         name=name,

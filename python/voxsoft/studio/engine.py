@@ -82,10 +82,10 @@ class Engine(threading.Thread):
             try:
                 execute(command, self._stage, tab)
             except VoxSoftError as error:
-                said = events.Error(
+                reported = events.Error(
                     seq=command.seq, where=error.where, what=error.what, hint=error.hint
                 )
-                self._bus.send_to(tab, said)
+                self._bus.send_to(tab, reported)
 
         self._inbox.put(task)
 

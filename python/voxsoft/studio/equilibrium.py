@@ -19,8 +19,8 @@ class Measurement(threading.Thread):
     ----------
     result
         Gives the result.
-    told
-        Called with what the page is told; not at all where the state cannot be measured.
+    report
+        Called with what the page gets; not at all where the state cannot be measured.
     topology, frame
         Which body it is of, and the frame that shows it.
     """
@@ -28,12 +28,12 @@ class Measurement(threading.Thread):
     def __init__(
         self,
         result: Callable[[], Result],
-        told: Callable[[events.Equilibrium], None],
+        report: Callable[[events.Equilibrium], None],
         topology: int,
         frame: int,
     ) -> None:
         super().__init__(name="studio-equilibrium", daemon=True)
-        self._result, self._told = result, told
+        self._result, self._report = result, report
         self._topology, self._frame = topology, frame
 
     def run(self) -> None:
@@ -42,7 +42,7 @@ class Measurement(threading.Thread):
             found = equilibrium_of(self._result(), self._topology, self._frame)
         except VoxSoftError:
             return
-        self._told(found)
+        self._report(found)
 
 
 def equilibrium_of(result: Result, topology: int, frame: int) -> events.Equilibrium:

@@ -39,9 +39,9 @@ def _on_play(command: commands.Play | commands.Step, stage: Stage, tab: Tab) -> 
 
 @execute.register
 def _on_pause(command: commands.Pause, stage: Stage, tab: Tab) -> None:
-    told = [] if stage.playback.player is None else stage.playback.do(command)
+    reported = [] if stage.playback.player is None else stage.playback.do(command)
     stage.cancel_search()
-    stage.publish(told)
+    stage.publish(reported)
     stage.painted()
 
 

@@ -146,7 +146,7 @@ class Jobs:
         """Stop a job; what is finished is kept."""
         job = self._job(name)
         if job.running:
-            self._said(job, msgspec.structs.replace(job.state, state="stopping"))
+            self._report(job, msgspec.structs.replace(job.state, state="stopping"))
             job.order("stop")
 
     def known(self, name: str) -> Job | None:
@@ -188,17 +188,17 @@ class Jobs:
                 event = _decoder.decode(line)
             except msgspec.DecodeError:  # cut off by the end of the process
                 continue
-            self._said(job, event)
+            self._report(job, event)
         code = job.process.wait()
         if job.running:
             failed = msgspec.structs.replace(
                 job.state, state="failed", left=None, message=self._died(job, code)
             )
             JobJournal(job.folder).keep(failed)
-            self._said(job, failed)
+            self._report(job, failed)
         self._changed()
 
-    def _said(self, job: Job, event: events.Event) -> None:
+    def _report(self, job: Job, event: events.Event) -> None:
         if isinstance(event, events.Job):
             stopping = job.state.state == "stopping" and event.state not in FINISHED
             job.state = msgspec.structs.replace(event, state="stopping") if stopping else event

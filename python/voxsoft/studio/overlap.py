@@ -31,7 +31,7 @@ class OverlapWatch:
         self._playback, self._bus = playback, bus
         self._seen: tuple[int, int, bool] | None = None
         self._next = 0.0
-        self._told: events.Overlap | None = None
+        self._reported: events.Overlap | None = None
 
     def look(self) -> None:
         """Look over what is shown now, unless that was done, or time runs and it was just done."""
@@ -48,12 +48,12 @@ class OverlapWatch:
         ended = time.perf_counter()
         self._next = ended + max(EVERY, (ended - started) / SHARE)
         # A body that is not in itself is told of once.
-        before = self._told
+        before = self._reported
         if before is None or before.topology != found.topology or before.places or found.places:
-            self._told = found
+            self._reported = found
             self._bus.publish(found)
 
     def send_snapshot(self, tab: Tab) -> None:
         """Tell a new tab what the others know."""
-        if self._told is not None:
-            self._bus.send_to(tab, self._told)
+        if self._reported is not None:
+            self._bus.send_to(tab, self._reported)

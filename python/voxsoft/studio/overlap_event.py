@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voxsoft.design import Design
 from voxsoft.mesh import Mesh
-from voxsoft.simulation.overlaps import TOLD, overlapping, penetration_of
+from voxsoft.simulation.overlaps import NEGLIGIBLE, overlapping, penetration_of
 from voxsoft.simulation.places import voxel_size
 from voxsoft.studio import events
 
@@ -31,23 +31,23 @@ def overlap_of(
     topology
         Its number.
     """
-    least = TOLD * voxel_size(mesh)
-    regions = [
-        region
-        for region in penetration_of(design, mesh, positions).regions
-        if region.depth > least and not region.inverted
+    least = NEGLIGIBLE * voxel_size(mesh)
+    overlaps = [
+        overlap
+        for overlap in penetration_of(design, mesh, positions).overlaps
+        if overlap.depth > least and not overlap.inverted
     ]
-    if not regions:
+    if not overlaps:
         return events.Overlap(topology=topology, depth=0.0, sentence="", places=[])
-    where, what = overlapping(design, regions[0])
-    others = len(regions) - 1
+    where, what = overlapping(design, overlaps[0])
+    others = len(overlaps) - 1
     more = f" and at {others} more place{'s' if others > 1 else ''}" if others else ""
     return events.Overlap(
         topology=topology,
-        depth=regions[0].depth,
+        depth=overlaps[0].depth,
         sentence=f"{where}: {what}{more}: contact is not simulated",
         places=[
-            events.OverlapPlace(depth=region.depth, rest=region.at_rest, now=region.at_now)
-            for region in regions[:_MARKED]
+            events.OverlapPlace(depth=overlap.depth, rest=overlap.at_rest, now=overlap.at_now)
+            for overlap in overlaps[:_MARKED]
         ],
     )

@@ -167,11 +167,11 @@ class Playback:
         player = self.require_player()
         self.stop_doing()
         self.result = result
-        said = f"{result.message[:1].upper()}{result.message[1:]}"
+        sentence = f"{result.message[:1].upper()}{result.message[1:]}"
         return player.go_to_rest(
             result.positions,
             _STATES.get(result.status, "paused"),
-            f"{said}, in {time_text(result.seconds)}.",
+            f"{sentence}, in {time_text(result.seconds)}.",
             residual=result.residual,
             elastic=result.elastic_energy,
         )

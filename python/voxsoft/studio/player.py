@@ -98,8 +98,8 @@ class Player:
         elastic: float,
     ) -> list[Event]:
         """Take the state that a solver found."""
-        told = self._core.go_to_rest(positions, state, sentence, residual, elastic)
-        return _EVENTS.decode(told)
+        reported = self._core.go_to_rest(positions, state, sentence, residual, elastic)
+        return _EVENTS.decode(reported)
 
     def hold(self, sentence: str = "") -> None:
         """Stop time for now: a load or a pull lets it run again if it was asked to."""

@@ -134,16 +134,16 @@ class Progress:
 
     def _watch_gate(self, gate: Gate) -> None:
         """Say whenever another trial has ended, until none is left."""
-        said = -1
+        reported = -1
         while not self._goes_on.is_set():
             begun = gate.begun
             if begun == 0:
                 self._rest()
-            if begun != said:
+            if begun != reported:
                 self.say()
             if begun == 0:
                 return
-            said = begun
+            reported = begun
             time.sleep(_LOOK)
 
     def _rest(self) -> None:

@@ -91,32 +91,32 @@ class Stage:
 
     def play(self, command: commands.Play | commands.Step) -> None:
         """Let time run; what is asked last wins over a search that goes on."""
-        told = self.playback.do(command)
+        reported = self.playback.do(command)
         self.stop_search()
         self.playback.result = None
-        self.publish(told)
+        self.publish(reported)
 
     def touch(self, command: commands.Load | commands.Grab | commands.Release) -> None:
         """Change a load or a pull; what was at rest is so no more, and is shown at once."""
         playback = self.playback
-        told = playback.do(command)
+        reported = playback.do(command)
         self.stop_search()
         playback.result = None
         self.pictures.forget()
         if not playback.moving:
             self.pictures.paint_all()
-        self.publish(told)
+        self.publish(reported)
 
     def advance(self) -> None:
         """Take one frame, tell of it, and wait until the next is due."""
         started = time.perf_counter()
         frame = _core.FRAME_TIME
-        told = self.playback.advance(frame, budget=frame * SHARE_OF_FRAME)
+        reported = self.playback.advance(frame, budget=frame * SHARE_OF_FRAME)
         self.pictures.paint_all()
         self.overlaps.look()
         if self.playback.state == "at-rest":
             self.measure()
-        self.publish(told)
+        self.publish(reported)
         spare = frame - (time.perf_counter() - started)
         if self.playback.moving and spare > 0:
             time.sleep(spare)
@@ -168,10 +168,10 @@ class Stage:
     def _found(self, search: RestSearch, result: Result) -> None:
         if search is self._search:
             self._search = None
-            told = self.playback.go_to_rest(result)
+            reported = self.playback.go_to_rest(result)
             self.pictures.forget()
             self.painted()
-            self.publish(told)
+            self.publish(reported)
             self.measure()
 
     def _not_found(self, search: RestSearch, sentence: str) -> None:
@@ -190,10 +190,10 @@ class Stage:
         playback = self.playback
         body, shown = playback.require_body(), playback.shown_as("", "")
 
-        def told(equilibrium: events.Equilibrium) -> None:
+        def report(equilibrium: events.Equilibrium) -> None:
             self._later(lambda: self._measured(equilibrium))
 
-        Measurement(shown.measured, told, body.topology, playback.frame).start()
+        Measurement(shown.measured, report, body.topology, playback.frame).start()
 
     def _measured(self, equilibrium: events.Equilibrium) -> None:
         body = self.playback.body
@@ -214,9 +214,9 @@ class Stage:
         self.publish_stat()
         self.overlaps.look()
 
-    def publish(self, told: Sequence[events.Event]) -> None:
+    def publish(self, reported: Sequence[events.Event]) -> None:
         """Tell every tab."""
-        for event in told:
+        for event in reported:
             self.bus.publish(self.playback.complete(event))
 
     def publish_stat(self) -> None:

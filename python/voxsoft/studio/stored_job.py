@@ -34,13 +34,13 @@ def stored_job(folder: Path) -> list[events.Event]:
         return [*_last_state(folder, len(trials.trials)), trials]
     if kind != "calibrate":
         return []
-    said: list[events.Event] = [
+    reported: list[events.Event] = [
         event for event in read_journal(folder) if not isinstance(event, events.Job)
     ]
-    if not any(isinstance(event, events.Calibrated) for event in said):
+    if not any(isinstance(event, events.Calibrated) for event in reported):
         with suppress(FileNotFoundError):
-            said = _from_summary(folder)
-    return [*_last_state(folder), *said]
+            reported = _from_summary(folder)
+    return [*_last_state(folder), *reported]
 
 
 def _last_state(folder: Path, done: int | None = None) -> Iterator[events.Job]:

@@ -101,8 +101,8 @@ class TestCompare:
         tab = side_by_side
         due = {}
         for name in ("short", "long"):
-            told = json.loads((compared_runs.runs / name / "summary.json").read_text())
-            due[name] = 1e3 * told["metrics"]["max_displacement"]
+            reported = json.loads((compared_runs.runs / name / "summary.json").read_text())
+            due[name] = 1e3 * reported["metrics"]["max_displacement"]
             assert float(largest_of(tab, name)) == pytest.approx(due[name], rel=1e-3)
         change = re.search(r"\(([+−][\d.]+) %\)", tab.find("largest-long").inner_text())[1]
         assert float(change) == pytest.approx(100 * (due["long"] / due["short"] - 1), rel=1e-2)
@@ -162,7 +162,7 @@ class TestCompare:
         assert float(largest_of(tab, "bars")) < float(largest_of(tab, "short"))
 
     @pytest.mark.slow
-    def test_a_run_that_was_deleted_meanwhile_is_said_beside_the_other(
+    def test_a_run_that_was_deleted_meanwhile_is_reported_beside_the_other(
         self, compared_runs, open_tab
     ):
         shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "doomed")
@@ -171,17 +171,17 @@ class TestCompare:
         tab.find("runs-table").get_by_text("doomed").wait_for()
         compare(tab, "short", "doomed")
         tab.find("largest-short").wait_for()
-        told = tab.find("still").get_by_role("alert")
-        told.get_by_text("holds no result").wait_for()
+        reported = tab.find("still").get_by_role("alert")
+        reported.get_by_text("holds no result").wait_for()
         shutil.rmtree(compared_runs.runs / "doomed")
-        told.get_by_role("button", name="Try again").click()
-        told.get_by_text("is not in the list of runs any more").wait_for()
+        reported.get_by_role("button", name="Try again").click()
+        reported.get_by_text("is not in the list of runs any more").wait_for()
         assert colors(settled(tab, LEFT)) > 200
         # Once it is there again, comparing again shows it.
         shutil.copytree(compared_runs.runs / "short", compared_runs.runs / "doomed")
         tab.find("compare-runs").click()
         tab.find("largest-doomed").wait_for()
-        told.wait_for(state="detached")
+        reported.wait_for(state="detached")
 
     def test_nobody_waits_for_a_body_whose_pane_is_closed(self, compared_runs, open_tab):
         tab = open_tab(compared_runs.address, mode="runs")
@@ -195,16 +195,16 @@ class TestCompare:
             tab.find("mode-simulate").click()
         assert [url for url in given_up if url.endswith("of=bars")] == given_up != []
 
-    def test_a_server_that_does_not_answer_is_said(self, compared_runs, open_tab):
+    def test_a_server_that_does_not_answer_is_reported(self, compared_runs, open_tab):
         tab = open_tab(compared_runs.address, mode="runs")
         tab.page.route("**/still?of=long", lambda route: route.abort("connectionrefused"))
         compare(tab, "short", "long")
-        told = tab.find("still").get_by_role("alert")
-        told.get_by_text("VoxSoft does not answer.").wait_for()
+        reported = tab.find("still").get_by_role("alert")
+        reported.get_by_text("VoxSoft does not answer.").wait_for()
         tab.page.unroute("**/still?of=long")
-        told.get_by_role("button", name="Try again").click()
+        reported.get_by_role("button", name="Try again").click()
         tab.find("largest-long").wait_for()
-        told.wait_for(state="detached")
+        reported.wait_for(state="detached")
 
 
 MEASURED = "s (mm),dz (mm)\n30,-10\n60,-30\n90,-52\n"
@@ -233,8 +233,8 @@ class TestCalibrate:
         job.get_by_role("button", name="Pause").click()
         tab.page.locator("[data-testid=job-calibrate][data-state=paused]").wait_for(timeout=60_000)
         assert colors(settled(tab)) > 200
-        told = said_errors(tab)
-        assert told == words.all_inner_texts()
+        reported = error_events(tab)
+        assert reported == words.all_inner_texts()
         # The body lies where the best candidate lies: its largest displacement is that of the tip.
         folder = own_server.runs / "beam-calibration"
         with np.load(folder / "specimen.npz") as specimen:
@@ -251,7 +251,7 @@ class TestCalibrate:
         assert tab.errors == []
 
 
-def said_errors(tab):
+def error_events(tab):
     """The errors as the table beside tells them."""
     rows = tab.find("errors-table").locator("tbody tr").all()
     cells = [row.locator("td").all_inner_texts()[-2:] for row in rows]

@@ -88,12 +88,12 @@ def test_a_picture_that_is_saved_while_pictures_are_coarse_is_whole(prepared):
     whole = tab.page.evaluate(WIDTHS)[1]
     tab.find("play").click()
     tab.until(f"{WIDTHS}[0] < {whole}")
-    with tab.page.expect_download() as told:
+    with tab.page.expect_download() as reported:
         tab.page.keyboard.press("Control+k")
         tab.find("palette").wait_for()
         tab.page.keyboard.type("Save a picture at 2 times")
         tab.page.keyboard.press("Enter")
-    saved = Image.open(io.BytesIO(told.value.path().read_bytes()))
+    saved = Image.open(io.BytesIO(reported.value.path().read_bytes()))
     assert saved.width == 2 * whole
     tab.find("play").click()
 

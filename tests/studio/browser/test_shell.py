@@ -130,7 +130,7 @@ def test_the_page_fits_its_window(served, open_tab, size):
         tab.find("view-more").wait_for()
 
 
-def test_another_version_of_the_protocol_is_told_and_not_tried_again(served, chromium):
+def test_another_version_of_the_protocol_is_reported_and_not_tried_again(served, chromium):
     context = chromium.new_context()
     page = context.new_page()
     opened = []
@@ -139,7 +139,9 @@ def test_another_version_of_the_protocol_is_told_and_not_tried_again(served, chr
         opened.append(socket)
         server = socket.connect_to_server()
         socket.on_message(
-            lambda said: server.send(said.replace(f'"protocol":{PROTOCOL}', '"protocol":99'))
+            lambda reported: server.send(
+                reported.replace(f'"protocol":{PROTOCOL}', '"protocol":99')
+            )
         )
 
     page.route_web_socket(re.compile("/ws$"), between)
@@ -153,7 +155,7 @@ def test_another_version_of_the_protocol_is_told_and_not_tried_again(served, chr
     context.close()
 
 
-def test_a_studio_with_another_token_is_told_from_one_that_is_away(own_server, open_tab):
+def test_a_studio_with_another_token_is_distinguished_from_one_that_is_away(own_server, open_tab):
     tab = open_tab(own_server.address)
     own_server.stop()
     tab.find("disconnected").get_by_text("retrying").wait_for()

@@ -46,9 +46,13 @@ impl Check<'_> {
         let what = format!("it ends as {}", solution.status.name());
         self.subject
             .holds(law, &what, solution.status == Status::AtRest)?;
-        let told = solution.residual;
-        self.subject
-            .at_most(law, "the residual that it reports", told, self.tolerance)?;
+        let reported = solution.residual;
+        self.subject.at_most(
+            law,
+            "the residual that it reports",
+            reported,
+            self.tolerance,
+        )?;
         let found = balance(self.problem, &solution.state.positions, f64::INFINITY);
         let allowed = OTHER_SUM * self.tolerance;
         self.subject

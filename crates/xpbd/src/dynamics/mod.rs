@@ -2,9 +2,9 @@
 
 mod grab;
 mod live;
+mod membrane_inertia;
 mod on_strips;
 mod on_vertices;
-mod sheets;
 
 use std::ops::ControlFlow;
 
@@ -12,9 +12,7 @@ use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::strips::Strips;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{
-    Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status,
-};
+use voxsoft_solid::{Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status};
 
 use crate::outcome::{Answer, BLOW_UP_EXCESS, MAX_BACK_OFFS, start_at};
 use crate::stiffness::{Membranes, largest_eigenvalue};
@@ -69,10 +67,10 @@ impl Default for Dynamics {
 /// A substep of one over the highest frequency: half the explicit limit.
 const SUBSTEP_FREQUENCY: f64 = 1.0;
 /// A substep of at most so many over the highest frequency of the body with its membranes taut, though longer
-/// ones are stable ([`sheets`]): the inertia that sheets are given grows with the fourth power. A bar between
-/// sheets of 2,000 times its stiffness is 1.5 % slow with 8 and 0.7 % with 4, most of that of its voxels; a free
-/// body between the two has its angular momentum change by 7 % and 2 %.
-const SHEET_FREQUENCY: f64 = 4.0;
+/// ones are stable ([`membrane_inertia`]): the inertia that membranes are given grows with the fourth power. A
+/// bar between membranes of 2,000 times its stiffness is 1.5 % slow with 8 and 0.7 % with 4, most of that of its
+/// voxels; a free body between the two has its angular momentum change by 7 % and 2 %.
+const MEMBRANE_FREQUENCY: f64 = 4.0;
 /// Damping times after which an oscillation must have shrunk (by `e⁻²` at least).
 const WINDOW_DAMPING_TIMES: f64 = 4.0;
 
@@ -261,7 +259,7 @@ fn at_rest(problem: &Problem, state: &State, residual: f64, tolerance: f64) -> b
 }
 
 /// The substeps per step: those of the settings, or as many as the highest frequency needs, that of membranes
-/// as far as [`sheets`] cannot do without.
+/// as far as [`membrane_inertia`] cannot do without.
 fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
     let Subject {
         problem, settings, ..
@@ -273,7 +271,7 @@ fn substeps_of(subject: Subject<'_>, strips: Option<&Strips>) -> u32 {
     let of = |membranes| largest_eigenvalue(problem, masses, strips, membranes).sqrt();
     let mut highest = of(Membranes::Apart);
     if !problem.body().membranes().is_empty() {
-        highest = highest.max(of(Membranes::Taut) / SHEET_FREQUENCY);
+        highest = highest.max(of(Membranes::Taut) / MEMBRANE_FREQUENCY);
     }
     (settings.time_step * highest / SUBSTEP_FREQUENCY)
         .ceil()

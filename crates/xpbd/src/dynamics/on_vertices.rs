@@ -5,7 +5,7 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 use voxsoft_solid::{Body, Problem, State, elastic};
 
 use super::grab::{Held, add_pulls};
-use super::sheets::Sheets;
+use super::membrane_inertia::MembraneInertia;
 use super::{Arrays, Damping, Subject};
 use crate::damping;
 use crate::viscosity::Viscosity;
@@ -21,7 +21,7 @@ pub(super) struct OnVertices {
     forces: Vec<Vec3>,
     forces_before: Vec<Vec3>,
     viscosity: Viscosity,
-    sheets: Option<Sheets>,
+    membranes: Option<MembraneInertia>,
     edge_multipliers: Vec<f64>,
     edge_compliances: Vec<f64>,
     tet_multipliers: Vec<f64>,
@@ -55,7 +55,7 @@ impl OnVertices {
             forces: vec![[0.0; 3]; count],
             forces_before: vec![[0.0; 3]; count],
             viscosity: Viscosity::new(body, settings.retardation),
-            sheets: Sheets::of(problem),
+            membranes: MembraneInertia::of(problem),
             edge_multipliers: vec![0.0; body.edges().len()],
             edge_compliances: body.edges().iter().map(|e| 1.0 / e.stiffness).collect(),
             tet_multipliers: vec![0.0; body.tets().len()],
@@ -70,7 +70,7 @@ impl OnVertices {
 
     /// Multipliers from the elastic forces at the first position, then free flight under all forces.
     /// All else is forces only: a substep of one over the highest frequency integrates voxels and attached
-    /// terms as it stands (symplectic Euler), [`Sheets`] see to membranes, and there is nothing to project.
+    /// terms as it stands (symplectic Euler), [`MembraneInertia`] sees to membranes, and there is nothing to project.
     fn predict(&mut self, subject: Subject<'_>, h: f64) {
         let body = subject.problem.body();
         self.start.copy_from_slice(&self.state.positions);
@@ -101,8 +101,8 @@ impl OnVertices {
         }
         self.update_damping(subject);
         let kept = libm::exp(-self.damping_rate * h);
-        if let Some(sheets) = &mut self.sheets {
-            sheets.note(kept, &self.state.velocities);
+        if let Some(membranes) = &mut self.membranes {
+            membranes.note(kept, &self.state.velocities);
         }
         self.held.weigh(
             subject.grabs,
@@ -130,9 +130,9 @@ impl OnVertices {
             &mut self.state.velocities,
             &mut self.state.positions,
         );
-        if let Some(sheets) = &mut self.sheets {
-            sheets.spread(h, &self.inverse_masses, &mut self.state.velocities);
-            for &vertex in sheets.vertices() {
+        if let Some(membranes) = &mut self.membranes {
+            membranes.spread(h, &self.inverse_masses, &mut self.state.velocities);
+            for &vertex in membranes.vertices() {
                 let moved = scale(h, self.state.velocities[vertex]);
                 self.state.positions[vertex] = add(self.start[vertex], moved);
             }
@@ -262,14 +262,14 @@ impl Arrays for OnVertices {
     fn substep(&mut self, subject: Subject<'_>, h: f64) {
         self.predict(subject, h);
         let (problem, settings) = (subject.problem, subject.settings);
-        if let Some(sheets) = &mut self.sheets {
-            sheets.note(1.0, &self.state.positions);
+        if let Some(membranes) = &mut self.membranes {
+            membranes.note(1.0, &self.state.positions);
         }
         for _ in 0..settings.iterations {
             self.sweep(problem.body(), settings.retardation, h);
         }
-        if let Some(sheets) = &mut self.sheets {
-            sheets.spread(h, &self.inverse_masses, &mut self.state.positions);
+        if let Some(membranes) = &mut self.membranes {
+            membranes.spread(h, &self.inverse_masses, &mut self.state.positions);
         }
         problem.place_clamps(self.state.time + h, 1.0, &mut self.state.positions);
         self.lift_to_floor(problem);

@@ -10,12 +10,12 @@ Examples
 
 from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, Toe, ToeCorrection
 from voxsoft.materials.coupon.fit import DEFAULT_MAX_STRAIN, fit_coupons
-from voxsoft.materials.coupon.observation import (
-    BendingObservation,
-    FrequencyObservation,
-    ModulusObservation,
-    ObservedModulus,
-    read_observations,
+from voxsoft.materials.coupon.modulus_test import (
+    BendingTest,
+    FrequencyTest,
+    KnownModulus,
+    MeasuredModulus,
+    read_modulus_tests,
 )
 from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
 from voxsoft.materials.coupon.table import read_curve
@@ -23,17 +23,17 @@ from voxsoft.materials.coupon.table import read_curve
 __all__ = [
     "DEFAULT_MAX_STRAIN",
     "TOE_CORRECTIONS",
-    "BendingObservation",
+    "BendingTest",
     "CouponFit",
     "Curve",
-    "FrequencyObservation",
+    "FrequencyTest",
     "Interval",
+    "KnownModulus",
+    "MeasuredModulus",
     "ModelFit",
-    "ModulusObservation",
-    "ObservedModulus",
     "Toe",
     "ToeCorrection",
     "fit_coupons",
     "read_curve",
-    "read_observations",
+    "read_modulus_tests",
 ]

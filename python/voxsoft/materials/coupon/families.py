@@ -50,7 +50,7 @@ class Block(NamedTuple):
 
 
 class Anchor(NamedTuple):
-    """An observed initial shear modulus in Pa, and its weight."""
+    """A measured initial shear modulus in Pa, and its weight."""
 
     shear: float
     weight: float

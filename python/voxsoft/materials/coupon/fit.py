@@ -12,7 +12,7 @@ from scipy.special import stdtrit
 from voxsoft.errors import MaterialError, MeasurementError
 from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, ToeCorrection
 from voxsoft.materials.coupon.families import FAMILIES, Anchor, Block, Data, Family, NoFit
-from voxsoft.materials.coupon.observation import ObservedModulus
+from voxsoft.materials.coupon.modulus_test import MeasuredModulus
 from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
 from voxsoft.materials.hyperelastic import NEARLY_INCOMPRESSIBLE, Floats, Hyperelastic
 from voxsoft.materials.lattice import SILICONE_DENSITY
@@ -31,7 +31,7 @@ _CONFIDENCE: Final = 0.95
 
 def fit_coupons(
     curves: Sequence[Curve],
-    observed: Sequence[ObservedModulus] = (),
+    observed: Sequence[MeasuredModulus] = (),
     *,
     toe: ToeCorrection = "strain",
     max_strain: float = DEFAULT_MAX_STRAIN,
@@ -70,7 +70,7 @@ def fit_coupons(
 
     Notes
     -----
-    Least squares on the engineering stress. With observed moduli, which have uncertainties, points
+    Least squares on the engineering stress. With measured moduli, which have uncertainties, points
     need one too: it is the scale of the residuals of the best model, and as these follow one
     another (their lag-1 correlation is ``ρ``), ``n`` points count as ``n (1 - ρ)/(1 + ρ)``. The
     same count widens the confidence intervals, which come from the linearized model. An interval

@@ -11,7 +11,7 @@ import numpy as np
 from voxsoft.errors import MaterialError
 from voxsoft.materials.card import Card
 from voxsoft.materials.coupon.curve import Curve, Toe, ToeCorrection
-from voxsoft.materials.coupon.observation import ObservedModulus
+from voxsoft.materials.coupon.modulus_test import MeasuredModulus
 from voxsoft.materials.hyperelastic import Hyperelastic
 from voxsoft.materials.stability import StableRange
 from voxsoft.materials.tested import StretchRange
@@ -121,7 +121,7 @@ class CouponFit:
     curves: tuple[Curve, ...]
     toes: tuple[Toe | None, ...]
     correction: ToeCorrection
-    observed: tuple[ObservedModulus, ...]
+    observed: tuple[MeasuredModulus, ...]
     max_strain: float
     models: tuple[ModelFit, ...]
     rejected: Mapping[str, str]

@@ -8,17 +8,17 @@ use crate::material::Material;
 use crate::predicates::{Point, is_positive, side};
 use crate::triangles::reaches;
 use crate::vectors::{axpy, cross, distance, dot, sub};
-use crate::{Body, Covered, Region};
+use crate::{Body, Covered, Overlap};
 
 /// Depths below this part of the edge that they are measured on are rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Finds the regions, the deepest first, and all vertices that other material covers.
-pub(crate) fn regions(
+/// Finds the overlaps, the deepest first, and all vertices that other material covers.
+pub(crate) fn overlaps(
     body: &Body<'_>,
     all: &[[i32; 3]],
     crossings: &Crossings,
-) -> (Vec<Region>, Vec<Covered>) {
+) -> (Vec<Overlap>, Vec<Covered>) {
     let mut search = Search {
         body,
         all,
@@ -34,16 +34,16 @@ pub(crate) fn regions(
     let vertices = search.flood(crossings);
     search.measure_vertices(&vertices);
     search.measure_edges(&crossings.pairs);
-    let found = search.regions(crossings, &vertices);
+    let found = search.overlaps(crossings, &vertices);
     let place: BTreeMap<usize, u32> = found.iter().map(|&(group, _)| group).zip(0..).collect();
     let covered = vertices.iter().map(|each| Covered {
         vertex: each.vertex,
         tet: each.tets[0] as i32,
-        region: place[&search.group_of(each)],
+        overlap: place[&search.group_of(each)],
     });
     let covered = covered.collect();
-    let regions = found.into_iter().map(|(_, region)| region).collect();
-    (regions, covered)
+    let overlaps = found.into_iter().map(|(_, overlap)| overlap).collect();
+    (overlaps, covered)
 }
 
 /// A vertex in foreign material: that of a component, and the tetrahedra there that hold it.
@@ -250,8 +250,8 @@ impl Search<'_> {
         }
     }
 
-    /// The regions, the deepest first, each with its group.
-    fn regions(&mut self, crossings: &Crossings, vertices: &[Vertex]) -> Vec<(usize, Region)> {
+    /// The overlaps, the deepest first, each with its group.
+    fn overlaps(&mut self, crossings: &Crossings, vertices: &[Vertex]) -> Vec<(usize, Overlap)> {
         let mut first: BTreeMap<usize, [u32; 2]> = BTreeMap::new();
         for &[i, j] in &crossings.pairs {
             let group = self.groups.of(i, self.component(j));
@@ -262,14 +262,14 @@ impl Search<'_> {
             let triangle = self.around.of(each.vertex)[0];
             first.entry(self.group_of(each)).or_insert([triangle; 2]);
         }
-        let sheets = self.sheet_depths(&crossings.pairs);
-        let mut found: Vec<(usize, Region)> = first
+        let membranes = self.membrane_depths(&crossings.pairs);
+        let mut found: Vec<(usize, Overlap)> = first
             .into_iter()
             .map(|(group, pair)| match self.deepest.get(&group) {
                 Some(sample) if sample.depth > 0.0 => (group, self.at_sample(*sample)),
                 _ => (
                     group,
-                    self.at_pair(pair, sheets.get(&group).copied().unwrap_or(0.0)),
+                    self.at_pair(pair, membranes.get(&group).copied().unwrap_or(0.0)),
                 ),
             })
             .collect();
@@ -278,8 +278,8 @@ impl Search<'_> {
         found
     }
 
-    /// How far edges reach beyond the planes of sheets, at least, by region: a sheet has no inside to be deep in.
-    fn sheet_depths(&mut self, pairs: &[[u32; 2]]) -> BTreeMap<usize, f64> {
+    /// How far edges reach beyond the planes of membranes, at least, by overlap: a membrane has no inside.
+    fn membrane_depths(&mut self, pairs: &[[u32; 2]]) -> BTreeMap<usize, f64> {
         let mut depths: BTreeMap<usize, f64> = BTreeMap::new();
         for &[i, j] in pairs {
             if (j as usize) < self.body.triangles.len() {
@@ -302,7 +302,7 @@ impl Search<'_> {
         depths
     }
 
-    fn at_sample(&self, sample: Sample) -> Region {
+    fn at_sample(&self, sample: Sample) -> Overlap {
         let [p, q] = sample.ends;
         let place =
             |points: &[Point]| between(points[p as usize], points[q as usize], sample.along);
@@ -316,7 +316,7 @@ impl Search<'_> {
         let own = at_ends
             .copied()
             .find(|&tet| self.body.tets[tet as usize].contains(&q));
-        Region {
+        Overlap {
             depth: sample.depth,
             now,
             rest: [place(self.body.rest), other],
@@ -326,7 +326,7 @@ impl Search<'_> {
     }
 
     /// Where nothing is deep: at the middles of two triangles that cross.
-    fn at_pair(&self, pair: [u32; 2], depth: f64) -> Region {
+    fn at_pair(&self, pair: [u32; 2], depth: f64) -> Overlap {
         let center = |points: &[Point], triangle: u32| {
             let mut center = [0.0; 3];
             for vertex in self.all[triangle as usize] {
@@ -339,7 +339,7 @@ impl Search<'_> {
         let inverted = at_corners
             .flat_map(|v| self.material.stars.of(v))
             .any(|&tet| !is_positive(self.material.corners(tet)));
-        Region {
+        Overlap {
             depth,
             now: center(self.body.positions, pair[0]),
             rest: pair.map(|t| center(self.body.rest, t)),

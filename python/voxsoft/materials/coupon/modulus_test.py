@@ -1,6 +1,6 @@
 """Young's modulus from other tests: beams that bend or swing, or a number with an uncertainty.
 
-Each kind gives one observed modulus at small strain with a standard uncertainty, which joins the
+Each kind gives one modulus at small strain with a standard uncertainty, which joins the
 curves in a fit. The beam formulas are those of a slender Timoshenko beam of incompressible material
 (``G = E/3``, shear coefficient ``κ = 5/6``), clamped at one end.
 """
@@ -32,7 +32,7 @@ _NonNegativeForce = Annotated[float, UnitOf("force", non_negative=True)]
 _PositiveRate = Annotated[float, UnitOf("rate", positive=True)]
 
 
-class ObservedModulus(NamedTuple):
+class MeasuredModulus(NamedTuple):
     """Young's modulus at small strain as another test saw it, both in Pa."""
 
     name: str
@@ -40,13 +40,13 @@ class ObservedModulus(NamedTuple):
     uncertainty: float
 
 
-class _Observation(Record):
+class _ModulusTest(Record):
     error_type: ClassVar[type[VoxSoftError]] = MeasurementError
 
     name: str = ""
 
 
-class ModulusObservation(_Observation):
+class KnownModulus(_ModulusTest):
     """A Young's modulus that was found elsewhere.
 
     Parameters
@@ -58,7 +58,7 @@ class ModulusObservation(_Observation):
 
     Examples
     --------
-    >>> ModulusObservation(young="60 kPa", uncertainty="3 kPa").observed().uncertainty
+    >>> KnownModulus(young="60 kPa", uncertainty="3 kPa").modulus().uncertainty
     3000.0
     """
 
@@ -66,12 +66,12 @@ class ModulusObservation(_Observation):
     young: Modulus
     uncertainty: Modulus
 
-    def observed(self) -> ObservedModulus:
+    def modulus(self) -> MeasuredModulus:
         """The modulus and its uncertainty."""
-        return ObservedModulus(self.name or self.kind, self.young, self.uncertainty)
+        return MeasuredModulus(self.name or self.kind, self.young, self.uncertainty)
 
 
-class _Beam(_Observation):
+class _Beam(_ModulusTest):
     length: PositiveLength
     height: PositiveLength
     density: PositiveDensity = SILICONE_DENSITY
@@ -89,7 +89,7 @@ class _Beam(_Observation):
         return self
 
 
-class BendingObservation(_Beam):
+class BendingTest(_Beam):
     """The tip deflection of a level cantilever under its weight and a force at the tip.
 
     With the weight per length ``w = ρ g b h`` and ``I = b h³/12``,
@@ -111,14 +111,14 @@ class BendingObservation(_Beam):
 
     Examples
     --------
-    >>> seen = BendingObservation(
+    >>> seen = BendingTest(
     ...     length="50 mm",
     ...     width="10 mm",
     ...     height="10 mm",
     ...     deflection="4 mm",
     ...     uncertainty="5 %",
     ... )
-    >>> round(seen.observed().young / 1e3, 1)
+    >>> round(seen.modulus().young / 1e3, 1)
     257.7
     """
 
@@ -138,7 +138,7 @@ class BendingObservation(_Beam):
             )
         return self
 
-    def observed(self) -> ObservedModulus:
+    def modulus(self) -> MeasuredModulus:
         """The modulus and its uncertainty."""
         area, inertia = self.width * self.height, self.width * self.height**3 / 12.0
         weight = self.density * STANDARD_GRAVITY * area
@@ -147,10 +147,10 @@ class BendingObservation(_Beam):
         moment = force * length + weight * length**2 / 2.0
         sheared = 3.0 * moment / (_SHEAR_COEFFICIENT * area)
         young = (bent + sheared) / self.deflection
-        return ObservedModulus(self.name or self.kind, young, self.uncertainty * young)
+        return MeasuredModulus(self.name or self.kind, young, self.uncertainty * young)
 
 
-class FrequencyObservation(_Beam):
+class FrequencyTest(_Beam):
     """The first natural frequency of a cantilever that swings freely.
 
     ``E = (2π f)² ρ (12 L⁴/(β⁴ h²) + 12 L²/(π² κ))`` with ``β = 1.8751``: bending and shear joined
@@ -169,41 +169,39 @@ class FrequencyObservation(_Beam):
 
     Examples
     --------
-    >>> seen = FrequencyObservation(
+    >>> seen = FrequencyTest(
     ...     length="100 mm", height="10 mm", frequency="1.2 Hz", uncertainty="5 %"
     ... )
-    >>> round(seen.observed().young / 1e3, 1)
+    >>> round(seen.modulus().young / 1e3, 1)
     59.9
     """
 
     kind: Literal["frequency"] = "frequency"
     frequency: _PositiveRate
 
-    def observed(self) -> ObservedModulus:
+    def modulus(self) -> MeasuredModulus:
         """The modulus and its uncertainty."""
         rate = 2.0 * math.pi * self.frequency
         bent = 12.0 * self.length**4 / (_FIRST_MODE**4 * self.height**2)
         sheared = 12.0 * self.length**2 / (math.pi**2 * _SHEAR_COEFFICIENT)
         young = rate**2 * self.density * (bent + sheared)
-        return ObservedModulus(self.name or self.kind, young, self.uncertainty * young)
+        return MeasuredModulus(self.name or self.kind, young, self.uncertainty * young)
 
 
-#: Any kind of observation, told apart by ``kind``.
-Observation = Annotated[
-    ModulusObservation | BendingObservation | FrequencyObservation, Field(discriminator="kind")
-]
+#: Any of them, distinguished by ``kind``.
+ModulusTest = Annotated[KnownModulus | BendingTest | FrequencyTest, Field(discriminator="kind")]
 
 
-class Observations(Record):
-    """A file of observations: ``[[observation]]`` tables, each with its ``kind``."""
+class ModulusTests(Record):
+    """A file of such tests: ``[[observation]]`` tables, each with its ``kind``."""
 
     error_type: ClassVar[type[VoxSoftError]] = MeasurementError
 
-    observation: tuple[Observation, ...] = Field(min_length=1)
+    observation: tuple[ModulusTest, ...] = Field(min_length=1)
 
 
-def read_observations(document: Mapping[str, Any]) -> list[ObservedModulus]:
-    """Read observed moduli from parsed TOML, where numbers carry their units as text.
+def read_modulus_tests(document: Mapping[str, Any]) -> list[MeasuredModulus]:
+    """Read measured moduli from parsed TOML, where numbers carry their units as text.
 
     Raises
     ------
@@ -213,11 +211,11 @@ def read_observations(document: Mapping[str, Any]) -> list[ObservedModulus]:
     Examples
     --------
     >>> table = {"kind": "modulus", "young": "60 kPa", "uncertainty": "3 kPa"}
-    >>> read_observations({"observation": [table]})[0].young
+    >>> read_modulus_tests({"observation": [table]})[0].young
     60000.0
     """
     try:
-        read = Observations.model_validate(document, context=dict(FILE_CONTEXT))
+        read = ModulusTests.model_validate(document, context=dict(FILE_CONTEXT))
     except ValidationError as error:
-        raise plain_error(error, Observations, document) from None
-    return [observation.observed() for observation in read.observation]
+        raise plain_error(error, ModulusTests, document) from None
+    return [test.modulus() for test in read.observation]

@@ -1,8 +1,8 @@
 //! The inertia that membranes are given, so that they do not set the substep.
 //!
-//! A sheet of fabric is so much stiffer than the rubber beneath it that its own waves would ask for substeps of
+//! A layer of fabric is so much stiffer than the rubber beneath it that its own waves would ask for substeps of
 //! microseconds, though nobody looks at them. Its forces stay as they are, explicit at the beginning of the
-//! substep, but the vertices of sheets answer to all forces with the masses
+//! substep, but the vertices of membranes answer to all forces with the masses
 //!
 //! ```text
 //! M̃ = M + h⁴/27 L M⁻¹ L
@@ -13,15 +13,15 @@
 //! doi 10.1002/nme.1293).
 //!
 //! **Stable.** An explicit substep wants `h² K ≤ 4 M̃`. The default substep is one over the highest frequency of
-//! the rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the sheets; and
-//! `3 + 4/27 x² ≥ 4/3 x` for any `x`. So a sheet does not limit the substep, up to strains that make it by a
+//! the rest of the body, `h² K ≤ M` there, which leaves `3 M + 4/27 h⁴ L M⁻¹ L` for the membranes; and
+//! `3 + 4/27 x² ≥ 4/3 x` for any `x`. So a membrane does not limit the substep, up to strains that make it by a
 //! third stiffer than it is at rest.
 //!
 //! **Harmless.** A rest has no acceleration, so it is the same for any `M̃`. `L` gives zero for a translation, so
 //! momentum is kept; it is the same along all axes, so angular momentum is. A wave with the frequency `ω` in a
-//! sheet alone has its inertia multiplied by `1 + (hω)⁴/27`: motions that are resolved, `hω < 1`, hardly notice.
+//! membrane alone has its inertia multiplied by `1 + (hω)⁴/27`: motions that are resolved, `hω < 1`, hardly notice.
 //! With `L` alone in place of its square that would be `1 + (hω)²/3`, and turning as a whole would be hard. How far
-//! `hω` may go by default, [`super::SHEET_FREQUENCY`] says.
+//! `hω` may go by default, [`super::MEMBRANE_FREQUENCY`] says.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Problem};
@@ -35,7 +35,7 @@ const SHARE: f64 = 1.0 / 27.0;
 type Rows = Vec<Vec<(usize, f64)>>;
 
 /// All membranes of a body, as what they add to the inertia of their vertices.
-pub(super) struct Sheets {
+pub(super) struct MembraneInertia {
     /// The vertices of membranes, in the order of the matrices.
     vertices: Vec<usize>,
     /// `L`.
@@ -51,7 +51,7 @@ pub(super) struct Sheets {
     changes: Vec<Vec3>,
 }
 
-impl Sheets {
+impl MembraneInertia {
     /// `None` for a body without membranes.
     pub fn of(problem: &Problem) -> Option<Self> {
         let body = problem.body();
