@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import tiny_design
 from typer.testing import CliRunner
 
 from voxsoft.cli.app import app
@@ -20,30 +21,8 @@ BEAM = ROOT / "examples" / "beam.toml"
 CARD = ROOT / "python/voxsoft/materials/cards/ecoflex-00-30-lattice.toml"
 MEASURED = ROOT / "examples" / "data" / "paper_beams" / "ecoflex-00-30.csv"
 
-#: Two voxels that carry their weight.
-TINY = """
-name = "tiny"
-voxel_size = "5 mm"
-[shapes]
-body = { kind = "box", size = ["5 mm", "5 mm", "= height"] }
-[parameters]
-height = { value = "10 mm", min = "5 mm", max = "10 mm", step = "5 mm" }
-[materials]
-m = { model = "neo-hookean", young = "100 kPa", poisson = 0.3, density = "1000 kg/m^3" }
-[[parts]]
-shape = "body"
-material = "m"
-[[clamps]]
-region = { z = ["0 mm", "0 mm"] }
-[[loads]]
-kind = "gravity"
-[probes]
-top = { z = ["-1 m", "1 m"] }
-[objectives.rise]
-maximize = "displacement"
-probe = "top"
-axis = "z"
-"""
+#: With a name.
+TINY = f'name = "tiny"{tiny_design.TINY}'
 TENSILE = "strain,stress_kPa\n" + "".join(f"{s / 50},{s * 1.4}\n" for s in range(40))
 
 QUICK = ["design.toml", "--outside", "none", "--voxel-sizes", "none", "--splits", "1"]

@@ -9,6 +9,7 @@ from pathlib import Path, PureWindowsPath
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
+from tiny_design import TINY
 from typer.testing import CliRunner
 
 from voxsoft._folders import LONGEST, folder_name
@@ -25,30 +26,6 @@ NASTY = [
 
 PIECES = st.sampled_from(["/", "\\", "..", ".", ":", "\0", "con", " ", "~", "ü", "\u202e", "．"])
 NAMES = st.one_of(st.text(), st.lists(PIECES, max_size=9).map("".join), st.sampled_from(NASTY))
-
-#: Two voxels that carry their weight: a whole run takes milliseconds.
-TINY = """
-voxel_size = "5 mm"
-[shapes]
-body = { kind = "box", size = ["5 mm", "5 mm", "= height"] }
-[parameters]
-height = { value = "10 mm", min = "5 mm", max = "10 mm", step = "5 mm" }
-[materials]
-m = { model = "neo-hookean", young = "100 kPa", poisson = 0.3, density = "1000 kg/m^3" }
-[[parts]]
-shape = "body"
-material = "m"
-[[clamps]]
-region = { z = ["0 mm", "0 mm"] }
-[[loads]]
-kind = "gravity"
-[probes]
-top = { z = ["-1 m", "1 m"] }
-[objectives.rise]
-maximize = "displacement"
-probe = "top"
-axis = "z"
-"""
 
 
 @given(NAMES)
