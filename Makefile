@@ -23,7 +23,7 @@ help:
 	@echo "make test         set up, run all quick tests"
 	@echo "make test-browser every way through the studio in Chromium, some five minutes"
 	@echo "make test-all     also the slow tests (full calibrations, 10,000 random shapes, 512^3 grids)"
-	@echo "make lint         formatters, linters, types, layers"
+	@echo "make lint         formatters, linters, types, the stub of the core, layers"
 	@echo "make bench        benchmarks"
 	@echo "make docs         the documentation as web pages in target/docs"
 	@echo "make studio       check, test and build the studio's page (needs Node 20.19 or newer; users need none)"
@@ -80,6 +80,7 @@ lint: install
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
+	MYPYPATH=python $(BIN)/python -P -m mypy.stubtest voxsoft._core --concise --ignore-disjoint-bases --allowlist crates/python/stubtest.allow
 	$(BIN)/lint-imports
 
 format:
