@@ -21,6 +21,7 @@ from voxsoft.studio.wire import PROTOCOL
 #: Seconds after which what has not come never will, however busy the machine is.
 PATIENCE = 120.0
 EXAMPLES = Path(__file__).parents[2] / "examples"
+CYLINDER = EXAMPLES / "cylinder.toml"
 
 
 class Page:
@@ -32,7 +33,13 @@ class Page:
         self.frames = []
         self.smooth = None
         self.topology = None
+        self.document = None
         self.log = []
+
+    @property
+    def rev(self):
+        """The revision of the document that this tab saw last."""
+        return self.document.rev
 
     async def send(self, tag, **fields):
         self._seq += 1
@@ -49,7 +56,10 @@ class Page:
             return self._binary(message)
         event = json.loads(message)
         self.log.append(event)
-        return SimpleNamespace(**event)
+        told = SimpleNamespace(**event)
+        if told.t == "document":
+            self.document = told
+        return told
 
     def _binary(self, message):
         head = struct.unpack_from("<IBBHIIdII", message)
@@ -91,13 +101,20 @@ class Page:
                 elif message.t == "stat":
                     stat = message
 
-    async def quiet(self, seconds=0.3):
-        """Read what comes until nothing does for a while."""
-        while True:
-            try:
-                await self.receive(seconds)
-            except TimeoutError:
-                return
+    async def settled(self):
+        """Read all that was caused by what was sent before.
+
+        A question is answered by the engine's thread, and reaches it through that of the commands:
+        what either was asked before has been told by then. A frame that waits goes out after the
+        words that wait, so it may follow the first answer, but not the second.
+        """
+        for _ in range(2):
+            asked = await self.send("pick", vertex=0)
+            while True:
+                message = await self.receive()
+                # Where there is no body yet, that is the answer.
+                if message.t == "picked" or (message.t == "error" and message.seq == asked):
+                    break
 
     async def close(self):
         await self._socket.close()
@@ -129,6 +146,24 @@ class Studio:
 
     def page(self, hello=True, **options):
         return visited(self.port, self.token, hello=hello, **options)
+
+    async def begin_again(self, source):
+        """Be as at the start: the file, unloaded at time zero, nothing to undo. Runs stay."""
+        async with self.page() as page:
+            while page.document.can_undo:
+                rev = page.rev
+                await page.send("undo")
+                await page.until("document", lambda d, rev=rev: d.rev > rev)
+            if page.document.path is None:  # undo would lead back to what has no file
+                await page.send("save", path="left.toml", overwrite=True)
+                await page.until("saved")
+            await page.send("pace")
+            await page.send("solver", method="auto")
+            rev = page.rev
+            await page.send("open", what="file", name=str(source))
+            await page.until("document", lambda d: d.rev > rev)
+            body = await page.until("body", lambda b: b.rev == page.rev)
+            await page.shown(lambda s: s.state == "paused" and s.topology == body.topology)
 
 
 @asynccontextmanager
@@ -193,7 +228,7 @@ def make_studio(tmp_path):
     """Start studios in a folder of the test; they are stopped at its end."""
     started = []
 
-    def make(source=EXAMPLES / "cylinder.toml", runs=None):
+    def make(source=CYLINDER, runs=None):
         studio = Studio(runs or tmp_path / "runs", source).start()
         started.append(studio)
         return studio
@@ -204,14 +239,30 @@ def make_studio(tmp_path):
 
 
 @pytest.fixture
-def studio(make_studio):
+def fresh_studio(make_studio):
+    """A server of the test's own, for tests of runs and drafts, and of the first picture."""
     return make_studio()
+
+
+@pytest.fixture(scope="module")
+def shared_studio(tmp_path_factory):
+    """A server for all tests of a file, with the cylinder; what one did to it the next one sees."""
+    studio = Studio(tmp_path_factory.mktemp("studio") / "runs", CYLINDER).start()
+    yield studio
+    studio.stop()
+
+
+@pytest.fixture
+def studio(shared_studio):
+    """The server of the file, with its document opened again."""
+    run(shared_studio.begin_again(CYLINDER))
+    return shared_studio
 
 
 @pytest.fixture(scope="module")
 def at_rest(tmp_path_factory):
     """A studio whose cylinder was played, and then brought to rest."""
-    studio = Studio(tmp_path_factory.mktemp("studio") / "runs", EXAMPLES / "cylinder.toml").start()
+    studio = Studio(tmp_path_factory.mktemp("studio") / "runs", CYLINDER).start()
 
     async def scenario():
         async with studio.page() as page:

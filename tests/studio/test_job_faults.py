@@ -47,13 +47,13 @@ def below(pid):
 
 
 @linux
-def test_a_worker_of_a_study_that_is_killed_costs_time_only(studio):
+def test_a_worker_of_a_study_that_is_killed_costs_time_only(fresh_studio):
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=study(workers=2))
             job = await page.until("job", lambda j: j.done >= 1)
             # The last processes that were started are those that solve designs.
-            os.kill(below(studio.session.jobs.known(job.id).process.pid)[-1], signal.SIGKILL)
+            os.kill(below(fresh_studio.session.jobs.known(job.id).process.pid)[-1], signal.SIGKILL)
             done = await ended(page, job.id)
             trials = next(e for e in reversed(page.log) if e["t"] == "trials")["trials"]
         assert (done.state, done.done) == ("done", 8), done.message
@@ -65,16 +65,16 @@ def test_a_worker_of_a_study_that_is_killed_costs_time_only(studio):
 
 @pytest.mark.slow
 @linux
-def test_a_full_disk_is_reported_and_the_study_goes_on_once_there_is_room(studio):
+def test_a_full_disk_is_reported_and_the_study_goes_on_once_there_is_room(fresh_studio):
     import resource
 
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=study())
             job = await page.until("job", lambda j: j.done >= 2)
             journal = Path(job.folder) / JOURNAL_NAME
             room = journal.stat().st_size + 100
-            pid = studio.session.jobs.known(job.id).process.pid
+            pid = fresh_studio.session.jobs.known(job.id).process.pid
             resource.prlimit(pid, resource.RLIMIT_FSIZE, (room, room))
             failed = await ended(page, job.id)
             kept = journal.read_bytes()
@@ -91,13 +91,13 @@ def test_a_full_disk_is_reported_and_the_study_goes_on_once_there_is_room(studio
 
 
 @pytest.mark.slow
-def test_a_job_does_not_start_if_its_folder_cannot_be_written(studio):
-    runs = studio.session.runs
+def test_a_job_does_not_start_if_its_folder_cannot_be_written(fresh_studio):
+    runs = fresh_studio.session.runs
     shutil.rmtree(runs, ignore_errors=True)
     runs.write_text("a file where a folder is due")
 
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=study())
             error = await page.until("error")
             assert error.where.startswith(str(runs))
@@ -112,9 +112,9 @@ def test_a_job_does_not_start_if_its_folder_cannot_be_written(studio):
 
 
 @pytest.mark.slow
-def test_two_tabs_that_start_a_job_at_once_start_two(studio):
+def test_two_tabs_that_start_a_job_at_once_start_two(fresh_studio):
     async def scenario():
-        async with studio.page() as one, studio.page() as other:
+        async with fresh_studio.page() as one, fresh_studio.page() as other:
             spec = study(space={"radius": [0.01, 0.015]})
             await asyncio.gather(
                 one.send("job_start", spec=spec), other.send("job_start", spec=spec)
@@ -131,9 +131,9 @@ def test_two_tabs_that_start_a_job_at_once_start_two(studio):
 
 
 @pytest.mark.slow
-def test_two_tabs_that_resume_a_job_at_once_resume_it_once(studio):
+def test_two_tabs_that_resume_a_job_at_once_resume_it_once(fresh_studio):
     async def scenario():
-        async with studio.page() as one, studio.page() as other:
+        async with fresh_studio.page() as one, fresh_studio.page() as other:
             await one.send("job_start", spec=study())
             job = await one.until("job", lambda j: j.done >= 1)
             await one.send("job_stop", id=job.id)

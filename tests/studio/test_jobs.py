@@ -32,9 +32,9 @@ async def ended(page, job=None):
     )
 
 
-def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
+def test_a_study_shows_its_trials_and_leaves_its_folder(fresh_studio):
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=small_study())
             started = await page.until("job")
             trial = await page.until("trial")
@@ -54,7 +54,7 @@ def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
         assert "best rise" in job.message
         assert len(trials["trials"]) == 8
         assert trials["kinds"] == {"radius": "length", "wall": "length", "rise": "length"}
-        folder = studio.session.runs / "cylinder-study"
+        folder = fresh_studio.session.runs / "cylinder-study"
         for name in ("study.journal", "table.csv", "summary.json", "thumbnail.png"):
             assert (folder / name).is_file()
         assert rows[0]["trials"] == 8
@@ -67,14 +67,14 @@ def test_a_study_shows_its_trials_and_leaves_its_folder(studio):
 
 
 @pytest.mark.slow
-def test_a_study_goes_on_while_no_tab_is_open(studio):
+def test_a_study_goes_on_while_no_tab_is_open(fresh_studio):
     async def begin():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=small_study())
             await page.until("trial")
 
     async def come_back():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             return await ended(page), [e for e in page.log if e["t"] in ("trial", "trials")]
 
     run(begin())
@@ -84,14 +84,14 @@ def test_a_study_goes_on_while_no_tab_is_open(studio):
 
 
 @pytest.mark.slow
-def test_a_study_waits_goes_on_and_stops(studio):
+def test_a_study_waits_goes_on_and_stops(fresh_studio):
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=small_study())
             job = await page.until("job", lambda j: j.done >= 1)
             await page.send("job_pause", id=job.id)
             held = await page.until("job", lambda j: j.state == "paused")
-            await page.quiet(0.5)
+            await page.settled()
             assert all(e["done"] <= held.done for e in page.log if e["t"] == "job")
             await page.send("job_resume", id=job.id)
             await page.until("job", lambda j: j.state == "running" and j.done > held.done)
@@ -136,12 +136,12 @@ def test_a_restart_of_the_server_costs_no_trial(make_studio, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_process_that_is_killed_is_reported_and_its_trials_are_kept(studio):
+def test_a_process_that_is_killed_is_reported_and_its_trials_are_kept(fresh_studio):
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("job_start", spec=small_study())
             job = await page.until("job", lambda j: j.done >= 2)
-            os.kill(studio.session.jobs.known(job.id).process.pid, signal.SIGKILL)
+            os.kill(fresh_studio.session.jobs.known(job.id).process.pid, signal.SIGKILL)
             failed = await ended(page)
             assert failed.state == "failed"
             assert "killed by signal 9" in failed.message
@@ -168,6 +168,7 @@ def test_a_process_that_is_killed_is_reported_and_its_trials_are_kept(studio):
 def test_a_job_that_cannot_be_is_reported_in_words(studio, spec, words):
     async def scenario():
         async with studio.page() as page:
+            await page.settled()  # the jobs of other tests were told
             await page.send("job_start", spec=spec)
             while True:
                 message = await page.receive()
@@ -182,6 +183,7 @@ def test_a_job_that_cannot_be_is_reported_in_words(studio, spec, words):
 def test_a_run_leaves_its_folder_and_its_picture(studio):
     async def scenario():
         async with studio.page() as page:
+            await page.settled()  # the jobs of other tests were told
             await page.send("job_start", spec={"kind": "run", "name": "first"})
             job = await ended(page)
             assert job.state == "done", job.message
@@ -245,8 +247,8 @@ def test_a_calibration_overlays_its_shapes_and_leaves_a_card(make_studio, tmp_pa
     run(scenario())
 
 
-def test_runs_are_renamed_deleted_and_restored_and_broken_ones_listed(studio, tmp_path):
-    runs = studio.session.runs
+def test_runs_are_renamed_deleted_and_restored_and_broken_ones_listed(fresh_studio, tmp_path):
+    runs = fresh_studio.session.runs
     study = Study(families.cylinder(), {"wall": ("5 mm", "10 mm", "5 mm")}, folder=runs / "old")
     assert study.grid_size == 2
     (runs / "broken").mkdir(parents=True)
@@ -255,7 +257,7 @@ def test_runs_are_renamed_deleted_and_restored_and_broken_ones_listed(studio, tm
     (runs / "alien").mkdir()
 
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             rows = {row["id"]: row for row in (await page.until("runs")).rows}
             assert rows["old"]["status"] == "interrupted"
             assert "is damaged" in rows["broken"]["message"]

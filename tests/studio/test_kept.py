@@ -110,7 +110,7 @@ def test_another_material_leaves_loads_and_pulls_as_they_are(studio):
             before = page.topology.topology
             other = CYLINDER.replace("ecoflex-00-30-lattice", "ecoflex-00-50-lattice")
             assert other != CYLINDER
-            await page.send("text", rev=1, text=other)
+            await page.send("text", rev=page.rev, text=other)
             stat = await page.until("stat", lambda s: s.topology > before and s.state == "paused")
             assert stat.loads[0] == pytest.approx(LIVE)
             assert [(g["id"], g["vertex"], g["target"]) for g in stat.grabs] == [
@@ -118,7 +118,7 @@ def test_another_material_leaves_loads_and_pulls_as_they_are(studio):
             ]
             # A load that is written anew is what was written.
             before = stat.topology
-            await page.send("edit", rev=2, path=["loads", 0, "value"], value="3 kPa")
+            await page.send("edit", rev=page.rev, path=["loads", 0, "value"], value="3 kPa")
             stat = await page.until("stat", lambda s: s.topology > before and s.state == "paused")
             assert stat.loads[0] == pytest.approx(3e3)
             before = stat.topology

@@ -24,7 +24,7 @@ def test_undo_leads_back_to_the_document_before_with_its_own_file(make_studio, t
 
     async def scenario():
         async with studio.page() as page:
-            await page.send("edit", rev=1, path=RADIUS, value="20 mm")
+            await page.send("edit", rev=page.rev, path=RADIUS, value="20 mm")
             await page.until("document", lambda d: d.dirty)
             await page.send("open", what="file", name=str(leg))
             opened = await page.until("document", lambda d: d.name == "leg.toml")
@@ -50,7 +50,7 @@ def test_undo_after_a_restart_leads_to_unsaved_changes(make_studio, tmp_path):
 
     async def change():
         async with first.page() as page:
-            await page.send("edit", rev=1, path=RADIUS, value="20 mm")
+            await page.send("edit", rev=page.rev, path=RADIUS, value="20 mm")
             await page.until("document", lambda d: d.dirty)
 
     run(change())
@@ -76,7 +76,7 @@ def test_a_server_that_is_killed_has_kept_what_was_typed(make_studio, in_own_pro
 
     async def change():
         async with first.page() as page:
-            await page.send("text", rev=1, text=CYLINDER.replace("25 mm", "22 mm", 1))
+            await page.send("text", rev=page.rev, text=CYLINDER.replace("25 mm", "22 mm", 1))
             await page.until("document", lambda d: d.dirty)
 
     run(change())

@@ -32,9 +32,9 @@ def positions_of(frame):
     return origin + scale * steps / 65535
 
 
-def test_a_tab_is_shown_the_design_and_its_body(studio):
+def test_a_tab_is_shown_the_design_and_its_body(fresh_studio):
     async def scenario():
-        async with studio.page(hello=False) as page:
+        async with fresh_studio.page(hello=False) as page:
             await page.send("hello", protocol=PROTOCOL)
             hello = await page.until("hello")
             document = await page.until("document")
@@ -74,8 +74,9 @@ def test_a_body_with_a_layer_is_played_to_its_rest(studio):
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")
-            await page.send("text", rev=1, text=text)
-            await page.until("body", lambda b: b.rev > 1)
+            before = page.rev
+            await page.send("text", rev=before, text=text)
+            await page.until("body", lambda b: b.rev > before)
             await page.send("play")
             _, frame = await page.shown(lambda s: s.state == "at-rest", seconds=60.0)
         return frame
@@ -239,10 +240,12 @@ def test_a_stored_frame_is_found_by_time_after_a_change_of_pace(studio):
 def test_a_slider_gives_a_new_body_and_a_bad_value_keeps_the_old_one(studio):
     async def scenario():
         async with studio.page() as page:
-            await page.until("topology")
-            await page.send("edit", rev=1, path=["parameters", "radius", "value"], value="20 mm")
-            body = await page.until("body", lambda b: b.topology == 2)
-            await page.send("edit", rev=2, path=["parameters", "wall", "value"], value="1 m")
+            before = await page.until("topology")
+            await page.send(
+                "edit", rev=page.rev, path=["parameters", "radius", "value"], value="20 mm"
+            )
+            body = await page.until("body", lambda b: b.topology == before.topology + 1)
+            await page.send("edit", rev=page.rev, path=["parameters", "wall", "value"], value="1 m")
             document = await page.until("document", lambda d: not d.valid)
             await page.send("undo")
             good = await page.until("document", lambda d: d.valid)
@@ -259,7 +262,7 @@ def test_a_body_too_large_for_the_memory_is_refused_with_the_estimate(studio, mo
 
     async def scenario():
         async with studio.page() as page:
-            await page.send("edit", rev=1, path=["voxel_size"], value="2.5 mm")
+            await page.send("edit", rev=page.rev, path=["voxel_size"], value="2.5 mm")
             document = await page.until("document", lambda d: d.diagnostics)
         found = document.diagnostics[0]
         assert "would need about 0.014 GB" in found["what"]
@@ -274,18 +277,19 @@ def test_two_tabs_see_the_same_and_have_views_of_their_own(studio):
             await one.until("frame")
             await two.until("frame")
             await two.send("view", field=3)
-            await one.send("edit", rev=1, path=["parameters", "wall", "value"], value="10 mm")
-            first = await one.until("document", lambda d: d.rev == 2)
-            second = await two.until("document", lambda d: d.rev == 2)
+            old = one.rev
+            await one.send("edit", rev=one.rev, path=["parameters", "wall", "value"], value="10 mm")
+            first = await one.until("document", lambda d: d.rev == old + 1)
+            second = await two.until("document", lambda d: d.rev == old + 1)
             assert first.text == second.text
             await two.send("play")
             assert (await one.until("frame", lambda f: f.flags & 4)).field == 0
             assert (await two.until("frame", lambda f: f.flags & 4)).field == 3
             # Typed in an older text than the other tab's: not taken, and said.
-            await two.send("text", rev=1, text="old = 1")
+            await two.send("text", rev=old, text="old = 1")
             assert "another tab" in (await two.until("error")).what
-            await one.send("text", rev=2, text=first.text + "\n# mine")
-            assert (await two.until("document", lambda d: d.rev == 3)).text.endswith("# mine")
+            await one.send("text", rev=one.rev, text=first.text + "\n# mine")
+            assert (await two.until("document", lambda d: d.rev == old + 2)).text.endswith("# mine")
 
     run(scenario())
 
@@ -296,7 +300,7 @@ def test_a_tab_that_takes_no_frames_gets_two_and_then_the_newest(studio):
             await page.until("topology", ack=False)
             await page.send("step", n=500)
             last = await page.until("stat", lambda s: s.state == "at-rest", ack=False)
-            await page.quiet()
+            await page.settled()
             assert len(page.frames) == 2
             await page.send("ack", frame=page.frames[-1].frame)
             assert (await page.until("frame", ack=False)).frame == last.frame
@@ -308,12 +312,12 @@ def test_a_hidden_tab_gets_no_frames(studio):
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")
-            await page.quiet()
             await page.send("view", field=0, visible=False)
+            await page.settled()
             before = len(page.frames)
             await page.send("play")
             await page.until("stat", lambda s: s.state == "at-rest")
-            await page.quiet()
+            await page.settled()
             assert len(page.frames) == before
             await page.send("view", field=0, visible=True)
             assert (await page.until("frame")).flags & 4
@@ -369,7 +373,7 @@ def test_many_wrong_messages_end_the_visit_in_words(studio):
     run(scenario())
 
 
-def test_whatever_is_sent_is_answered_or_closed_and_the_session_lives(studio):
+def test_whatever_is_sent_is_answered_or_closed_and_the_session_lives(fresh_studio):
     tags = st.sampled_from(
         [
             "open",
@@ -427,7 +431,7 @@ def test_whatever_is_sent_is_answered_or_closed_and_the_session_lives(studio):
     messages = st.lists(wrong | st.binary(max_size=64) | st.text(max_size=64), max_size=12)
 
     async def send_all(batch):
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             for message in batch:
                 await page.send_raw(message)
             await page.send("pause")
@@ -444,10 +448,10 @@ def test_whatever_is_sent_is_answered_or_closed_and_the_session_lives(studio):
             assert closed.rcvd.code in (1000, 1002, 1003, 1007, 1008)  # noqa: PT017
 
     fuzz()
-    assert studio.session.engine.is_alive()
+    assert fresh_studio.session.engine.is_alive()
 
     async def still_there():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.until("body")
 
     run(still_there())
@@ -558,7 +562,7 @@ def test_a_design_is_read_and_never_run(studio, tmp_path):
 
     async def scenario():
         async with studio.page() as page:
-            await page.send("text", rev=1, text=text)
+            await page.send("text", rev=page.rev, text=text)
             assert not (await page.until("document", lambda d: d.diagnostics)).valid
 
     run(scenario())
@@ -572,7 +576,9 @@ def test_unsaved_changes_are_there_after_a_restart(make_studio, tmp_path):
 
     async def change():
         async with first.page() as page:
-            await page.send("edit", rev=1, path=["parameters", "radius", "value"], value="20 mm")
+            await page.send(
+                "edit", rev=page.rev, path=["parameters", "radius", "value"], value="20 mm"
+            )
             await page.until("document", lambda d: d.dirty)
 
     run(change())
@@ -599,7 +605,7 @@ def test_a_body_that_takes_its_time_is_announced(studio, monkeypatch):
     async def scenario():
         async with studio.page() as page:
             await page.shown(lambda s: s.state == "paused")
-            await page.send("edit", rev=1, path=["voxel_size"], value="1.25 mm")
+            await page.send("edit", rev=page.rev, path=["voxel_size"], value="1.25 mm")
             await page.until("stat", lambda s: s.state == "meshing")
             await page.shown(lambda s: s.state == "paused")
 
@@ -618,7 +624,7 @@ def test_a_panic_of_the_core_is_reported_and_the_next_body_comes(studio, monkeyp
             await page.shown(lambda s: s.state == "paused")
             with monkeypatch.context() as broken:
                 broken.setattr("voxsoft.studio.mesher.StudioBody.of", panic)
-                await page.send("edit", rev=1, path=["voxel_size"], value="2.5 mm")
+                await page.send("edit", rev=page.rev, path=["voxel_size"], value="2.5 mm")
                 document = await page.until("document", lambda d: d.diagnostics)
             assert "index out of bounds" in document.diagnostics[0]["what"]
             await page.send("undo")
@@ -627,12 +633,12 @@ def test_a_panic_of_the_core_is_reported_and_the_next_body_comes(studio, monkeyp
     run(scenario())
 
 
-def test_a_file_of_another_design_is_replaced_only_when_that_is_meant(studio, tmp_path):
+def test_a_file_of_another_design_is_replaced_only_when_that_is_meant(fresh_studio, tmp_path):
     other = tmp_path / "other.toml"
     other.write_text("# mine\n")
 
     async def scenario():
-        async with studio.page() as page:
+        async with fresh_studio.page() as page:
             await page.send("open", what="template", name="sphere")
             document = await page.until("document", lambda d: d.name == "sphere.toml")
             assert (document.path, document.folder, document.dirty) == (None, str(tmp_path), False)

@@ -64,13 +64,16 @@ def read(content):
     return rest, frames
 
 
-@pytest.fixture
-def study(studio):
+def make_study(folder):
     """Three bars; one of them is too short to hold a single voxel."""
-    folder = studio.session.runs / "bars"
     bar = Design.from_document(tomllib.loads(BAR))
     Study(bar, {"length": [0.03, 0.05, 1e-5]}, folder=folder).grid(workers=1)
     return folder
+
+
+@pytest.fixture(scope="module")
+def study(shared_studio):
+    return make_study(shared_studio.session.runs / "bars")
 
 
 def trial_of(folder, length):
@@ -122,12 +125,17 @@ def test_a_design_that_was_solved_is_not_solved_again(studio, study, monkeypatch
 def test_the_view_is_left_alone(studio, study):
     async def scenario():
         async with studio.page() as page:
+            # The smooth shape is the last that comes of a body.
             await page.shown(lambda s: s.state == "paused")
-            await page.quiet()
-            known = len(page.log), len(page.frames)
+            assert page.smooth or await page.until("smooth")
+            await page.settled()
+            known = told(page)
             assert asked(studio, "bars").status_code == 200
-            await page.quiet()
-            assert (len(page.log), len(page.frames)) == known
+            await page.settled()
+            assert told(page) == known
+
+    def told(page):
+        return [event for event in page.log if event["t"] != "picked"], len(page.frames)
 
     run(scenario())
 
@@ -169,7 +177,8 @@ def test_only_the_page_of_this_studio_may_ask(studio, study):
     assert httpx.get(f"{studio.origin}/still", params={"of": "bars"}).status_code == 403
 
 
-def test_solving_ends_when_nobody_waits(studio, study, monkeypatch):
+def test_solving_ends_when_nobody_waits(fresh_studio, monkeypatch):
+    make_study(fresh_studio.session.runs / "bars")
     solving, ended = threading.Event(), threading.Event()
 
     def endless(setup, progress):
@@ -182,9 +191,9 @@ def test_solving_ends_when_nobody_waits(studio, study, monkeypatch):
                 raise
 
     monkeypatch.setattr(stills, "simulate", endless)
-    params = {"of": "bars", "token": studio.token}
+    params = {"of": "bars", "token": fresh_studio.token}
     with pytest.raises(httpx.ReadTimeout):
-        httpx.get(f"{studio.origin}/still", params=params, timeout=0.5)
+        httpx.get(f"{fresh_studio.origin}/still", params=params, timeout=0.5)
     assert solving.is_set()
     assert ended.wait(20)
 

@@ -48,7 +48,7 @@ async def shown(page, name):
     """What the tab is told of a job of the past."""
     before = len(page.log)
     await page.send("job_show", id=name)
-    await page.quiet(0.5)
+    await page.settled()
     return [e for e in page.log[before:] if e["t"] in (*KINDS, "trials", "job", "error")]
 
 
