@@ -35,6 +35,7 @@ LONG = {
     "export.md",
     "layers-and-fibers.md",
     "material-card.md",
+    "repeat-a-job.md",
 }
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
