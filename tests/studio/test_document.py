@@ -24,7 +24,7 @@ def marked(text, found):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said", "under"),
+    ("old", "new", "reported", "under"),
     [
         ('value = "25 mm"', 'value = "40 mm"', "above max", '"40 mm"'),
         ('voxel_size = "5 mm"', "voxel_size = 5", "has no unit", "5"),
