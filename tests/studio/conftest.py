@@ -56,10 +56,10 @@ class Page:
             return self._binary(message)
         event = json.loads(message)
         self.log.append(event)
-        told = SimpleNamespace(**event)
-        if told.t == "document":
-            self.document = told
-        return told
+        received = SimpleNamespace(**event)
+        if received.t == "document":
+            self.document = received
+        return received
 
     def _binary(self, message):
         head = struct.unpack_from("<IBBHIIdII", message)

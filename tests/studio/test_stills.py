@@ -129,12 +129,12 @@ def test_the_view_is_left_alone(studio, study):
             await page.shown(lambda s: s.state == "paused")
             assert page.smooth or await page.until("smooth")
             await page.settled()
-            known = told(page)
+            known = events_of(page)
             assert asked(studio, "bars").status_code == 200
             await page.settled()
-            assert told(page) == known
+            assert events_of(page) == known
 
-    def told(page):
+    def events_of(page):
         return [event for event in page.log if event["t"] != "picked"], len(page.frames)
 
     run(scenario())
