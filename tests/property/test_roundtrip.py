@@ -15,7 +15,7 @@ import pytest
 from forms import NAMES, PARAMETERS, all_models, base, has_formula, models_in, records
 
 import voxsoft as vs
-from voxsoft.design import Design
+from voxsoft.design import Design, families
 from voxsoft.errors import VoxSoftError
 from voxsoft.files import load, save
 from voxsoft.files.cards import load_card_file, save_card
@@ -195,7 +195,7 @@ def test_roundtrip_of_every_form_of_a_card(tmp_path, record_property):
 
 def test_roundtrip_of_names_through_a_run(tmp_path, record_property):
     """Whatever `check` takes as the name of a probe, every file of the run takes too."""
-    beam = vs.design.families.beam(length="40 mm").with_values("voxel_size=5 mm", objectives={})
+    beam = families.beam(length="40 mm").with_values("voxel_size=5 mm", objectives={})
     probes = {name: vs.Probe(point=(40 * mm, 5 * mm, 5 * mm)) for name in NAMES}
     named = beam.replace(probes=probes, name=NAMES[1])
     assert vs.check(named).valid

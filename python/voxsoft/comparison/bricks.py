@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Clamp
+from voxsoft.design.attachment import attachments_of
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
@@ -155,7 +156,7 @@ class BrickModel:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
             )
-        for where, _ in setup.design.attachments():
+        for where, _ in attachments_of(setup.design):
             raise SimulationError(
                 where, "cannot be given to an outside code", "compare the design without it"
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, Self
 
@@ -19,7 +19,6 @@ from pydantic import (
 from pydantic_core import PydanticSerializationError
 
 from voxsoft.design.assignment import set_values
-from voxsoft.design.attachment import Attachment
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
@@ -236,15 +235,6 @@ class Design(Record):
         ]
         size = format_quantity(self.voxel_size, "length")
         return f"<Design {self.name}: voxels of {size}, {', '.join(held)}>"
-
-    def attachments(self) -> Iterator[tuple[str, Attachment]]:
-        """Yield everything that is attached to the body, each with its place in the design."""
-        for field in type(self).model_fields:
-            entries = getattr(self, field)
-            if isinstance(entries, tuple):
-                for index, entry in enumerate(entries):
-                    if isinstance(entry, Attachment):
-                        yield f"{field}[{index}]", entry
 
     @property
     def empty_shapes(self) -> tuple[str, ...]:

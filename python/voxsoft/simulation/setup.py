@@ -14,7 +14,7 @@ from voxsoft import _core
 from voxsoft._memory import shortage
 from voxsoft.design import Clamp, Design, Probe, Region
 from voxsoft.design import History as LoadHistory
-from voxsoft.design.attachment import PlaceOnBody
+from voxsoft.design.attachment import PlaceOnBody, attachments_of
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
 from voxsoft.materials import Material
@@ -187,7 +187,7 @@ class Setup:
             An element with an end that is not on the body.
         """
         found: dict[str, list[dict[str, Any]]] = {}
-        for where, attachment in self.design.attachments():
+        for where, attachment in attachments_of(self.design):
             found.setdefault(attachment.term, []).append(attachment.element(self, where))
         return found
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
+from voxsoft.design.attachment import attachments_of
 from voxsoft.design.discretize import filled, voxels_of
 from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
@@ -265,7 +266,7 @@ def _layers(setup: Setup, surface: Surface) -> list[events.BodyLayer]:
 
 def _attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:
     found = []
-    for where, attachment in setup.design.attachments():
+    for where, attachment in attachments_of(setup.design):
         section, _, index = where.rstrip("]").partition("[")
         try:
             places = [_body_place(setup, surface, end, where) for end in attachment.places]
