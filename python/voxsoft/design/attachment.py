@@ -80,16 +80,7 @@ class Attachment(Record):
 
 
 def attachments_of(design: Record) -> Iterator[tuple[str, Attachment]]:
-    """Yield everything that a design attaches to its body, each with its place in the design.
-
-    Examples
-    --------
-    >>> from voxsoft.design import Spring, families
-    >>> tie = Spring(at={"point": (0.1, 0, 0)}, anchor=(0.1, 0, 0.05), stiffness="2 N/m")
-    >>> tied = families.beam().replace(springs=[tie])
-    >>> [(where, each.summary) for where, each in attachments_of(tied)]
-    [('springs[0]', 'spring of 2 N/m')]
-    """
+    """Yield everything that a design attaches to its body, each with its place in the design."""
     for name, entries in design:
         for index, entry in enumerate(entries if isinstance(entries, tuple) else ()):
             if isinstance(entry, Attachment):

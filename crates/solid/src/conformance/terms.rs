@@ -52,10 +52,14 @@ impl Check<'_> {
         })
     }
 
-    /// The forces at a strain of about one.
+    /// The forces at a strain of about one, by the stiffness at rest and, for what is slack there, where it is
+    /// strained.
     fn unit_force(&self) -> f64 {
-        size(&self.stiffness_times(self.rest, self.rest))
-            .max(size(&self.stiffness_times(self.rest, &random(self.rest.len(), 99))) * self.size)
+        let at = |x: &[Vec3]| {
+            let along = size(&self.stiffness_times(x, self.rest));
+            along.max(size(&self.stiffness_times(x, &random(x.len(), 99))) * self.size)
+        };
+        at(self.rest).max(at(self.positions))
     }
 
     fn derivatives(&self) -> Outcome {
