@@ -5,7 +5,7 @@ import os
 import re
 import signal
 import sys
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from functools import partial
 
 import pytest
@@ -14,6 +14,7 @@ from waiting import until
 
 from voxsoft.errors import MissingPackageError, StudyError
 from voxsoft.study import Study
+from voxsoft.study.workers import LocalProcesses
 
 SPACE = {"x": (0.0, 0.2, 0.1), "y": (1, 6)}
 
@@ -98,3 +99,20 @@ def test_dask_that_is_not_installed_names_the_command(make, monkeypatch):
 def test_an_executor_and_a_scheduler_exclude_each_other(make):
     with ProcessPoolExecutor(1) as pool, pytest.raises(StudyError, match="give one"):
         make(slow).grid(executor=pool, scheduler="tcp://127.0.0.1:9")
+
+
+def test_a_pool_that_breaks_while_it_starts_a_worker_is_replaced(monkeypatch):
+    """As Python's pool does it: its pipes are closed when the new worker would take them."""
+
+    def closed(*_):
+        raise OSError("handle is closed")
+
+    workers = LocalProcesses(1)
+    try:
+        monkeypatch.setattr(workers._pool, "submit", closed)
+        with pytest.raises(BrokenExecutor):
+            workers.submit(os.getpid)
+        workers.recover()
+        assert workers.submit(os.getpid).result(60) != os.getpid()
+    finally:
+        workers.close(now=True)

@@ -108,8 +108,19 @@ class LocalProcesses:
         self._start()
 
     def submit(self, task: Callable[..., Answer], *arguments: object) -> Future[Answer]:
-        """Start a task, or queue it."""
-        return self._pool.submit(through_gate, task, *arguments)
+        """Start a task, or queue it.
+
+        Raises
+        ------
+        BrokenExecutor
+            A worker died; :meth:`recover` replaces the pool.
+        """
+        try:
+            return self._pool.submit(through_gate, task, *arguments)
+        except OSError as error:
+            # The pool was starting a worker as it noticed that another one had died: it closes the
+            # pipes that the new one would have had.
+            raise BrokenExecutor("a worker died while another one was started") from error
 
     def recover(self) -> None:
         """Replace the pool: a pool that lost a worker takes no more tasks."""
