@@ -110,6 +110,7 @@ def test_a_pool_that_breaks_while_it_starts_a_worker_is_replaced(monkeypatch):
     workers = LocalProcesses(1)
     try:
         monkeypatch.setattr(workers._pool, "submit", closed)
+        workers._context.Process()  # which never starts
         with pytest.raises(BrokenExecutor):
             workers.submit(os.getpid)
         workers.recover()

@@ -133,7 +133,8 @@ class LocalProcesses:
             self._pool.shutdown(cancel_futures=True)
             return
         for process in self._context.processes:
-            process.kill()
+            if process.pid is not None:  # it was started
+                process.kill()
         # The thread that minds the pool closes its pipe; the end of the program, which writes to
         # it, must not come between.
         ending = threading.Thread(
