@@ -163,6 +163,11 @@ impl Tree {
         self.visit(|bounds| bounds.holds(point), each);
     }
 
+    /// Calls `each` with every thing whose box meets these bounds.
+    pub(crate) fn meeting(&self, bounds: &Bounds, each: impl FnMut(u32)) {
+        self.visit(|other| other.meets(bounds), each);
+    }
+
     /// Calls `each` with every thing whose box a ray from the point along x meets.
     pub(crate) fn ahead_of(&self, point: Point, each: impl FnMut(u32)) {
         self.visit(|bounds| bounds.is_ahead_of(point), each);

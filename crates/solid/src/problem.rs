@@ -1,15 +1,18 @@
+use std::sync::Arc;
+
 use crate::assembly::{Visitor, check_indices};
 use crate::loads::Vertices;
 use crate::vector::Vec3;
-use crate::{Body, Clamp, Floor, History, Load, ProblemError};
+use crate::{Body, Clamp, Contact, Floor, History, Load, ProblemError, Term};
 
-/// A body with clamps, loads and maybe a floor.
-#[derive(Debug, Clone, PartialEq)]
+/// A body with clamps, loads, and maybe a floor or contact.
+#[derive(Debug, Clone)]
 pub struct Problem {
     body: Body,
     clamps: Vec<Clamp>,
     loads: Vec<Load>,
     floor: Option<Floor>,
+    contact: Option<Arc<dyn Contact>>,
     held: Vec<[bool; 3]>,
     conservative: bool,
 }
@@ -41,9 +44,22 @@ impl Problem {
             clamps,
             loads,
             floor,
+            contact: None,
             held,
             conservative,
         })
+    }
+
+    /// The same with surfaces that touch. They act on the body as what is attached to it does.
+    pub fn with_contact(mut self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
+        self.body.attach(Arc::clone(&contact) as Arc<dyn Term>)?;
+        self.contact = Some(contact);
+        Ok(self)
+    }
+
+    /// What touches.
+    pub fn contact(&self) -> Option<&dyn Contact> {
+        self.contact.as_deref()
     }
 
     /// The body.

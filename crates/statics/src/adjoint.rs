@@ -58,6 +58,7 @@ pub fn adjoint(
     let mut equilibrium = Equilibrium::new(problem, means)?;
     let full = Point::all(1.0);
     equilibrium.update_floor(positions, full)?;
+    equilibrium.follow_contact(positions)?;
     let mut unused = vec![0.0; equilibrium.system.size()];
     equilibrium.system.assemble(
         problem,

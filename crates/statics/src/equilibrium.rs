@@ -7,7 +7,7 @@ use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::axial;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Body, Brick, Observer, Problem, Progress, elastic};
+use voxsoft_solid::{Body, Brick, Contact, Observer, Problem, Progress, elastic};
 
 use crate::point::Point;
 use crate::settings::{LinearSolver, Settings};
@@ -119,6 +119,18 @@ impl<'a> Equilibrium<'a> {
         })
     }
 
+    /// Makes room in the tangent for what touches at `positions`.
+    pub fn follow_contact(&mut self, positions: &[Vec3]) -> Result<(), FactorError> {
+        if self
+            .problem
+            .contact()
+            .is_some_and(|contact| contact.follow(positions))
+        {
+            self.system = System::new(self.problem, &self.held, self.means)?;
+        }
+        Ok(())
+    }
+
     /// Net forces at `positions`.
     pub fn forces(&self, positions: &[Vec3], point: Point) -> Forces {
         let mut external = vec![[0.0; 3]; positions.len()];
@@ -223,6 +235,7 @@ impl<'a> Equilibrium<'a> {
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         for iteration in 0..=MIXED_ITERATIONS {
+            self.follow_contact(positions)?;
             let (mut forces, jump) = self.look(positions, point, observer)?;
             let relative = forces.relative();
             if jump.is_none() && relative <= settings.tolerance {
@@ -371,6 +384,7 @@ impl<'a> Equilibrium<'a> {
         let limit = 20.0 * size;
         let mut shift = 0.0f64;
         for iteration in 0..=settings.max_iterations {
+            self.follow_contact(positions)?;
             let (mut forces, jump) = self.look(positions, point, observer)?;
             let relative = forces.relative();
             if jump.is_none() && relative <= settings.tolerance {
@@ -492,6 +506,9 @@ impl<'a> Equilibrium<'a> {
 
     /// Whether the equilibrium at the assembled state is stable.
     pub fn is_stable(&mut self, positions: &[Vec3], point: Point) -> bool {
+        if self.follow_contact(positions).is_err() {
+            return false;
+        }
         let mut unused = vec![0.0; self.system.size()];
         self.system.assemble(
             self.problem,
@@ -502,6 +519,12 @@ impl<'a> Equilibrium<'a> {
             &mut unused,
         );
         !self.problem.is_conservative() || self.system.is_positive_definite()
+    }
+
+    /// Corrects the forces of contact by an equilibrium; whether they have settled.
+    pub fn is_contact_settled(&self, positions: &[Vec3]) -> bool {
+        let settled = |contact: &dyn Contact| contact.correct(positions) <= 1.0;
+        self.problem.contact().is_none_or(settled)
     }
 
     /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.

@@ -12,6 +12,8 @@ use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
 pub(crate) const EASY: u32 = 6;
+/// The same where every correction of contact takes some of them.
+const EASY_WITH_CONTACT: u32 = 15;
 /// Steps up to this part of the load are tried again with a line search before they are cut: a quick
 /// way that fails is mostly helped by a shorter step.
 const SAFE_STEP: f64 = 0.05;
@@ -20,10 +22,12 @@ const SAFE_STEP: f64 = 0.05;
 const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
+/// The longest step along a path on which friction depends.
+const LONGEST_WITH_FRICTION: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
-/// How often the floor may change its mind at one point.
-const FLOOR_ROUNDS: usize = 40;
+/// How often the floor or contact may change their minds at one point.
+const ROUNDS: usize = 40;
 
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.
@@ -76,6 +80,9 @@ pub fn solve(
         solver,
         memory: settings.memory,
     };
+    if let Some(contact) = problem.contact() {
+        contact.start(&positions);
+    }
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => equilibrium,
         Err(error) => return refused(positions, error),
@@ -178,12 +185,13 @@ impl Path<'_, '_> {
         safe: bool,
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
-        for _ in 0..FLOOR_ROUNDS {
+        for _ in 0..ROUNDS {
             let found = self
                 .equilibrium
                 .newton(positions, point, settings, safe, self.observer)?;
             iterations += found.iterations;
-            if !self.equilibrium.update_floor(positions, point)? {
+            let floor_changed = self.equilibrium.update_floor(positions, point)?;
+            if !floor_changed && self.equilibrium.is_contact_settled(positions) {
                 return Ok(Found {
                     iterations,
                     residual: found.residual,
@@ -194,6 +202,9 @@ impl Path<'_, '_> {
     }
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
+        if let Some(contact) = self.equilibrium.problem.contact() {
+            contact.accept(&positions);
+        }
         self.positions = positions;
         self.point = point;
         self.points.push(PathPoint {
@@ -227,12 +238,23 @@ impl Path<'_, '_> {
 
     /// Load control. From a given start the full load is tried first.
     fn follow_load(&mut self, settings: &Settings, warm: bool) -> Ending {
-        let mut step = if warm {
+        let step = if warm {
             1.0
         } else {
             settings.first_step.clamp(settings.least_step, 1.0)
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
+        let contact = self.equilibrium.problem.contact();
+        let longest = match contact {
+            Some(contact) if contact.has_friction() => LONGEST_WITH_FRICTION,
+            _ => 1.0,
+        };
+        let easy = if contact.is_some() {
+            EASY_WITH_CONTACT
+        } else {
+            EASY
+        };
+        let mut step = step.min(longest);
         let mut cuts = 0;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
@@ -256,8 +278,8 @@ impl Path<'_, '_> {
                         if next == 1.0 {
                             return Ending::new(Status::AtRest, None, 1.0);
                         }
-                        if found.iterations <= EASY {
-                            step *= 2.0;
+                        if found.iterations <= easy {
+                            step = (2.0 * step).min(longest);
                         }
                         continue;
                     }
@@ -266,21 +288,28 @@ impl Path<'_, '_> {
                     Failure::Lost
                 }
                 Err(Failure::Turned(turn)) => {
+                    contact.inspect(|contact| contact.go_back());
                     step = (step * GOOD_TURN / turn).max(settings.least_step);
                     continue;
                 }
                 Err(failure) => failure,
             };
+            contact.inspect(|contact| contact.go_back());
             if !matches!(failure, Failure::Lost | Failure::Singular) {
                 return Ending::new(status_of(failure), None, now);
             }
             self.equilibrium.back_offs += 1;
             if self.points.is_empty() && warm {
                 self.positions.clone_from(&cold);
+                contact.inspect(|contact| contact.start(&cold));
             }
             step = (next - now) / 4.0;
             if step < settings.least_step {
-                let limit = self.look_ahead(settings);
+                // Contact makes corners in the path, which no tangent foresees.
+                let limit = match contact {
+                    Some(_) => None,
+                    None => self.look_ahead(settings),
+                };
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
                 return Ending::new(status, limit, now);
             }

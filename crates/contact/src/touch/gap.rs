@@ -1,0 +1,156 @@
+//! How far a point is in front of a triangle, and how that changes when both move.
+//!
+//! With the closest point `y = Σ b_i x_i` of the triangle and the relative position `r = x − y`, the gap is
+//! `g = n·r`, and `∂g = n·(∂x − Σ b_i ∂x_i)`: what moves the closest point along the triangle does not change it.
+//! Over the inside of a triangle, with `∇β_i` the gradients of its barycentric coordinates, the second
+//! variation is `−2 Σ (n·∂x_i)(∇β_i·∂r) − g Σ (∇β_i·∇β_j)(n·∂x_i)(n·∂x_j)` with `∂r = ∂x − Σ b_i ∂x_i`: the
+//! normal turns by `∂n = −Σ (n·∂x_i) ∇β_i`. Beside a triangle the normal is taken as it is.
+
+use voxsoft_solid::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
+
+/// The closest point of a triangle to a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Closest {
+    /// Its barycentric coordinates.
+    pub weights: [f64; 3],
+    /// From it to the point, m.
+    pub away: Vec3,
+    /// Its distance, m.
+    pub distance: f64,
+}
+
+impl Closest {
+    /// Whether it is inside the triangle, not on an edge or a corner.
+    pub fn is_inside(&self) -> bool {
+        self.weights.iter().all(|w| *w > 0.0)
+    }
+}
+
+/// The area of a triangle.
+pub(super) fn area(corners: [Vec3; 3]) -> f64 {
+    norm(doubled(corners)) / 2.0
+}
+
+/// Twice the area along the outward normal.
+pub(super) fn doubled([a, b, c]: [Vec3; 3]) -> Vec3 {
+    cross(sub(b, a), sub(c, a))
+}
+
+/// The outward unit normal; zero for a triangle without area.
+pub(super) fn normal(corners: [Vec3; 3]) -> Vec3 {
+    unit(doubled(corners))
+}
+
+pub(super) fn unit(a: Vec3) -> Vec3 {
+    let length = norm(a);
+    if length > 0.0 {
+        scale(1.0 / length, a)
+    } else {
+        [0.0; 3]
+    }
+}
+
+/// The closest point of a triangle (Ericson, Real-Time Collision Detection, section 5.1.5).
+pub(super) fn closest(point: Vec3, [a, b, c]: [Vec3; 3]) -> Closest {
+    let (ab, ac) = (sub(b, a), sub(c, a));
+    let weights = || {
+        let ap = sub(point, a);
+        let (d1, d2) = (dot(ab, ap), dot(ac, ap));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return [1.0, 0.0, 0.0];
+        }
+        let bp = sub(point, b);
+        let (d3, d4) = (dot(ab, bp), dot(ac, bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return [0.0, 1.0, 0.0];
+        }
+        let vc = d1 * d4 - d3 * d2;
+        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+            let v = d1 / (d1 - d3);
+            return [1.0 - v, v, 0.0];
+        }
+        let cp = sub(point, c);
+        let (d5, d6) = (dot(ab, cp), dot(ac, cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return [0.0, 0.0, 1.0];
+        }
+        let vb = d5 * d2 - d1 * d6;
+        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+            let w = d2 / (d2 - d6);
+            return [1.0 - w, 0.0, w];
+        }
+        let va = d3 * d6 - d5 * d4;
+        if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+            let w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+            return [0.0, 1.0 - w, w];
+        }
+        let sum = va + vb + vc;
+        [va / sum, vb / sum, vc / sum]
+    };
+    let weights = weights();
+    let mut away = point;
+    for (weight, corner) in weights.iter().zip([a, b, c]) {
+        axpy(&mut away, -weight, corner);
+    }
+    Closest {
+        weights,
+        away,
+        distance: norm(away),
+    }
+}
+
+/// The gradients of the barycentric coordinates in the plane of a triangle, 1/m.
+pub(super) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
+    let doubled = doubled([a, b, c]);
+    let square = dot(doubled, doubled);
+    // Each is the edge opposite, turned by a right angle inwards, over twice the area.
+    [sub(c, b), sub(a, c), sub(b, a)].map(|edge| scale(1.0 / square, cross(doubled, edge)))
+}
+
+/// The affine coordinates of a point's foot in the plane of a triangle.
+pub(super) fn affine(point: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
+    let gradients = barycentric_gradients(corners);
+    let second = dot(gradients[1], sub(point, corners[0]));
+    let third = dot(gradients[2], sub(point, corners[0]));
+    [1.0 - second - third, second, third]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-1.0..1.0)
+    }
+
+    proptest! {
+        #[test]
+        fn no_point_of_the_triangle_is_closer(
+            p in point(), corners in prop::array::uniform3(point()), u in 0.0..1.0f64, v in 0.0..1.0f64,
+        ) {
+            let found = closest(p, corners);
+            prop_assert!((found.weights.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            prop_assert!(found.weights.iter().all(|w| *w >= 0.0));
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let mut other = sub(p, scale(1.0 - u - v, corners[0]));
+            axpy(&mut other, -u, corners[1]);
+            axpy(&mut other, -v, corners[2]);
+            prop_assert!(found.distance <= norm(other) + 1e-12);
+        }
+
+        #[test]
+        fn affine_coordinates_rebuild_the_foot(p in point(), corners in prop::array::uniform3(point())) {
+            prop_assume!(area(corners) > 1e-3);
+            let weights = affine(p, corners);
+            let mut away = p;
+            for (weight, corner) in weights.iter().zip(corners) {
+                axpy(&mut away, -weight, corner);
+            }
+            let n = normal(corners);
+            let along = dot(away, n);
+            axpy(&mut away, -along, n);
+            prop_assert!(norm(away) < 1e-9);
+        }
+    }
+}

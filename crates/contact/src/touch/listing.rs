@@ -1,0 +1,87 @@
+//! Which triangles a sample may meet on its way.
+
+use voxsoft_solid::vector::{Vec3, dot, sub};
+
+use super::Touch;
+use super::gap::{closest, normal};
+use super::state::State;
+use crate::bounds::Bounds;
+use crate::tree::Tree;
+
+/// How far apart a sample and a triangle may pass each other and be listed, in voxels.
+pub(super) const REACH: f64 = 0.5;
+/// How deep a sample may be in what it touches at an accepted state, in voxels: less than half of the thinnest wall.
+const DEPTH: f64 = 0.25;
+/// Faces that can meet look at each other: the product of their normals is below this. A sample on an edge has
+/// several, of which those along the other face do not meet it.
+const FACING: f64 = -0.1;
+
+impl Touch {
+    /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
+    /// where `points` are, and that it was in front of there.
+    pub(super) fn list(&self, state: &mut State, points: Vec<Vec3>) {
+        let reach = REACH * self.description.voxel;
+        let swept = |triangle: &[u32; 3]| {
+            let each = triangle.iter().map(|p| *p as usize);
+            let ends = each.flat_map(|p| [state.accepted_points[p], points[p]]);
+            grown(Bounds::of(ends), reach)
+        };
+        let boxes: Vec<Bounds> = self.triangles.iter().map(swept).collect();
+        let tree = Tree::new(&boxes);
+        // A sample stays within the box of a triangle that it is on.
+        let mut candidates = vec![Vec::new(); self.samples.len()];
+        for (index, sample) in self.samples.iter().enumerate() {
+            let first = sample.triangles[0] as usize;
+            let ends = self.triangles[first].map(|p| p as usize);
+            let way = ends.map(|p| sub(points[p], state.accepted_points[p]));
+            let start = state.accepted_samples[index];
+            let reached = way.map(|way| std::array::from_fn(|axis| start[axis] + way[axis]));
+            let bounds = Bounds::of([start].into_iter().chain(reached));
+            let mut found = Vec::new();
+            tree.meeting(&bounds, |triangle| {
+                if self.may_meet(index, triangle, state) {
+                    found.push(triangle);
+                }
+            });
+            found.sort_unstable();
+            candidates[index] = found;
+        }
+        state.candidates = candidates;
+        // What is faced stays: the forces are still those of the state that it was looked for.
+        state.facing.resize(self.samples.len(), None);
+        state.looks = state.looks.max(1);
+        state.listed_points = points;
+    }
+
+    fn may_meet(&self, index: usize, triangle: u32, state: &State) -> bool {
+        let sample = &self.samples[index];
+        if self.coefficient(index as u32, triangle).is_nan() {
+            return false;
+        }
+        let points = &state.accepted_points;
+        let corners = self.corners(triangle, points);
+        let n = normal(corners);
+        let itself = sample.surface == self.surface_of[triangle as usize];
+        if itself {
+            let of = self.triangles[triangle as usize];
+            let mut own = sample.triangles.iter().map(|t| self.triangles[*t as usize]);
+            if own.any(|own| own.iter().any(|point| of.contains(point))) {
+                return false;
+            }
+        }
+        let faces = |own: &u32| dot(normal(self.corners(*own, points)), n) < FACING;
+        if !sample.triangles.iter().any(faces) {
+            return false;
+        }
+        let start = state.accepted_samples[index];
+        let found = closest(start, corners);
+        dot(found.away, n) >= -DEPTH * self.description.voxel
+    }
+}
+
+fn grown(bounds: Bounds, by: f64) -> Bounds {
+    Bounds {
+        low: bounds.low.map(|x| x - by),
+        high: bounds.high.map(|x| x + by),
+    }
+}

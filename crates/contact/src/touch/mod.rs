@@ -1,0 +1,437 @@
+//! Contact of closed surfaces, each with each other and with itself, with Coulomb friction.
+//!
+//! # Gap
+//!
+//! Samples of every surface look for the closest triangle in front of them ([`gap`]). Both sides have samples, and
+//! each stands for half of its area, so that neither is the master. A sample keeps its side: a triangle counts
+//! only if the sample was in front of it at the last accepted state, so that the far side of a thin wall is never
+//! taken for something that is met.
+//!
+//! # Augmented Lagrangian
+//!
+//! With a multiplier `λ` (N) for each sample and a penalty `k` (N/m), the energy is `k/2 ⟨λ/k − (g − δ)⟩²`, its force
+//! `p = k ⟨λ/k − (g − δ)⟩`; after each equilibrium `λ ← p`, until no
+//! sample is deeper than nine tenths of the clearance `δ`, so that surfaces which touch do not intersect. The answer
+//! does not depend on `k` (Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X).
+//!
+//! # Friction
+//!
+//! A sample in contact has an anchor on the other surface and slips from it by `u`. Its friction is
+//! `t = P (τ − k u)`, cut to the length `μ λ` (return mapping), with the multiplier `τ` brought up like `λ`: what
+//! sticks does not move, however long it is held. The bound is that of the last correction, so that the tangent stays symmetric; at the end it is that of
+//! the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
+
+mod gap;
+mod listing;
+mod path;
+mod report;
+pub mod rigid;
+mod state;
+mod surface;
+mod term;
+
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
+
+use voxsoft_solid::matrix::Mat3;
+use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
+use voxsoft_solid::{Contact, ProblemError};
+
+use gap::{Closest, closest, normal, unit};
+pub use report::PairReport;
+use state::{Facing, Memory, State};
+use surface::Sample;
+pub use surface::{Carried, Surface};
+
+/// The penalty in units of Young's modulus over the voxel size. What multipliers still have to learn shrinks by it
+/// with every correction; at 100, blocks of rubber that is held against bulging take ten times as many.
+const PENALTY: f64 = 1000.0;
+/// The penalty of slip, relative to that of gaps: what sticks gives way by more, and lets go less suddenly.
+const STICK: f64 = 0.01;
+/// The clearance of surfaces that touch, in voxels.
+const CLEARANCE: f64 = 1e-4;
+/// Looks at the start of a search for equilibrium; after a correction there is one.
+const LOOKS: u32 = 2;
+/// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
+/// coordinates.
+const STRAYED: f64 = 0.5;
+/// What may be left of the clearance, in voxels: surfaces that touch do not intersect.
+const DEEPEST: f64 = 0.9 * CLEARANCE;
+/// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
+/// different voxels do not fit each other to the last point, where multipliers converge slowly.
+const APART: f64 = 1e-3;
+const CREEP: f64 = 1e-4;
+/// By how much a bound of friction may be off, of the largest one.
+const BOUND: f64 = 3e-3;
+
+/// Who touches whom, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Description {
+    /// The surfaces.
+    pub surfaces: Vec<Surface>,
+    /// The coefficient of friction of each surface with each, symmetric; NaN where they pass through each other.
+    pub friction: Vec<Vec<f64>>,
+    /// The size of a voxel in m.
+    pub voxel: f64,
+    /// Young's modulus of what touches, or something of its size, in Pa.
+    pub young: f64,
+}
+
+/// Contact of surfaces.
+#[derive(Debug)]
+pub struct Touch {
+    description: Description,
+    samples: Vec<Sample>,
+    /// The points of all surfaces.
+    points: Vec<Carried>,
+    /// The triangles of all surfaces, of these points.
+    triangles: Vec<[u32; 3]>,
+    /// The surface of each.
+    surface_of: Vec<u32>,
+    /// The triangles at each point.
+    around: Vec<Vec<u32>>,
+    state: RwLock<State>,
+}
+
+/// A sample and what it is in front of.
+#[derive(Debug, Clone, Copy)]
+struct Meeting {
+    sample: u32,
+    triangle: u32,
+    /// Barycentric coordinates of the closest point.
+    weights: [f64; 3],
+    /// Whether that is inside the triangle.
+    inside: bool,
+    gap: f64,
+    /// From the triangle to the sample.
+    normal: Vec3,
+}
+
+/// How friction acts on a sample.
+#[derive(Debug, Clone, Copy)]
+struct Friction {
+    /// N.
+    force: Vec3,
+    /// Minus the derivative of the force by the slip, N/m.
+    stiffness: Mat3,
+    /// J.
+    energy: f64,
+    anchor: (u32, [f64; 3]),
+    slips: bool,
+}
+
+impl Touch {
+    /// Makes contact ready for a problem with the vertices `rest` (m).
+    pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
+        let count = description.surfaces.len();
+        let rows = description.friction.iter().map(Vec::len);
+        if description.friction.len() != count || !rows.into_iter().all(|row| row == count) {
+            return Err(ProblemError::Length {
+                what: "rows of the table of friction",
+                got: description.friction.len(),
+                expected: count,
+            });
+        }
+        if let Some(&value) = description.friction.iter().flatten().find(|f| **f < 0.0) {
+            let what = "a coefficient of friction";
+            return Err(ProblemError::NotPositive { what, value });
+        }
+        for (what, value) in [
+            ("the voxel size of contact", description.voxel),
+            ("the modulus of contact", description.young),
+        ] {
+            if !(value > 0.0 && value.is_finite()) {
+                return Err(ProblemError::NotPositive { what, value });
+            }
+        }
+        let (mut samples, mut points, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
+        let mut surface_of = Vec::new();
+        for (number, surface) in description.surfaces.iter().enumerate() {
+            surface.check(rest.len())?;
+            let number = number as u32;
+            samples.extend(surface::samples(
+                surface,
+                number,
+                triangles.len() as u32,
+                rest,
+            ));
+            let first = points.len() as u32;
+            points.extend(surface.points.iter().cloned());
+            triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
+            surface_of.resize(triangles.len(), number);
+        }
+        let mut around = vec![Vec::new(); points.len()];
+        for (t, triangle) in triangles.iter().enumerate() {
+            for point in triangle {
+                around[*point as usize].push(t as u32);
+            }
+        }
+        let touch = Self {
+            description,
+            samples,
+            points,
+            triangles,
+            surface_of,
+            around,
+            state: RwLock::default(),
+        };
+        Contact::start(&touch, rest);
+        Ok(touch)
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, State> {
+        self.state.read().expect("no holder of the lock panics")
+    }
+
+    fn write(&self) -> RwLockWriteGuard<'_, State> {
+        self.state.write().expect("no holder of the lock panics")
+    }
+
+    fn points_at(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        self.points
+            .iter()
+            .map(|point| point.at(positions))
+            .collect()
+    }
+
+    fn corners(&self, triangle: u32, points: &[Vec3]) -> [Vec3; 3] {
+        self.triangles[triangle as usize].map(|p| points[p as usize])
+    }
+
+    /// The friction between a sample and a triangle.
+    fn coefficient(&self, sample: u32, triangle: u32) -> f64 {
+        let of = self.samples[sample as usize].surface as usize;
+        let with = self.surface_of[triangle as usize] as usize;
+        self.description.friction[of][with]
+    }
+
+    /// N/m; both sides of a contact have samples.
+    fn penalty(&self, sample: u32) -> f64 {
+        let per_area = PENALTY * self.description.young / self.description.voxel;
+        per_area * self.samples[sample as usize].area / 2.0
+    }
+
+    fn clearance(&self) -> f64 {
+        CLEARANCE * self.description.voxel
+    }
+
+    /// What a sample at `point` is in front of, or in, among its candidates.
+    fn look(&self, point: Vec3, candidates: &[u32], points: &[Vec3]) -> Option<Facing> {
+        let mut best: Option<(u32, Closest)> = None;
+        for &triangle in candidates {
+            let found = closest(point, self.corners(triangle, points));
+            if best.is_none_or(|(_, other)| found.distance < other.distance) {
+                best = Some((triangle, found));
+            }
+        }
+        let (triangle, found) = best?;
+        if found.is_inside() {
+            return Some(Facing::Plane(triangle));
+        }
+        let outward = self.normal_beside(triangle, found.weights, points);
+        let normal = if found.distance <= 1e-9 * self.description.voxel {
+            outward
+        } else {
+            let sign = 1.0f64.copysign(dot(found.away, outward));
+            scale(sign / found.distance, found.away)
+        };
+        Some(Facing::Edge(triangle, found.weights, normal))
+    }
+
+    /// How a sample at `point` lies to what it faces.
+    fn meeting(&self, sample: u32, facing: Facing, point: Vec3, points: &[Vec3]) -> Meeting {
+        let (triangle, weights, normal, inside) = match facing {
+            Facing::Plane(triangle) => {
+                let corners = self.corners(triangle, points);
+                (triangle, gap::affine(point, corners), normal(corners), true)
+            }
+            Facing::Edge(triangle, weights, normal) => (triangle, weights, normal, false),
+        };
+        let mut away = point;
+        for (weight, corner) in weights.iter().zip(self.corners(triangle, points)) {
+            axpy(&mut away, -weight, corner);
+        }
+        Meeting {
+            sample,
+            triangle,
+            weights,
+            inside,
+            gap: dot(away, normal),
+            normal,
+        }
+    }
+
+    /// The mean normal at a point on an edge or corner of a triangle, which tells outside from inside (Baerentzen and
+    /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
+    fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
+        let corners = self.triangles[triangle as usize];
+        let on: Vec<u32> = (0..3)
+            .filter(|c| weights[*c] > 0.0)
+            .map(|c| corners[c])
+            .collect();
+        let mut sum = [0.0; 3];
+        for &other in &self.around[on[0] as usize] {
+            let of_other = self.triangles[other as usize];
+            if !on.iter().all(|point| of_other.contains(point)) {
+                continue;
+            }
+            let n = normal(self.corners(other, points));
+            let weight = match on.as_slice() {
+                [corner] => {
+                    let place = of_other.iter().position(|p| p == corner).unwrap_or(0);
+                    let at = |step: usize| points[of_other[(place + step) % 3] as usize];
+                    let (u, v) = (unit(sub(at(1), at(0))), unit(sub(at(2), at(0))));
+                    dot(u, v).clamp(-1.0, 1.0).acos()
+                }
+                _ => 1.0,
+            };
+            axpy(&mut sum, weight, n);
+        }
+        unit(sum)
+    }
+
+    /// The force with which a sample is pushed away, N.
+    fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
+        let k = self.penalty(meeting.sample);
+        (memory.normal - k * (meeting.gap - self.clearance())).max(0.0)
+    }
+
+    /// The friction of a sample that is in contact and has an anchor.
+    fn friction(
+        &self,
+        memory: &Memory,
+        meeting: &Meeting,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<Friction> {
+        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
+        let k = STICK * self.penalty(meeting.sample);
+        let n = meeting.normal;
+        let along = |v: Vec3| sub(v, scale(dot(v, n), n));
+        let mut slip = point;
+        for (weight, corner) in anchor.1.iter().zip(self.corners(anchor.0, points)) {
+            axpy(&mut slip, -weight, corner);
+        }
+        let trial = sub(along(memory.friction), scale(k, along(slip)));
+        let size = norm(trial);
+        let slips = size > memory.bound;
+        let (force, energy) = if slips {
+            let energy = memory.bound * (size - memory.bound / 2.0) / k;
+            (scale(memory.bound / size, trial), energy)
+        } else {
+            (trial, size * size / (2.0 * k))
+        };
+        let stiffness = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let plane = if i == j { 1.0 } else { 0.0 } - n[i] * n[j];
+                if slips {
+                    let across = plane - trial[i] * trial[j] / (size * size);
+                    k * memory.bound / size * across
+                } else {
+                    k * plane
+                }
+            })
+        });
+        Some(Friction {
+            force,
+            stiffness,
+            energy,
+            anchor,
+            slips,
+        })
+    }
+
+    /// Hands over every sample that is in contact, with its pressure in N.
+    fn each_contact(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(&Meeting, f64, Vec3, &[Vec3]),
+    ) {
+        let points = self.points_at(positions);
+        for (index, facing) in state.facing.iter().enumerate() {
+            let Some(facing) = *facing else {
+                continue;
+            };
+            let point = self.samples[index].point.at(positions);
+            let meeting = self.meeting(index as u32, facing, point, &points);
+            let pressure = self.pressure(&state.now[index], &meeting);
+            if pressure > 0.0 {
+                take(&meeting, pressure, point, &points);
+            }
+        }
+    }
+
+    /// The sample and the corners of a triangle, each with the factor of its motion in the relative one.
+    fn relative(&self, sample: u32, triangle: u32, weights: [f64; 3]) -> [(f64, &Carried); 4] {
+        let corners = self.triangles[triangle as usize];
+        let corner = |c: usize| (-weights[c], &self.points[corners[c] as usize]);
+        [
+            (1.0, &self.samples[sample as usize].point),
+            corner(0),
+            corner(1),
+            corner(2),
+        ]
+    }
+
+    fn add_force(
+        &self,
+        force: Vec3,
+        sample: u32,
+        (triangle, weights): (u32, [f64; 3]),
+        forces: &mut [Vec3],
+    ) {
+        for (factor, point) in self.relative(sample, triangle, weights) {
+            point.add_force(factor, force, forces);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voxsoft_solid::conformance::check_term;
+
+    /// Two tetrahedra, the tip of the second a little in a face of the first.
+    fn pressed() -> (Touch, Vec<Vec3>) {
+        let positions = vec![
+            [0.0, 0.0, 0.0],
+            [1.0, 0.1, 0.0],
+            [0.0, 1.0, 0.05],
+            [0.1, 0.1, -1.0],
+            [0.31, 0.33, -0.004],
+            [0.6, 0.1, 1.0],
+            [0.1, 0.2, 1.1],
+            [0.4, 0.7, 0.9],
+        ];
+        // Of negative volume, hence these faces.
+        let faces = vec![[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+        let tetrahedron = |first: u32| Surface {
+            points: (first..first + 4).map(Carried::vertex).collect(),
+            triangles: faces.clone(),
+        };
+        let surfaces = vec![tetrahedron(0), tetrahedron(4)];
+        let description = Description {
+            surfaces,
+            friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
+            voxel: 1.0,
+            young: 2.0,
+        };
+        (Touch::new(description, &positions).unwrap(), positions)
+    }
+
+    #[test]
+    fn contact_keeps_the_laws_of_terms() {
+        let (touch, positions) = pressed();
+        let pairs = touch.pairs(&positions);
+        assert_eq!(pairs.len(), 1);
+        assert!(pairs[0].gap < 0.0 && pairs[0].gap > -0.02, "{pairs:?}");
+        let mut apart = positions.clone();
+        for x in &mut apart[4..] {
+            x[2] += 0.1;
+        }
+        touch.follow(&positions);
+        check_term(&touch, &apart, &positions).unwrap();
+        touch.correct(&positions);
+        check_term(&touch, &apart, &positions).unwrap();
+    }
+}

@@ -1,0 +1,195 @@
+//! Contact along a load path: who faces whom, corrections of multipliers, anchors that come along.
+
+use voxsoft_solid::Contact;
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
+
+use super::gap::{self, normal};
+use super::state::{Facing, Memory, State};
+use super::{APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, STICK, STRAYED, Touch, listing};
+
+impl Contact for Touch {
+    fn start(&self, positions: &[Vec3]) {
+        let points = self.points_at(positions);
+        let samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
+        let nothing = vec![Memory::default(); self.samples.len()];
+        let mut state = self.write();
+        *state = State {
+            accepted_points: points.clone(),
+            accepted_samples: samples,
+            accepted: nothing.clone(),
+            now: nothing,
+            ..State::default()
+        };
+        self.list(&mut state, points);
+        state.looks = LOOKS;
+        self.face(&mut state, positions, true);
+    }
+
+    fn follow(&self, positions: &[Vec3]) -> bool {
+        let mut state = self.write();
+        let points = self.points_at(positions);
+        let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
+        let farthest = points.iter().zip(&state.listed_points).map(moved);
+        if !(farthest.fold(0.0, f64::max) <= listing::REACH / 2.0 * self.description.voxel) {
+            self.list(&mut state, points);
+        }
+        let all = state.looks > 0;
+        state.looks = state.looks.saturating_sub(1);
+        self.face(&mut state, positions, all);
+        let mut pairs = Vec::new();
+        self.each_contact(&state, positions, |meeting, _, point, points| {
+            pairs.push((meeting.sample, meeting.triangle));
+            let memory = &state.now[meeting.sample as usize];
+            if let Some(friction) = self.friction(memory, meeting, point, points) {
+                pairs.push((meeting.sample, friction.anchor.0));
+            }
+        });
+        let before = state.pattern.len();
+        state.pattern.extend(pairs);
+        state.pattern.len() > before
+    }
+
+    fn correct(&self, positions: &[Vec3]) -> f64 {
+        let mut state = self.write();
+        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
+        let anchor_of = |memory: &Memory| Memory {
+            anchor: memory.anchor,
+            ..Memory::default()
+        };
+        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
+        self.each_contact(&state, positions, |meeting, pressure, point, points| {
+            let sample = meeting.sample as usize;
+            let memory = &state.now[sample];
+            let friction = self.friction(memory, meeting, point, points);
+            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            now[sample] = Memory {
+                normal: pressure,
+                friction: friction.map_or([0.0; 3], |friction| friction.force),
+                bound: coefficient * pressure,
+                anchor: memory
+                    .anchor
+                    .or_else(|| Some(self.first_anchor(&state, meeting, point, points))),
+            };
+        });
+        let bounds = now.iter().chain(&state.now).map(|memory| memory.bound);
+        let largest_bound = bounds.fold(0.0, f64::max);
+        let mut largest = 0.0f64;
+        for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
+            if old == new {
+                continue;
+            }
+            let unit = self.penalty(sample as u32) * self.description.voxel;
+            let pressed = (new.normal - old.normal) / unit;
+            let bound = (new.bound - old.bound).abs();
+            let crept = norm(sub(new.friction, old.friction)) / (STICK * unit);
+            largest = largest
+                .max(pressed / DEEPEST)
+                .max(-pressed / APART)
+                .max(if bound > 0.0 {
+                    bound / (BOUND * largest_bound)
+                } else {
+                    0.0
+                })
+                .max(crept / CREEP);
+        }
+        // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
+        if largest > 1.0 {
+            state.now = now;
+            state.looks = 1;
+        }
+        largest
+    }
+
+    fn has_friction(&self) -> bool {
+        let table = self.description.friction.iter().flatten();
+        table.into_iter().any(|coefficient| *coefficient > 0.0)
+    }
+
+    fn accept(&self, positions: &[Vec3]) {
+        let mut state = self.write();
+        let mut moved = vec![Memory::default(); self.samples.len()];
+        self.each_contact(&state, positions, |meeting, _, point, points| {
+            let memory = &mut moved[meeting.sample as usize];
+            *memory = state.now[meeting.sample as usize];
+            let friction = self.friction(memory, meeting, point, points);
+            if friction.is_none_or(|friction| friction.slips) {
+                let corners = self.corners(meeting.triangle, points);
+                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
+            }
+        });
+        let points = self.points_at(positions);
+        state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
+        state.accepted_points.clone_from(&points);
+        state.accepted.clone_from(&moved);
+        state.now = moved;
+        self.list(&mut state, points);
+        state.looks = LOOKS;
+    }
+
+    fn go_back(&self) {
+        let mut state = self.write();
+        state.now = state.accepted.clone();
+        let points = state.accepted_points.clone();
+        self.list(&mut state, points);
+        state.looks = LOOKS;
+    }
+}
+
+impl Touch {
+    /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
+    /// way as the gap says.
+    fn first_anchor(
+        &self,
+        state: &State,
+        meeting: &Meeting,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> (u32, [f64; 3]) {
+        let corners = self.corners(meeting.triangle, points);
+        let before = self.corners(meeting.triangle, &state.accepted_points);
+        let start = state.accepted_samples[meeting.sample as usize];
+        let first = gap::affine(start, before);
+        let mut foot = [0.0; 3];
+        let mut foot_now = [0.0; 3];
+        for c in 0..3 {
+            axpy(&mut foot, first[c], before[c]);
+            axpy(&mut foot_now, first[c], corners[c]);
+        }
+        let gap_before = dot(sub(start, foot), normal(before)) - self.clearance();
+        let gap_now = meeting.gap - self.clearance();
+        let since = if gap_before > 0.0 && gap_before > gap_now {
+            1.0 - gap_before / (gap_before - gap_now.min(0.0))
+        } else {
+            1.0
+        };
+        // A touch that only just begins has `since` near 0: it has not slipped yet.
+        let slip = sub(point, foot_now);
+        let anchor = add(point, scale(-since, slip));
+        (meeting.triangle, gap::affine(anchor, corners))
+    }
+
+    /// Lets samples look for what they face: all of them, or those that have strayed from it.
+    fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
+        let points = self.points_at(positions);
+        for index in 0..self.samples.len() {
+            let candidates = &state.candidates[index];
+            if candidates.is_empty() {
+                state.facing[index] = None;
+                continue;
+            }
+            let point = self.samples[index].point.at(positions);
+            let strayed = match state.facing[index] {
+                Some(Facing::Plane(triangle)) => {
+                    let weights = gap::affine(point, self.corners(triangle, &points));
+                    weights.iter().any(|w| *w < -STRAYED)
+                }
+                Some(Facing::Edge(..)) => false,
+                None => true,
+            };
+            if !all && !strayed {
+                continue;
+            }
+            state.facing[index] = self.look(point, candidates, &points);
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! What contact remembers between evaluations.
+
+use std::collections::BTreeSet;
+
+use voxsoft_solid::vector::Vec3;
+
+/// What a sample carries along a load path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Memory {
+    /// The multiplier of its gap, a force in N that pushes apart.
+    pub normal: f64,
+    /// That of its slip in N, along the surface.
+    pub friction: Vec3,
+    /// The most that friction may be, in N.
+    pub bound: f64,
+    /// Where on the other surface it sticks: a triangle, and affine coordinates in it.
+    pub anchor: Option<(u32, [f64; 3])>,
+}
+
+/// What a sample faces, fixed for some steps of Newton's method, so that what it minimizes has no kinks where a
+/// sample slides over an edge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Facing {
+    /// The plane of a triangle.
+    Plane(u32),
+    /// A point on an edge or corner of a triangle, with its barycentric coordinates, and the normal there.
+    Edge(u32, [f64; 3], Vec3),
+}
+
+/// The state of all samples.
+#[derive(Debug, Clone, Default)]
+pub(super) struct State {
+    /// The points of all surfaces at the last accepted state, m.
+    pub accepted_points: Vec<Vec3>,
+    /// The samples there.
+    pub accepted_samples: Vec<Vec3>,
+    /// What they carried.
+    pub accepted: Vec<Memory>,
+    /// What they carry now.
+    pub now: Vec<Memory>,
+    /// The points when candidates were listed last.
+    pub listed_points: Vec<Vec3>,
+    /// For each sample the triangles that it may meet on the way from the last accepted state.
+    pub candidates: Vec<Vec<u32>>,
+    /// What each of them faces now.
+    pub facing: Vec<Option<Facing>>,
+    /// How often all samples may still look for what they face before that is fixed.
+    pub looks: u32,
+    /// Samples and triangles whose stiffness there is room for.
+    pub pattern: BTreeSet<(u32, u32)>,
+}

@@ -1,0 +1,195 @@
+//! Surfaces that touch, and the points at which they are looked at.
+
+use std::collections::BTreeMap;
+
+use voxsoft_solid::ProblemError;
+use voxsoft_solid::vector::{Vec3, axpy};
+
+/// A point of a surface: the weighted mean of vertices of the problem.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Carried {
+    /// The vertices that carry it, each once.
+    pub vertices: Vec<u32>,
+    /// Their weights; they sum to 1.
+    pub weights: Vec<f64>,
+}
+
+impl Carried {
+    /// A vertex of the problem itself.
+    pub fn vertex(vertex: u32) -> Self {
+        Self {
+            vertices: vec![vertex],
+            weights: vec![1.0],
+        }
+    }
+
+    /// Where it is.
+    pub fn at(&self, positions: &[Vec3]) -> Vec3 {
+        let mut point = [0.0; 3];
+        for (vertex, weight) in self.vertices.iter().zip(&self.weights) {
+            axpy(&mut point, *weight, positions[*vertex as usize]);
+        }
+        point
+    }
+
+    /// Adds a force on it to those on the vertices that carry it.
+    pub fn add_force(&self, factor: f64, force: Vec3, forces: &mut [Vec3]) {
+        for (vertex, weight) in self.vertices.iter().zip(&self.weights) {
+            axpy(&mut forces[*vertex as usize], factor * weight, force);
+        }
+    }
+}
+
+/// The closed surface of a body or of an object.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Surface {
+    /// Its points.
+    pub points: Vec<Carried>,
+    /// Triangles of points, outward.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// The corners of the faces of a voxel, outward.
+const FACES: [[usize; 4]; 6] = [
+    [0, 1, 3, 2],
+    [4, 6, 7, 5],
+    [0, 4, 5, 1],
+    [2, 3, 7, 6],
+    [0, 2, 6, 4],
+    [1, 5, 7, 3],
+];
+
+impl Surface {
+    /// Triangles of vertices of the problem.
+    pub fn of_triangles(triangles: &[[u32; 3]]) -> Self {
+        let mut place: BTreeMap<u32, u32> = BTreeMap::new();
+        let mut points = Vec::new();
+        let mut number = |vertex: u32| {
+            *place.entry(vertex).or_insert_with(|| {
+                points.push(Carried::vertex(vertex));
+                points.len() as u32 - 1
+            })
+        };
+        let triangles = triangles.iter().map(|t| t.map(&mut number)).collect();
+        Self { points, triangles }
+    }
+
+    /// The faces of voxels that have no neighbor, each divided into squares by `refine` along an edge, two triangles
+    /// each. Its points move bilinearly with the four corners of their face: triangles of corners would share a
+    /// pressure unevenly among them.
+    ///
+    /// Corner `c` of a voxel is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+    pub fn of_voxels(voxels: &[[u32; 8]], refine: u32) -> Self {
+        let mut open: BTreeMap<[u32; 4], Option<[u32; 4]>> = BTreeMap::new();
+        for voxel in voxels {
+            for face in FACES {
+                let face = face.map(|corner| voxel[corner]);
+                let mut key = face;
+                key.sort_unstable();
+                open.entry(key)
+                    .and_modify(|f| *f = None)
+                    .or_insert(Some(face));
+            }
+        }
+        let n = refine.max(1);
+        let mut surface = Self::default();
+        let mut place: BTreeMap<Vec<(u32, u32)>, u32> = BTreeMap::new();
+        for face in open.into_values().flatten() {
+            let mut point = |i: u32, j: u32| {
+                let parts = [(n - i) * (n - j), i * (n - j), i * j, (n - i) * j];
+                let all = face.into_iter().zip(parts);
+                let mut key: Vec<(u32, u32)> = all.filter(|(_, part)| *part > 0).collect();
+                key.sort_unstable();
+                *place.entry(key).or_insert_with_key(|key| {
+                    let whole = f64::from(n * n);
+                    surface.points.push(Carried {
+                        vertices: key.iter().map(|(vertex, _)| *vertex).collect(),
+                        weights: key
+                            .iter()
+                            .map(|(_, part)| f64::from(*part) / whole)
+                            .collect(),
+                    });
+                    surface.points.len() as u32 - 1
+                })
+            };
+            for i in 0..n {
+                for j in 0..n {
+                    let [a, b, c, d] = [
+                        point(i, j),
+                        point(i + 1, j),
+                        point(i + 1, j + 1),
+                        point(i, j + 1),
+                    ];
+                    // Diagonals in turn, so that the corners of a face have even shares.
+                    let pair = if (i + j) % 2 == 0 {
+                        [[a, b, c], [a, c, d]]
+                    } else {
+                        [[a, b, d], [b, c, d]]
+                    };
+                    surface.triangles.extend(pair);
+                }
+            }
+        }
+        surface
+    }
+
+    /// Checks that all indices exist.
+    pub fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+        let in_range = |what, list: &[u32], count: usize| match list
+            .iter()
+            .find(|&&index| index as usize >= count)
+        {
+            Some(&index) => Err(ProblemError::Index {
+                what,
+                index: index as usize,
+                count,
+            }),
+            None => Ok(()),
+        };
+        for point in &self.points {
+            in_range("vertex of a surface", &point.vertices, vertices)?;
+        }
+        in_range(
+            "point of a surface",
+            self.triangles.as_flattened(),
+            self.points.len(),
+        )
+    }
+}
+
+/// A point at which a surface is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sample {
+    pub point: Carried,
+    /// The area that it stands for in the unloaded body, m².
+    pub area: f64,
+    /// The surface that it is on.
+    pub surface: u32,
+    /// The triangles that it is on, as they are numbered over all surfaces.
+    pub triangles: Vec<u32>,
+}
+
+/// The samples of a surface: its points, each with a third of the triangles around it.
+pub(super) fn samples(
+    surface: &Surface,
+    number: u32,
+    first_triangle: u32,
+    rest: &[Vec3],
+) -> Vec<Sample> {
+    let sample = |point: &Carried| Sample {
+        point: point.clone(),
+        area: 0.0,
+        surface: number,
+        triangles: Vec::new(),
+    };
+    let mut samples: Vec<Sample> = surface.points.iter().map(sample).collect();
+    for (t, triangle) in surface.triangles.iter().enumerate() {
+        let corners = triangle.map(|p| surface.points[p as usize].at(rest));
+        for point in triangle {
+            let sample = &mut samples[*point as usize];
+            sample.area += super::gap::area(corners) / 3.0;
+            sample.triangles.push(first_triangle + t as u32);
+        }
+    }
+    samples
+}

@@ -1,0 +1,31 @@
+//! Contact as solvers know it.
+
+use crate::Term;
+use crate::vector::Vec3;
+
+/// Surfaces that touch: a term of the body that remembers.
+///
+/// Its energy is that of the multipliers and the anchors that it holds. A solver finds an equilibrium under these,
+/// lets them be [corrected](Contact::correct) until that changes little, and then
+/// [accepts](Contact::accept) the state or [goes back](Contact::go_back) to the last accepted one.
+pub trait Contact: Term {
+    /// Forgets everything; `positions` (m) become the accepted state.
+    fn start(&self, positions: &[Vec3]);
+
+    /// Looks who touches at `positions`; whether the stiffness there joins vertices that it did not before. To be
+    /// called before the stiffness is asked for.
+    fn follow(&self, positions: &[Vec3]) -> bool;
+
+    /// Brings the multipliers up to the forces at `positions`, an equilibrium; how far off they are. At most 1 is
+    /// good enough, and nothing changes.
+    fn correct(&self, positions: &[Vec3]) -> f64;
+
+    /// Whether the answer depends on the way to it.
+    fn has_friction(&self) -> bool;
+
+    /// Takes `positions` as the state from which the path goes on.
+    fn accept(&self, positions: &[Vec3]);
+
+    /// Forgets what happened since the last accepted state.
+    fn go_back(&self);
+}
