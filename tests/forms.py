@@ -15,6 +15,7 @@ from pydantic import StringConstraints, WithJsonSchema
 
 from voxsoft.design import Design, Parameter, Region
 from voxsoft.design.clamp import Clamp, Rotation
+from voxsoft.design.contact import ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.region import Spot
@@ -98,6 +99,9 @@ SPECIAL: dict[tuple[type, str], tuple[Any, ...]] = {
         {"voxel size": "5 mm", "errors": [0.1, {"of": True}], "seed": 3},
     ),
 }
+
+# The one name that every contact may have: that of the body.
+SPECIAL[ContactPair, "of"] = (("body", "body"), ["body", "body"])
 
 #: What a record needs beside what its fields require.
 NEEDS: dict[type, dict[str, Any]] = {

@@ -79,11 +79,23 @@ def _entries(name, info, tables):
     for start in range(0, len(tables), AT_ONCE):
         some = tables[start : start + AT_ONCE]
         if text.startswith("tuple"):
-            yield {name: some}
+            yield {name: list(_of_own_names(some)) if name == "objects" else some}
         elif "Mapping" in text[:30]:
             yield {name: {f"e{index}": table for index, table in enumerate(some)}}
         else:
             yield from ({name: table} for table in some)
+
+
+def _of_own_names(objects):
+    """The same objects, but no two of one name."""
+    taken = set()
+    for index, each in enumerate(objects):
+        name = each["name"] if isinstance(each, dict) else each.name
+        if name in taken:
+            name = f"o{index}"
+            each = {**each, "name": name} if isinstance(each, dict) else each.replace(name=name)
+        taken.add(name)
+        yield each
 
 
 def designs_of(model):

@@ -8,7 +8,8 @@ import pytest
 import voxsoft as vs
 from voxsoft.design import families
 from voxsoft.design.discretize import voxels_of
-from voxsoft.studio.smooth import pack_smooth, trace
+from voxsoft.shapes.tracing import trace
+from voxsoft.studio.smooth import pack_smooth
 
 
 def traced(design):
@@ -100,5 +101,5 @@ def test_what_has_no_voxels_is_not_shown():
 def test_a_body_that_is_too_large_has_none_rather_than_a_coarse_one(monkeypatch):
     design = families.sphere()
     assert pack_smooth(design, voxels_of(design), 1) is not None
-    monkeypatch.setattr("voxsoft.studio.smooth.MOST_SAMPLES", 1000)
+    monkeypatch.setattr("voxsoft.shapes.tracing.MOST_SAMPLES", 1000)
     assert pack_smooth(design, voxels_of(design), 1) is None

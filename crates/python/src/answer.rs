@@ -4,6 +4,8 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
+use crate::touch::{PyContact, PyObjectPose};
+
 /// How a solution ended.
 #[pyclass(
     frozen,
@@ -66,6 +68,10 @@ pub struct PyAnswer {
     pub records: Py<PyArray3<f64>>,
     pub frames: Py<PyArray3<f64>>,
     pub path: Option<Py<PyPath>>,
+    /// What touches what.
+    pub contacts: Vec<Py<PyContact>>,
+    /// Where the objects are.
+    pub objects: Vec<Py<PyObjectPose>>,
 }
 
 /// How statics followed the loads.

@@ -15,6 +15,7 @@ mod mesh;
 mod player;
 mod shapes;
 mod simulate;
+mod touch;
 mod voxels;
 mod watch;
 
@@ -30,6 +31,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answer::PyLiveStatus>()?;
     module.add_class::<materials::PyMaterial>()?;
     module.add_class::<materials::PyFiber>()?;
+    module.add_class::<touch::PyContact>()?;
+    module.add_class::<touch::PyObjectPose>()?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;

@@ -1,4 +1,5 @@
-//! `_core.Problem` and its two ways to an answer.
+//! `_core.Problem` and its two ways to an answer. Long because one class of Python collects all that a problem is made
+//! of, each kind of it in a method.
 use std::sync::Arc;
 
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -7,8 +8,9 @@ use pyo3::prelude::*;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Attachment, Body, Clamp, Filling, Floor, Gravity, History, Load, LoadKind, Material, Membrane,
-    MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State, elastic,
+    Attachment, Body, Clamp, Contact, Filling, Floor, Gravity, History, Load, LoadKind, Material,
+    Membrane, MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State,
+    elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -16,6 +18,7 @@ use crate::answer::PyAnswer;
 use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
+use crate::touch::{ObjectPart, TouchParts, Touching};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -41,12 +44,33 @@ fn history(argument: HistoryArgument) -> Result<History, ProblemError> {
     }
 }
 
+fn motion(
+    displacement: Option<Vec3>,
+    axis: Vec3,
+    angle: f64,
+    center: Vec3,
+    history: HistoryArgument,
+) -> Result<Option<Motion>, ProblemError> {
+    let Some(displacement) = displacement else {
+        return Ok(None);
+    };
+    let history = self::history(history)?;
+    Ok(Some(Motion {
+        displacement,
+        axis,
+        angle,
+        center,
+        history,
+    }))
+}
+
 /// One mechanical problem: a body with clamps, loads and a floor.
 #[pyclass(frozen, name = "Problem", module = "voxsoft._core")]
 pub struct PyProblem {
     pub(crate) mesh: Mesh,
     pub(crate) materials: Vec<Material>,
     pub(crate) problem: Arc<Problem>,
+    pub(crate) touching: Option<Touching>,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -60,6 +84,7 @@ pub struct PyProblemParts {
     block_fraction: Vec<f64>,
     block_filling: Vec<Filling>,
     attachments: Vec<Attachment>,
+    touch: Option<TouchParts>,
 }
 
 #[pymethods]
@@ -84,19 +109,7 @@ impl PyProblemParts {
         center: Vec3,
         history: HistoryArgument,
     ) -> PyResult<()> {
-        let motion = match displacement {
-            Some(displacement) => {
-                let history = self::history(history).map_err(to_python)?;
-                Some(Motion {
-                    displacement,
-                    axis,
-                    angle,
-                    center,
-                    history,
-                })
-            }
-            None => None,
-        };
+        let motion = motion(displacement, axis, angle, center, history).map_err(to_python)?;
         let vertices = vertices.as_array().to_vec();
         self.clamps.push(Clamp {
             vertices,
@@ -155,6 +168,60 @@ impl PyProblemParts {
             .map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))?;
         self.attachments.push(attachment);
         Ok(())
+    }
+
+    /// The body touches itself and objects: its boundary, voxel size in m, and into how many parts the edge of a
+    /// voxel is divided by the points that are looked at.
+    fn touch(
+        &mut self,
+        surface: PyReadonlyArray2<'_, u32>,
+        voxel_size: f64,
+        refine: u32,
+    ) -> PyResult<()> {
+        self.touch = Some(TouchParts {
+            surface: rows("surface", &surface)?,
+            voxel: voxel_size,
+            refine,
+            ..TouchParts::default()
+        });
+        Ok(())
+    }
+
+    /// A rigid object, which stays or moves as a clamp does.
+    #[pyo3(signature = (points, triangles, displacement=None, axis=[0.0, 0.0, 1.0], angle=0.0, center=[0.0; 3], history=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn object(
+        &mut self,
+        points: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        displacement: Option<Vec3>,
+        axis: Vec3,
+        angle: f64,
+        center: Vec3,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let motion = motion(displacement, axis, angle, center, history).map_err(to_python)?;
+        let object = ObjectPart {
+            points: rows("points", &points)?,
+            triangles: rows("triangles", &triangles)?,
+            motion,
+        };
+        self.touch.get_or_insert_default().objects.push(object);
+        Ok(())
+    }
+
+    /// The friction of the body (0) and the objects with each other; NaN where they do not touch.
+    fn friction(&mut self, table: PyReadonlyArray2<'_, f64>) {
+        let rows = table
+            .as_array()
+            .rows()
+            .into_iter()
+            .map(|row| row.to_vec())
+            .collect();
+        self.touch.get_or_insert_default().friction = rows;
     }
 
     /// A membrane on triangles.
@@ -269,8 +336,17 @@ impl PyProblem {
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
             attachments: Vec::new(),
+            touch: None,
         };
-        Self::assemble(py, self.mesh.clone(), materials, &parts)
+        let mut mesh = self.mesh.clone();
+        let mut parts = parts;
+        if let Some(touching) = &self.touching {
+            mesh.vertices.truncate(touching.first);
+            let own = parts.clamps.len() - touching.parts.objects.len();
+            parts.clamps.truncate(own);
+            parts.touch = Some(touching.parts.clone());
+        }
+        Self::assemble(py, mesh, materials, &parts)
     }
 
     #[getter]
@@ -280,7 +356,7 @@ impl PyProblem {
 
     #[getter]
     fn masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.problem.body().masses())
+        PyArray1::from_slice(py, &self.problem.body().masses()[..self.own()])
     }
 
     /// Edges as (vertices, rest length, stiffness) arrays.
@@ -314,7 +390,7 @@ impl PyProblem {
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
         Ok((
             elastic::energy(self.problem.body(), &positions),
-            from_rows(py, &forces),
+            from_rows(py, &forces[..self.own()]),
         ))
     }
 
@@ -329,7 +405,7 @@ impl PyProblem {
         self.problem
             .add_loads(&positions, f64::INFINITY, &mut forces);
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
-        Ok(from_rows(py, &forces))
+        Ok(from_rows(py, &forces[..self.own()]))
     }
 
     /// A trial is a number of steps and the residual above which the run then ends.
@@ -416,22 +492,52 @@ impl PyProblem {
         parts: &PyProblemParts,
     ) -> PyResult<Self> {
         let materials: Vec<Material> = materials.into_iter().map(|given| given.0).collect();
-        let (clamps, loads, floor) = (parts.clamps.clone(), parts.loads.clone(), parts.floor);
+        let (mut clamps, loads, floor) = (parts.clamps.clone(), parts.loads.clone(), parts.floor);
+        let touch = parts.touch.clone();
         gate::run_owned(py, move |_| {
+            let mut mesh = mesh;
+            let first = mesh.vertices.len();
+            if let Some(parts) = &touch {
+                parts.add_frames(&mut mesh, &mut clamps);
+            }
             let body = Body::new(&mesh, &materials)?;
-            let problem = Arc::new(Problem::new(body, clamps, loads, floor)?);
+            let mut problem = Problem::new(body, clamps, loads, floor)?;
+            let mut touching = None;
+            if let Some(parts) = touch {
+                let touch = Arc::new(parts.contact(problem.body(), first)?);
+                problem = problem.with_contact(Arc::clone(&touch) as Arc<dyn Contact>)?;
+                touching = Some(Touching {
+                    parts,
+                    touch,
+                    first,
+                });
+            }
             Ok(Self {
                 mesh,
                 materials,
-                problem,
+                problem: Arc::new(problem),
+                touching,
             })
         })?
         .map_err(to_python)
     }
 
+    /// How many vertices the body has, those of objects left out.
+    pub(crate) fn own(&self) -> usize {
+        let all = self.problem.body().rest().len();
+        self.touching
+            .as_ref()
+            .map_or(all, |touching| touching.first)
+    }
+
     pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {
-        let positions = rows("positions", array)?;
+        let mut positions = rows("positions", array)?;
         let expected = self.problem.body().rest().len();
+        if let Some(touching) = &self.touching
+            && positions.len() == touching.first
+        {
+            positions = touching.completed(&self.problem, positions);
+        }
         if positions.len() != expected {
             let message = format!("positions: {} rows, expected {expected}", positions.len());
             return Err(PyValueError::new_err(message));
@@ -451,21 +557,29 @@ impl PyProblem {
             return Err(raised);
         }
         let positions = &answer.state.positions;
+        let own = self.own();
+        let (contacts, objects) = match &self.touching {
+            Some(touching) => (
+                touching.contacts(py, positions)?,
+                touching.poses(py, positions)?,
+            ),
+            None => (Vec::new(), Vec::new()),
+        };
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let sensors = watch.sensors.len();
         let frames = if watch.keep_frames { watch.recorded } else { 0 };
         Ok(PyAnswer {
             status: answer.status.into(),
-            positions: from_rows(py, positions).unbind(),
-            velocities: from_rows(py, &answer.state.velocities).unbind(),
+            positions: from_rows(py, &positions[..own]).unbind(),
+            velocities: from_rows(py, &answer.state.velocities[..own]).unbind(),
             time: answer.state.time,
             residual: answer.residual,
             steps: answer.steps,
             back_offs: answer.back_offs,
             substep: answer.substep,
             breakdown: answer.breakdown.map(|b| (b.vertex, b.rest, b.when)),
-            reactions: from_rows(py, &balance.reactions).unbind(),
+            reactions: from_rows(py, &balance.reactions[..own]).unbind(),
             reaction: balance.total_reaction(),
             reaction_moment: balance.total_moment(positions),
             load,
@@ -479,6 +593,8 @@ impl PyProblem {
                 .reshape([frames, positions.len(), 3])?
                 .unbind(),
             path: None,
+            contacts,
+            objects,
         })
     }
 }

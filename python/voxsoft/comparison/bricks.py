@@ -23,6 +23,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loads import LoadReceiver
+from voxsoft.simulation.touching import refuse_contact
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -152,6 +153,7 @@ class BrickModel:
             raise SimulationError(
                 "floor", "cannot be given to an outside code", "clamp the foot instead"
             )
+        refuse_contact(setup.design, "outside codes")
         if setup.design.layers:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"

@@ -3,10 +3,12 @@
 from voxsoft.design.assignment import set_values
 from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
+from voxsoft.design.contact import Contact, ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, Pressure, Traction
 from voxsoft.design.model import Design
+from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.region import Probe, Region
@@ -20,6 +22,8 @@ __all__ = [
     "Chamber",
     "Clamp",
     "Constraint",
+    "Contact",
+    "ContactPair",
     "Design",
     "Floor",
     "Force",
@@ -27,6 +31,7 @@ __all__ = [
     "History",
     "Layer",
     "Motion",
+    "Object",
     "Objective",
     "Parameter",
     "Part",

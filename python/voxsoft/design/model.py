@@ -21,12 +21,14 @@ from pydantic_core import PydanticSerializationError
 from voxsoft.design.assignment import set_values
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
+from voxsoft.design.contact import Contact, contact_problems
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
 from voxsoft.design.kept_formulas import with_kept_formulas
 from voxsoft.design.layer import Layer
 from voxsoft.design.load import AnyLoad, Floor
+from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
@@ -82,6 +84,8 @@ class Design(Record):
         Springs between places of the body, or to fixed points.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
+    objects, contact
+        Rigid things beside the body, and what touches with how much friction.
     chambers
         Cavities by name, each found by its place: what loads and metrics call ``cavity``.
     probes
@@ -129,6 +133,8 @@ class Design(Record):
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
+    objects: tuple[Object, ...] = Field((), max_length=250)
+    contact: Contact | None = None
     chambers: Table[ChamberName, Chamber] = Field(default_factory=FrozenDict)
     probes: Table[Name, Probe] = Field(default_factory=FrozenDict)
     objectives: Table[Name, Objective] = Field(default_factory=FrozenDict)
@@ -211,6 +217,9 @@ class Design(Record):
             design = handler(document)
         except ValidationError as error:
             wrong = problems_of(error, cls, document, found.reported)
+            problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
+        else:
+            wrong = list(contact_problems(design.objects, design.contact))
             problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
         dangling = list(dangling_references(document, empty))
         if problems or dangling:

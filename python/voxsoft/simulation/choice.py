@@ -23,6 +23,7 @@ from voxsoft.simulation.equilibrium import (
 )
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
+from voxsoft.simulation.touching import has_contact
 
 #: Every method.
 METHODS: Final[tuple[type[Method], ...]] = (
@@ -110,6 +111,8 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
             pass
     if given & _deciding(STATICS):
         return controlled
+    if has_contact(design) and not dynamic:
+        return LoadControl
     if dynamic:
         return timed
     materials = [design.material_of(part) for part in design.parts]
@@ -155,6 +158,10 @@ def unused_settings(
         Other keys of :data:`USERS`, where they are given.
     """
     kind = kind_of(design, solver)
+    if has_contact(design) and kind is not LoadControl:
+        what = f"means {kind.title}, and contact is found by statics with load control alone"
+        hint = 'write method = "statics", control = "load" and no end_time'
+        yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]

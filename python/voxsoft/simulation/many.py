@@ -25,6 +25,7 @@ from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.result import Result, Status, moved_in_words
 from voxsoft.simulation.run import simulate
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import has_contact
 from voxsoft.units import format_percent
 
 #: Products of 3 x 3 blocks for each voxel of a body beyond which relaxation, one candidate after
@@ -115,7 +116,8 @@ class Ensemble:
         It depends on the body alone, never on the clock.
         """
         materials = setup.materials
-        if not all(isinstance(material, Lattice) for material in materials):
+        of_lattice = all(isinstance(material, Lattice) for material in materials)
+        if not of_lattice or has_contact(setup.design):
             return None
         core = _core.Ensemble.of(setup.problem)
         voxels = len(setup.mesh.tets) / 5

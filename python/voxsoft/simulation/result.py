@@ -23,6 +23,7 @@ from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.touching import ContactState, Pose
 from voxsoft.simulation.warnings import warnings_at
 from voxsoft.units import format_percent, format_quantity
 
@@ -94,6 +95,10 @@ class Result(Shown):
         pressure of 5 kPa has its limit at 4 kPa.
     stable
         Whether the equilibrium is stable; None where the solver does not tell.
+    contacts
+        What touches what, with how much force; pairs that are apart are left out.
+    objects
+        Where the rigid objects are, by name.
     """
 
     design: Design
@@ -120,6 +125,8 @@ class Result(Shown):
     load_factor: float = 1.0
     limit_factor: float | None = None
     stable: bool | None = None
+    contacts: tuple[ContactState, ...] = ()
+    objects: Mapping[str, Pose] = field(default_factory=dict)
 
     @property
     def history(self) -> NoReturn:
@@ -235,6 +242,7 @@ class Result(Shown):
         for name, target in asked.items():
             kind = METRICS[target.metric].kind
             yield f"{name}: {format_quantity(rounded(self.metrics[name]), kind)}"
+        yield from shortened([contact.sentence for contact in self.contacts])
         yield from shortened([f"warning: {found}" for found in self.warnings])
 
     def show(self) -> LivePage:
@@ -271,6 +279,8 @@ class Result(Shown):
                     self.cavity_volumes, self.mesh.cavities, pressures, strict=True
                 )
             ],
+            "contacts": [contact.summary() for contact in self.contacts],
+            "objects": {name: pose.summary() for name, pose in self.objects.items()},
             "penetration": self.penetration.depth,
             "warnings": [warning.summary() for warning in self.warnings],
             "reaction": list(self.reaction),

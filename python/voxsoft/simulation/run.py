@@ -167,7 +167,7 @@ _STATUSES: dict[_core.Status, Status] = {
 
 def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float) -> Result:
     """Wrap what was found in a :class:`Result`."""
-    answer, path = report.answer, report.answer.path
+    answer, path, touching = report.answer, report.answer.path, setup.touching
     rest = setup.mesh.vertices
     still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
     records = answer.records
@@ -204,6 +204,8 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         load_factor=1.0 if path is None else path.factor,
         limit_factor=None if path is None else path.limit,
         stable=None if path is None else path.stable,
+        contacts=() if touching is None else touching.contacts(answer),
+        objects={} if touching is None else touching.poses(answer),
     )
 
 

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import shortage
-from voxsoft.design import Clamp, Design, Probe, Region
-from voxsoft.design import History as LoadHistory
+from voxsoft.design import Design, Probe, Region
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
@@ -26,6 +25,13 @@ from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resol
 from voxsoft.simulation.materials import core_materials, solid_materials
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
+from voxsoft.simulation.touching import (
+    CoreHistory,
+    Touching,
+    has_contact,
+    motion_arguments,
+    times_and_factors,
+)
 
 #: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
 #: (lattice) and 810 (rubber), half as much again for what is not a block.
@@ -108,6 +114,8 @@ class Setup:
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
         _ = self.places, self.attached
+        if self.touching is not None:
+            _ = self.touching.surfaces
 
     @cached_property
     def layers(self) -> tuple[LayerTriangles, ...]:
@@ -151,16 +159,30 @@ class Setup:
                 density=layer.density,
             )
         for clamp, vertices in zip(self.design.clamps, self.clamped, strict=True):
-            parts.clamp(vertices, [axis in clamp.axes for axis in "xyz"], **_motion(clamp))
+            axes = [axis in clamp.axes for axis in "xyz"]
+            parts.clamp(vertices, axes, **motion_arguments(clamp.motion))
         for load in self.loads:
-            receiver = _CoreLoads(self.mesh, parts, _times_and_factors(load.reading.history))
+            receiver = _CoreLoads(self.mesh, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
         for term, elements in self.attached.items():
             parts.attach(term, json.dumps(elements, allow_nan=False))
         if self.design.floor is not None:
             parts.floor(self.design.floor.z)
+        if self.touching is not None:
+            self.touching.give_to(parts)
         return parts
+
+    @cached_property
+    def touching(self) -> Touching | None:
+        """Contact, where the design has it.
+
+        Raises
+        ------
+        DesignError
+            An object without a surface, or one that is in the unloaded body.
+        """
+        return Touching(self.design, self.mesh) if has_contact(self.design) else None
 
     @cached_property
     def loads(self) -> tuple[ResolvedLoad, ...]:
@@ -308,13 +330,10 @@ def core_problem(
     )
 
 
-_CoreHistory = tuple[list[float], list[float]] | None
-
-
 class _CoreLoads(LoadReceiver):
     """Loads of the core's problem."""
 
-    def __init__(self, mesh: Mesh, parts: _core.ProblemParts, history: _CoreHistory) -> None:
+    def __init__(self, mesh: Mesh, parts: _core.ProblemParts, history: CoreHistory) -> None:
         super().__init__(mesh)
         self._parts, self._history = parts, history
 
@@ -331,23 +350,3 @@ class _CoreLoads(LoadReceiver):
 
     def forces(self, vertices: NDArray[np.uint32], forces: NDArray[np.float64]) -> None:
         self._parts.forces(vertices, forces, self._history)
-
-
-def _times_and_factors(history: LoadHistory | None) -> _CoreHistory:
-    return None if history is None else (list(history.time), list(history.factor))
-
-
-def _motion(clamp: Clamp) -> dict[str, Any]:
-    motion = clamp.motion
-    if motion is None:
-        return {}
-    turn: dict[str, Any] = {}
-    if motion.rotation is not None:
-        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
-        turn = {
-            "axis": axis.tolist(),
-            "angle": motion.rotation.angle,
-            "center": motion.rotation.center,
-        }
-    history = _times_and_factors(motion.history)
-    return {"displacement": motion.displacement, "history": history, **turn}

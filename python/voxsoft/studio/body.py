@@ -24,6 +24,7 @@ from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.loads import read
+from voxsoft.simulation.touching import refuse_contact
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
@@ -91,6 +92,7 @@ class StudioBody:
         refusal: VoxSoftError | None = None
         try:
             setup.check()
+            refuse_contact(design, "the studio")
             _ = setup.problem
         except VoxSoftError as error:
             refusal = error

@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Final
-
 import numpy as np
-from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
+from voxsoft.shapes.tracing import trace
 from voxsoft.voxels import Voxels
-
-Floats = NDArray[np.float64]
-
-#: Samples along a voxel, the finer first: a slit or wall of one voxel has two in any position.
-SAMPLES: Final = (3, 2)
-#: Samples of the shapes, and of the grid that holds them, beyond which there is no smooth surface.
-MOST_SAMPLES: Final = 2_000_000
-LARGEST_GRID: Final = 16_000_000
-#: Corners of a cube in the order of marching cubes, as (i, j, k).
-_CORNERS: Final = (
-    ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)),
-    ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)),
-)
 
 
 def pack_smooth(design: Design, voxels: Voxels, topology: int) -> bytes | None:
@@ -57,91 +41,3 @@ def pack_smooth(design: Design, voxels: Voxels, topology: int) -> bytes | None:
         return None
     vertices, triangles, owners = traced
     return _core.pack_smooth(topology, vertices, triangles.astype(np.uint32), owners)
-
-
-def trace(
-    shapes: Sequence[_core.Shape], voxels: Voxels
-) -> tuple[Floats, NDArray[np.int64], NDArray[np.uint8]] | None:
-    """Trace the surface of shapes by marching cubes on samples finer than the voxels.
-
-    The shapes are asked within a voxel of the surface of the voxels, and elsewhere the voxels are:
-    what no voxel was made of is not shown. Samples lie off the faces of voxels, where the sides of
-    shapes often are and the sign of a sample would be chance.
-
-    Parameters
-    ----------
-    shapes
-        Of the parts, in their order.
-    voxels
-        What was made of them.
-
-    Returns
-    -------
-    tuple or None
-        Vertices [m], (n, 3); triangles, (t, 3); of each the part, from 0, (t,). None where the
-        grid would be too large.
-    """
-    import igl
-    from scipy import ndimage
-
-    filled = np.pad(voxels.array > 0, 2)
-    cube = np.ones((3, 3, 3), dtype=bool)
-    near = ndimage.binary_dilation(filled, cube) & ~ndimage.binary_erosion(filled, cube)
-    count = int(near.sum())
-    fits = (n for n in SAMPLES if count * n**3 <= MOST_SAMPLES and near.size * n**3 <= LARGEST_GRID)
-    if count == 0 or (along := next(fits, None)) is None:
-        return None
-    step = voxels.voxel_size / along
-    first = np.asarray(voxels.origin) - 2 * voxels.voxel_size + step / 2
-    values = np.where(_refined(filled, along), -step, step).astype(np.float32)
-    asked = np.argwhere(_refined(near, along))
-    found = _union(shapes, first + step * asked, step)
-    values[tuple(asked.T)] = found
-    cubes = np.argwhere(_mixed(values < 0))
-    corners = np.array([corner for ring in _CORNERS for corner in ring])
-    at = cubes[:, None, :] + corners
-    flat = np.ravel_multi_index(tuple(np.moveaxis(at, -1, 0)), values.shape)
-    used, index = np.unique(flat, return_inverse=True)
-    places = first + step * np.column_stack(np.unravel_index(used, values.shape))
-    vertices, triangles, _ = igl.marching_cubes(
-        values.ravel()[used].astype(np.float64),
-        np.ascontiguousarray(places),
-        np.ascontiguousarray(index.reshape(flat.shape)),
-        0.0,
-    )
-    if len(triangles) == 0:
-        return None
-    return vertices, triangles, _owners(shapes, vertices[triangles].mean(axis=1), step)
-
-
-def _refined(cells: NDArray[np.bool_], along: int) -> NDArray[np.bool_]:
-    """Each cell as so many samples along each axis."""
-    for axis in range(3):
-        cells = cells.repeat(along, axis)
-    return cells
-
-
-def _union(shapes: Sequence[_core.Shape], points: Floats, step: float) -> Floats:
-    values: Floats = np.min([shape.evaluate(points) for shape in shapes], axis=0)
-    return np.nan_to_num(values, nan=step, posinf=step, neginf=-step)
-
-
-def _mixed(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether the eight corners of a cube are not all on one side."""
-    some = every = inside
-    for axis in range(3):
-        low = [slice(None)] * 3
-        high = [slice(None)] * 3
-        low[axis], high[axis] = slice(None, -1), slice(1, None)
-        some = some[tuple(low)] | some[tuple(high)]
-        every = every[tuple(low)] & every[tuple(high)]
-    mixed: NDArray[np.bool_] = some & ~every
-    return mixed
-
-
-def _owners(shapes: Sequence[_core.Shape], points: Floats, step: float) -> NDArray[np.uint8]:
-    """The first part on whose surface some points of the common surface are."""
-    values = np.array([shape.evaluate(points) for shape in shapes])
-    close = values <= values.min(axis=0) + step / 4
-    owners: NDArray[np.uint8] = close.argmax(axis=0).astype(np.uint8)
-    return owners

@@ -1,0 +1,103 @@
+"""Contact: who touches whom, and with how much friction."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Final, Literal
+
+from pydantic import Field
+
+from voxsoft.design.object import Object
+from voxsoft.design.operands import Name
+from voxsoft.errors import ErrorDetail
+from voxsoft.records import Record, closest
+
+#: What a pair calls the body of the design.
+BODY: Final = "body"
+
+
+class ContactPair(Record):
+    """Two surfaces whose contact differs from that of all others.
+
+    Parameters
+    ----------
+    of
+        Names of objects, or ``"body"``; the body twice for contact with itself.
+    friction
+        Coulomb's coefficient; default: that of :class:`Contact`.
+    kind
+        ``"touching"`` (default), or ``"none"`` where they pass through each other.
+
+    Examples
+    --------
+    >>> ContactPair(of=("body", "plate"), friction=0.9).kind
+    'touching'
+    """
+
+    of: tuple[Name, Name]
+    friction: float | None = Field(None, ge=0.0)
+    kind: Literal["touching", "none"] = "touching"
+
+
+class Contact(Record):
+    """What touches: by default the body with itself and with every object.
+
+    Parameters
+    ----------
+    friction
+        Coulomb's coefficient of all pairs; default 0.
+    pairs
+        Pairs that differ; of two entries for one pair the later one counts.
+
+    Notes
+    -----
+    A design has contact where it has this table or objects. It is found in equilibrium, with
+    ``method = "statics"`` and ``control = "load"``.
+
+    Examples
+    --------
+    >>> rough = Contact(friction=0.6, pairs=[{"of": ["body", "oil"], "friction": 0.0}])
+    >>> rough.pairs[0].of
+    ('body', 'oil')
+    """
+
+    friction: float = Field(0.0, ge=0.0)
+    pairs: tuple[ContactPair, ...] = ()
+
+    def table(self, objects: Sequence[Object]) -> list[list[float]]:
+        """The friction of the body and the objects with each other; NaN where they do not touch.
+
+        Examples
+        --------
+        >>> Contact(friction=0.5).table([Object(name="plate", shape="plate")])
+        [[0.5, 0.5], [0.5, nan]]
+        """
+        names = [BODY, *(each.name for each in objects)]
+        none = float("nan")
+        table = [
+            [self.friction if 0 in (a, b) else none for b in range(len(names))]
+            for a in range(len(names))
+        ]
+        for pair in self.pairs:
+            a, b = (names.index(name) for name in pair.of)
+            friction = self.friction if pair.friction is None else pair.friction
+            table[a][b] = table[b][a] = none if pair.kind == "none" else friction
+        return table
+
+
+def contact_problems(objects: Sequence[Object], contact: Contact | None) -> Iterator[ErrorDetail]:
+    """Find names that are there twice or not at all, and pairs that cannot be."""
+    names = [each.name for each in objects]
+    for index, name in enumerate(names):
+        if name == BODY or name in names[:index]:
+            what = f'the name "{name}" is taken'
+            yield ErrorDetail(f"objects[{index}].name", what, "give it another name")
+    for index, pair in enumerate(contact.pairs if contact else ()):
+        where = f"contact.pairs[{index}].of"
+        for name in pair.of:
+            if name not in (BODY, *names):
+                hint = closest(name, [BODY, *names]) or f'write "{BODY}" or the name of an object'
+                yield ErrorDetail(where, f'there is no object "{name}"', hint)
+        if pair.kind == "touching" and BODY not in pair.of:
+            what = "are two objects, which do not touch each other yet"
+            yield ErrorDetail(where, what, f'name "{BODY}" and one object')

@@ -1,0 +1,252 @@
+"""Contact of a design made ready for the core: surfaces, objects, friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft._shown import rounded
+from voxsoft.design import Contact, Design, History, Motion, Object
+from voxsoft.design.contact import BODY
+from voxsoft.errors import DesignError
+from voxsoft.mesh import Mesh
+from voxsoft.shapes import voxelize
+from voxsoft.shapes.tracing import trace
+from voxsoft.units import format_quantity
+
+#: Into how many parts the edge of a voxel is divided by the points where contact is looked for.
+_SAMPLES: Final = 2
+#: How deep an object may be in the unloaded body, in voxels: rounding of a surface that touches.
+_TOUCH: Final = 1e-6
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """What touches what.
+
+    Attributes
+    ----------
+    of
+        The body and an object, or the body twice.
+    force
+        On the first [N]; zero for the body with itself.
+    pressed
+        The sum of the sizes of all forces [N].
+    area
+        In the unloaded body [m²].
+    gap
+        The smallest [m].
+    slipping
+        The part of the pressure under which the surfaces slip, 0 to 1.
+    """
+
+    of: tuple[str, str]
+    force: tuple[float, float, float]
+    pressed: float
+    area: float
+    gap: float
+    slipping: float
+
+    @property
+    def sentence(self) -> str:
+        """In a sentence."""
+        size = self.pressed if self.of[0] == self.of[1] else float(np.linalg.norm(self.force))
+        first, second = self.of
+        who = "itself" if first == second else second
+        return f"{first} touches {who} with {format_quantity(rounded(size), 'force')}"
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            "of": list(self.of),
+            "force": list(self.force),
+            "pressed": self.pressed,
+            "area": self.area,
+            "gap": self.gap,
+            "sticking": 1.0 - self.slipping,
+        }
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where an object is: its position [m] and the rotation from its first pose, (3, 3)."""
+
+    position: tuple[float, float, float]
+    rotation: tuple[tuple[float, float, float], ...]
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data."""
+        return {"position": list(self.position), "rotation": [list(row) for row in self.rotation]}
+
+
+def has_contact(design: Design) -> bool:
+    """Whether anything of a design may touch."""
+    return design.contact is not None or bool(design.objects)
+
+
+def refuse_contact(design: Design, who: str) -> None:
+    """Raise where a design has contact and someone cannot deal with it.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    if has_contact(design):
+        where = "contact" if design.contact is not None else "objects"
+        hint = 'find the equilibrium with "voxsoft run", or leave contact and objects out'
+        raise DesignError(where, f"is not known to {who} yet", hint)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A closed surface: vertices [m], (n, 3), and triangles, outward, (t, 3)."""
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.uint32]
+
+
+@dataclass(frozen=True)
+class Touching:
+    """The contact of a design.
+
+    Attributes
+    ----------
+    design
+        Where it came from.
+    mesh
+        Its mesh.
+
+    Raises
+    ------
+    DesignError
+        An object without a surface, or one that is in the unloaded body.
+    """
+
+    design: Design
+    mesh: Mesh
+
+    @property
+    def voxel_size(self) -> float:
+        """Of the body, m."""
+        return self.mesh.voxel_size or self.design.voxel_size
+
+    @cached_property
+    def surfaces(self) -> tuple[Surface, ...]:
+        """The surface of each object."""
+        found = []
+        for index, each in enumerate(self.design.objects):
+            where = f"objects[{index}]"
+            surface = surface_of(each, self.design, where)
+            self._check_apart(surface, where)
+            found.append(surface)
+        return tuple(found)
+
+    def _check_apart(self, surface: Surface, where: str) -> None:
+        distances = _distances(surface, self.mesh.vertices)
+        deepest = int(distances.argmin())
+        if -distances[deepest] > _TOUCH * self.voxel_size:
+            x, y, z = 1e3 * self.mesh.vertices[deepest]
+            depth = -1e3 * distances[deepest]
+            what = f"is {depth:.3g} mm deep in the body at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
+            raise DesignError(where, what, f"move it away by {depth:.3g} mm or more")
+
+    def give_to(self, parts: _core.ProblemParts) -> None:
+        """Add it to the parts of a problem."""
+        surface = self.mesh.triangles.astype(np.uint32)
+        parts.touch(surface, self.voxel_size, _SAMPLES)
+        for each, surface_of_it in zip(self.design.objects, self.surfaces, strict=True):
+            motion = motion_arguments(each.way)
+            parts.object(surface_of_it.vertices, surface_of_it.triangles, **motion)
+        contact = self.design.contact or Contact()
+        parts.friction(np.array(contact.table(self.design.objects)))
+
+    def contacts(self, answer: _core.Answer) -> tuple[ContactState, ...]:
+        """What touches, as the core found it."""
+        names = [BODY, *(each.name for each in self.design.objects)]
+        return tuple(
+            ContactState(
+                of=(names[found.a], names[found.b]),
+                force=(found.force[0], found.force[1], found.force[2]),
+                pressed=found.pressed,
+                area=found.area,
+                gap=found.gap,
+                slipping=found.slipping,
+            )
+            for found in answer.contacts
+        )
+
+    def poses(self, answer: _core.Answer) -> dict[str, Pose]:
+        """Where the objects are, by name."""
+        poses = {}
+        for each, found in zip(self.design.objects, answer.objects, strict=True):
+            x, y, z = found.position
+            rotation = tuple((row[0], row[1], row[2]) for row in found.rotation)
+            poses[each.name] = Pose((x, y, z), rotation)
+        return poses
+
+
+def surface_of(each: Object, design: Design, where: str) -> Surface:
+    """Trace the surface of an object.
+
+    Raises
+    ------
+    DesignError
+        It has none that could be traced.
+    """
+    shape = design.shapes[each.shape] if isinstance(each.shape, str) else each.shape
+    size = each.voxel_size or design.voxel_size
+    voxels = voxelize(shape, size, names=design.shapes)
+    traced = trace([shape.build(design.shapes)], voxels)
+    if traced is None:
+        what = "has too large a surface to be traced"
+        raise DesignError(where, what, "give it a larger voxel_size")
+    vertices, triangles, _ = traced
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
+        triangles = triangles[:, ::-1]
+    return Surface(vertices, np.ascontiguousarray(triangles, dtype=np.uint32))
+
+
+def _distances(surface: Surface, places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distances of places to a surface [m], negative inside."""
+    import igl
+
+    triangles = surface.triangles.astype(np.int64)
+    nearest, winding = igl.AABB(), igl.FastWindingNumberBVH()
+    nearest.init(surface.vertices, triangles)
+    winding.init(surface.vertices, triangles)
+    squared, _, _ = nearest.squared_distance(surface.vertices, triangles, places)
+    inside = np.abs(winding.winding_number(places)) > 0.5
+    distances: NDArray[np.float64] = np.where(inside, -1.0, 1.0) * np.sqrt(squared)
+    return distances
+
+
+#: Times [s] and factors, as the core takes them.
+CoreHistory = tuple[list[float], list[float]] | None
+
+
+def times_and_factors(history: History | None) -> CoreHistory:
+    """A history as the core takes it."""
+    return None if history is None else (list(history.time), list(history.factor))
+
+
+def motion_arguments(motion: Motion | None) -> dict[str, Any]:
+    """A rigid motion as keyword arguments of the core; none for what stays."""
+    if motion is None:
+        return {}
+    turn: dict[str, Any] = {}
+    if motion.rotation is not None:
+        axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
+        turn = {
+            "axis": axis.tolist(),
+            "angle": motion.rotation.angle,
+            "center": motion.rotation.center,
+        }
+    history = times_and_factors(motion.history)
+    return {"displacement": motion.displacement, "history": history, **turn}

@@ -1,0 +1,178 @@
+"""Contact in equilibrium: objects that press, slits that close, and what is refused."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.comparison.bricks import BrickModel
+from voxsoft.design import Contact, ContactPair, Object, Solver
+from voxsoft.errors import DesignError, SimulationError
+from voxsoft.files import load, save
+from voxsoft.simulation import Setup, gradient, simulate
+from voxsoft.studio.body import StudioBody
+from voxsoft.units import kPa, mm
+
+SIDE, PRESS = 12 * mm, 1.5 * mm
+RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45)
+BLOCK = vs.Box(size=(SIDE, SIDE, SIDE))
+
+
+def plate(bottom):
+    """A box above the block, as wide as the block is after it has bulged, and its height."""
+    return vs.Box(size=(20 * mm, 20 * mm, 4 * mm), center=(SIDE / 2, SIDE / 2, bottom + 2 * mm))
+
+
+def pressed(bottom=SIDE + 0.5 * mm, way=-PRESS - 0.5 * mm, **changes):
+    """A block under a plate that comes down on it."""
+    down = vs.Motion(displacement=(0, 0, way))
+    whole = {
+        "name": "pressed",
+        "voxel_size": 4 * mm,
+        "parts": [vs.Part(shape=BLOCK, material=RUBBER)],
+        "clamps": [vs.Clamp(region=vs.Region(z=(0, 0)))],
+        "objects": [Object(name="plate", shape=plate(bottom), motion=down)],
+        "probes": {"top": vs.Probe(z=(SIDE, SIDE))},
+    }
+    return vs.Design(**(whole | changes))
+
+
+@pytest.fixture(scope="module")
+def result():
+    return simulate(pressed())
+
+
+def test_a_plate_presses_as_a_clamp_does_that_leaves_the_sides_free(result):
+    top = vs.Clamp(
+        region=vs.Region(z=(SIDE, SIDE)),
+        axes="z",
+        motion=vs.Motion(displacement=(0, 0, -PRESS)),
+    )
+    foot = vs.Clamp(region=vs.Region(z=(0, 0)))
+    clamped = simulate(pressed(objects=[], clamps=[foot, top]))
+    expected = clamped.reactions[clamped.mesh.vertices[:, 2] > SIDE - 1e-9, 2].sum()
+    (contact,) = result.contacts
+    assert result.status == "ok"
+    assert contact.of == ("body", "plate")
+    # The clearance is 1e-4 voxels, and the traced plate flat to 1e-3 of them: 4 µm of 1.5 mm.
+    assert contact.force[2] == pytest.approx(expected, rel=5e-3)
+    assert contact.area == pytest.approx(SIDE**2, rel=1e-9)
+    assert 0.0 < contact.gap < 1e-3 * 4 * mm
+    assert result.probes["top"][2] == pytest.approx(-PRESS, abs=8e-6)
+
+
+def test_forces_balance_and_the_plate_is_where_it_was_sent(result):
+    (contact,) = result.contacts
+    # The foot carries what the plate presses, and nothing else does.
+    foot = result.reactions[:, 2].sum()
+    assert foot == pytest.approx(-contact.force[2], rel=1e-6)
+    assert result.residual < 1e-6
+    pose = result.objects["plate"]
+    assert pose.position[2] == pytest.approx(SIDE + 2 * mm - PRESS, abs=1e-5)
+    assert np.array(pose.rotation) == pytest.approx(np.eye(3), abs=1e-12)
+    summary = result.summary()
+    assert summary["contacts"][0]["of"] == ["body", "plate"]
+    assert summary["objects"]["plate"]["position"][2] == pose.position[2]
+    assert "body touches plate with" in str(result)
+
+
+def test_friction_keeps_the_top_from_bulging(result):
+    rough = simulate(pressed(contact=Contact(friction=5.0)))
+    (smooth,), (held,) = result.contacts, rough.contacts
+    assert held.slipping < 0.05
+    assert abs(held.force[2]) > 1.02 * abs(smooth.force[2])
+
+
+def test_a_pair_that_does_not_touch_passes_through():
+    free = ContactPair(of=("body", "plate"), kind="none")
+    found = simulate(pressed(contact=Contact(pairs=(free,))))
+    assert found.contacts == ()
+    assert abs(found.probes["top"][2]) < 1e-12
+
+
+def slit(contact):
+    """Two lips with a gap of one voxel between them; the upper one is pressed down."""
+    size = 2 * mm
+    lips = vs.Box(size=(20 * mm, 4 * mm, 10 * mm)) - vs.Box(
+        size=(16 * mm, 4 * mm, size), center=(12 * mm, 2 * mm, 5 * mm)
+    )
+    down = vs.Motion(displacement=(0, 0, -1.5 * size))
+    return vs.Design(
+        name="slit",
+        voxel_size=size,
+        parts=[vs.Part(shape=lips, material=RUBBER)],
+        clamps=[
+            vs.Clamp(region=vs.Region(z=(0, 0))),
+            vs.Clamp(region=vs.Region(x=(14 * mm, 16 * mm), z=(10 * mm, 10 * mm)), motion=down),
+        ],
+        contact=contact,
+    )
+
+
+def test_lips_of_a_slit_meet_and_do_not_pass_through_each_other():
+    through, kept = simulate(slit(None)), simulate(slit(Contact()))
+    assert through.penetration.depth > 0.1 * mm
+    assert kept.status == "ok"
+    # What touches are the bilinear faces of voxels; the test for overlaps takes each as two
+    # triangles, which stand out of a face that is warped.
+    assert kept.penetration.depth < 0.01 * 2 * mm
+    (contact,) = kept.contacts
+    assert contact.of == ("body", "body")
+    assert contact.pressed > 0.0
+
+
+def test_a_design_with_contact_is_saved_and_read_back(tmp_path):
+    design = pressed(contact=Contact(friction=0.5, pairs=[{"of": ["body", "plate"]}]))
+    file = tmp_path / "pressed.toml"
+    save(design, file)
+    assert load(file) == design
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"contact": {"friction": -0.1}}, "friction"),
+        ({"contact": {"pairs": [{"of": ["body", "plat"]}]}}, 'no object "plat".*"plate"'),
+        ({"objects": [{"name": "body", "shape": BLOCK}]}, 'the name "body" is taken'),
+        ({"objects": [{"name": "a", "shape": BLOCK, "motion": "free"}]}, "cannot be simulated yet"),
+        ({"objects": [{"name": "a", "shape": "nothing"}]}, "nothing"),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_place(changes, message):
+    with pytest.raises(DesignError, match=message):
+        pressed(**changes)
+
+
+def test_an_object_in_the_unloaded_body_is_refused_with_its_depth():
+    with pytest.raises(DesignError, match=r"objects\[0\]: is 1(\.0\d*)? mm deep in the body at"):
+        simulate(pressed(bottom=SIDE - 1 * mm))
+
+
+def test_an_object_may_touch_the_unloaded_body():
+    found = simulate(pressed(bottom=SIDE, way=-0.5 * mm))
+    assert found.status == "ok"
+    assert found.probes["top"][2] == pytest.approx(-0.5 * mm, abs=8e-6)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"method": "dynamics"},
+        {"end_time": "0.1 s"},
+        {"method": "relaxation"},
+        {"control": "arc-length"},
+        {"control": "volume"},
+    ],
+)
+def test_methods_that_know_no_contact_refuse_it(settings):
+    with pytest.raises(SimulationError, match="contact is found by statics"):
+        simulate(pressed(solver=Solver(**settings)))
+
+
+def test_what_knows_no_contact_says_so(result):
+    with pytest.raises(DesignError, match="objects: is not known to gradients yet"):
+        gradient(result, "max_displacement", ["clamps.0.region"])
+    with pytest.raises(DesignError, match="objects: is not known to outside codes yet"):
+        BrickModel.of(Setup.of(pressed()))
+    refusal = StudioBody.of(pressed(), 1, 1).refusal
+    assert refusal is not None
+    assert "the studio" in str(refusal)
