@@ -173,6 +173,8 @@ def test_what_knows_no_contact_says_so(result):
         gradient(result, "max_displacement", ["clamps.0.region"])
     with pytest.raises(DesignError, match="objects: is not known to outside codes yet"):
         BrickModel.of(Setup.of(pressed()))
+    with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):
+        vs.Simulator(pressed())
     refusal = StudioBody.of(pressed(), 1, 1).refusal
     assert refusal is not None
     assert "the studio" in str(refusal)

@@ -17,6 +17,7 @@ from voxsoft.simulation.commands import LoadCommands, LoadName, Value
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
 #: Residual at which a body counts as at rest, relative to the load.
@@ -91,6 +92,7 @@ class Simulator:
         tolerance: float = TOLERANCE,
     ) -> None:
         require_design(design, "design")
+        refuse_contact(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)
