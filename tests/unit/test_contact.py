@@ -9,6 +9,7 @@ from voxsoft.design import Contact, ContactPair, Object, Solver
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.files import load, save
 from voxsoft.simulation import Setup, gradient, simulate
+from voxsoft.simulation.state import result_at
 from voxsoft.studio.body import StudioBody
 from voxsoft.units import kPa, mm
 
@@ -147,6 +148,16 @@ def test_an_object_in_the_unloaded_body_is_refused_with_its_depth():
         simulate(pressed(bottom=SIDE - 1 * mm))
 
 
+def test_an_object_that_no_vertex_of_the_body_is_in_is_refused_too():
+    bead = Object(
+        name="bead",
+        shape=vs.Sphere(radius=1 * mm, center=(6 * mm, 6 * mm, 6 * mm)),
+        voxel_size=0.5 * mm,
+    )
+    with pytest.raises(DesignError, match=r"objects\[0\]: is .* mm deep in the body at"):
+        simulate(pressed(objects=[bead]))
+
+
 def test_an_object_may_touch_the_unloaded_body():
     found = simulate(pressed(bottom=SIDE, way=-0.5 * mm))
     assert found.status == "ok"
@@ -173,6 +184,8 @@ def test_what_knows_no_contact_says_so(result):
         gradient(result, "max_displacement", ["clamps.0.region"])
     with pytest.raises(DesignError, match="objects: is not known to outside codes yet"):
         BrickModel.of(Setup.of(pressed()))
+    with pytest.raises(DesignError, match="objects: is not known to states"):
+        result_at(Setup.of(pressed()), result.positions)
     with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):
         vs.Simulator(pressed())
     refusal = StudioBody.of(pressed(), 1, 1).refusal

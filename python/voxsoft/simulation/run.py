@@ -18,6 +18,7 @@ from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
 
 #: Called now and then with (steps, time in s, residual).
@@ -111,6 +112,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     max_steps
         Steps after which the run counts as not at rest.
     """
+    refuse_contact(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
     answer = problem.relax(tolerance=tolerance, max_steps=max_steps)

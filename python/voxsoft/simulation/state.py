@@ -12,6 +12,7 @@ from voxsoft.simulation.method import Report
 from voxsoft.simulation.result import Result, Status
 from voxsoft.simulation.run import result_of
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import refuse_contact
 
 #: Every state is within it: nothing is solved.
 _ANY: float = 1e300
@@ -60,6 +61,7 @@ def result_at(
     """
     if not np.isfinite(positions).all():
         raise SimulationError("state", "holds positions that are not finite", "go back before it")
+    refuse_contact(setup.design, "states that no solver ended in")
     answer = setup.problem.relax(tolerance=_ANY, max_steps=0, start=positions)
     used = {"method": "none", "way": "as it stands"}
     measured = result_of(setup, used, Report.of(answer), seconds=0.0)

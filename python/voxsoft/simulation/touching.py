@@ -148,10 +148,15 @@ class Touching:
         return tuple(found)
 
     def _check_apart(self, surface: Surface, where: str) -> None:
-        distances = _distances(surface, self.mesh.vertices)
+        body = Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+        # Either may be so small or so thin that no vertex of the other is in it.
+        places = np.concatenate([body.vertices, surface.vertices])
+        into_object = _distances(surface, body.vertices)
+        into_body = _distances(body, surface.vertices)
+        distances = np.concatenate([into_object, into_body])
         deepest = int(distances.argmin())
         if -distances[deepest] > _TOUCH * self.voxel_size:
-            x, y, z = 1e3 * self.mesh.vertices[deepest]
+            x, y, z = 1e3 * places[deepest]
             depth = -1e3 * distances[deepest]
             what = f"is {depth:.3g} mm deep in the body at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
             raise DesignError(where, what, f"move it away by {depth:.3g} mm or more")
