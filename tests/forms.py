@@ -18,6 +18,7 @@ from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
+from voxsoft.design.object import Object
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
@@ -127,6 +128,8 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (Object, "density"): {"motion": "free"},
+    (Object, "mass"): {"motion": "free"},
 }
 
 

@@ -248,6 +248,15 @@ class ProblemParts:
         center: Sequence[float] = ...,
         history: tuple[list[float], list[float]] | None = None,
     ) -> None: ...
+    def free_object(
+        self,
+        points: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        mass: float,
+        center: Sequence[float],
+        axes: Sequence[Sequence[float]],
+        radii: Sequence[float],
+    ) -> None: ...
     def friction(self, table: NDArray[np.float64]) -> None: ...
     def membrane(
         self,
@@ -326,6 +335,15 @@ class ObjectPose:
     def rotation(self) -> list[list[float]]: ...
 
 @final
+class TouchHistory:
+    """Contact and objects over time, one entry for each record."""
+
+    @property
+    def contacts(self) -> list[list[Contact]]: ...
+    @property
+    def objects(self) -> list[list[ObjectPose]]: ...
+
+@final
 class Answer:
     """The last good state, how it was reached and what was recorded on the way."""
 
@@ -373,6 +391,8 @@ class Answer:
     def contacts(self) -> list[Contact]: ...
     @property
     def objects(self) -> list[ObjectPose]: ...
+    @property
+    def history(self) -> TouchHistory | None: ...
 
 @final
 class Settlement:
@@ -389,6 +409,20 @@ class Settlement:
     @property
     def back_offs(self) -> NDArray[np.uint32]: ...
 
+def transient(
+    problem: Problem,
+    *,
+    step: float,
+    damping: float | None,
+    end_time: float | None,
+    max_time: float,
+    tolerance: float,
+    record_interval: float | None = None,
+    memory: int = ...,
+    sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
+    frames: bool = False,
+    progress: Callable[[int, float, float], None] | None = None,
+) -> Answer: ...
 def equilibrium(
     problem: Problem,
     *,

@@ -4,7 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
-use crate::touch::{PyContact, PyObjectPose};
+use crate::touch::{PyContact, PyObjectPose, PyTouchHistory};
 
 /// How a solution ended.
 #[pyclass(
@@ -72,6 +72,8 @@ pub struct PyAnswer {
     pub contacts: Vec<Py<PyContact>>,
     /// Where the objects are.
     pub objects: Vec<Py<PyObjectPose>>,
+    /// What touched what, and where the objects were, at the times of the records.
+    pub history: Option<Py<PyTouchHistory>>,
 }
 
 /// How statics followed the loads.

@@ -16,6 +16,7 @@ mod player;
 mod shapes;
 mod simulate;
 mod touch;
+mod transient;
 mod voxels;
 mod watch;
 
@@ -33,6 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<materials::PyFiber>()?;
     module.add_class::<touch::PyContact>()?;
     module.add_class::<touch::PyObjectPose>()?;
+    module.add_class::<touch::PyTouchHistory>()?;
     module.add_class::<simulate::PyProblem>()?;
     module.add_class::<simulate::PyProblemParts>()?;
     module.add_class::<ensemble::PyEnsemble>()?;
@@ -46,6 +48,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     player::add_constants(module)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
+    module.add_function(wrap_pyfunction!(transient::transient, module)?)?;
     module.add_class::<shapes::PyShape>()?;
     module.add_class::<voxels::PyGrid>()?;
     module.add_function(wrap_pyfunction!(mesh::mesh_voxels, module)?)?;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
@@ -18,7 +19,7 @@ use crate::answer::PyAnswer;
 use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
-use crate::touch::{ObjectPart, TouchParts, Touching};
+use crate::touch::{ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -204,13 +205,24 @@ impl PyProblemParts {
         history: HistoryArgument,
     ) -> PyResult<()> {
         let motion = motion(displacement, axis, angle, center, history).map_err(to_python)?;
-        let object = ObjectPart {
-            points: rows("points", &points)?,
-            triangles: rows("triangles", &triangles)?,
-            motion,
-        };
-        self.touch.get_or_insert_default().objects.push(object);
-        Ok(())
+        let points: Vec<Vec3> = rows("points", &points)?;
+        let frame = Frame::around(&points);
+        self.add_object(points, &triangles, frame, Way::Held(motion))
+    }
+
+    /// A rigid object that moves freely: its mass in kg, center of mass in m, principal axes (unit vectors, row by
+    /// row), and the roots of its second moments of mass along them over its mass, in m.
+    fn free_object(
+        &mut self,
+        points: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        mass: f64,
+        center: Vec3,
+        axes: [Vec3; 3],
+        radii: Vec3,
+    ) -> PyResult<()> {
+        let frame = Frame::of_mass(center, axes, radii).map_err(to_python)?;
+        self.add_object(rows("points", &points)?, &triangles, frame, Way::Free(mass))
     }
 
     /// The friction of the body (0) and the objects with each other; NaN where they do not touch.
@@ -280,6 +292,23 @@ fn voids(argument: VoidsArgument<'_>) -> PyResult<Vec<([u32; 4], f64)>> {
 }
 
 impl PyProblemParts {
+    fn add_object(
+        &mut self,
+        points: Vec<Vec3>,
+        triangles: &PyReadonlyArray2<'_, u32>,
+        frame: Frame,
+        way: Way,
+    ) -> PyResult<()> {
+        let object = ObjectPart {
+            points,
+            triangles: rows("triangles", triangles)?,
+            frame,
+            way,
+        };
+        self.touch.get_or_insert_default().objects.push(object);
+        Ok(())
+    }
+
     fn load(&mut self, kind: impl Into<LoadKind>, history: HistoryArgument) -> PyResult<()> {
         let history = self::history(history).map_err(to_python)?;
         let kind = kind.into();
@@ -309,6 +338,7 @@ impl PyProblem {
             block_filling: parts.block_filling.clone(),
             membranes: Vec::new(),
             attachments: parts.attachments.clone(),
+            point_masses: Vec::new(),
         };
         let count = mesh.vertices.len();
         for (triangles, material) in &parts.membranes {
@@ -342,7 +372,8 @@ impl PyProblem {
         let mut parts = parts;
         if let Some(touching) = &self.touching {
             mesh.vertices.truncate(touching.first);
-            let own = parts.clamps.len() - touching.parts.objects.len();
+            let own = parts.clamps.len() - touching.parts.held();
+            mesh.point_masses.clear();
             parts.clamps.truncate(own);
             parts.touch = Some(touching.parts.clone());
         }
@@ -351,7 +382,7 @@ impl PyProblem {
 
     #[getter]
     fn mass(&self) -> f64 {
-        self.problem.body().total_mass()
+        self.problem.body().masses()[..self.own()].iter().sum()
     }
 
     #[getter]
@@ -504,6 +535,9 @@ impl PyProblem {
             let mut problem = Problem::new(body, clamps, loads, floor)?;
             let mut touching = None;
             if let Some(parts) = touch {
+                if let Some(springs) = parts.frame_springs(problem.body(), first) {
+                    problem = problem.with_term(Arc::new(springs))?;
+                }
                 let touch = Arc::new(parts.contact(problem.body(), first)?);
                 problem = problem.with_contact(Arc::clone(&touch) as Arc<dyn Contact>)?;
                 touching = Some(Touching {
@@ -561,7 +595,7 @@ impl PyProblem {
         let (contacts, objects) = match &self.touching {
             Some(touching) => (
                 touching.contacts(py, positions)?,
-                touching.poses(py, positions)?,
+                touching.poses(py, positions, touching.first)?,
             ),
             None => (Vec::new(), Vec::new()),
         };
@@ -589,14 +623,26 @@ impl PyProblem {
             records: PyArray1::from_vec(py, watch.records)
                 .reshape([watch.recorded, sensors, 3])?
                 .unbind(),
-            frames: PyArray1::from_vec(py, watch.frames)
-                .reshape([frames, positions.len(), 3])?
+            frames: PyArray1::from_vec(py, cut(watch.frames, positions.len(), own))
+                .reshape([frames, own, 3])?
                 .unbind(),
             path: None,
             contacts,
             objects,
+            history: None,
         })
     }
+}
+
+/// The first `own` of every `all` points.
+fn cut(frames: Vec<f64>, all: usize, own: usize) -> Vec<f64> {
+    if own == all {
+        return frames;
+    }
+    let each = frames
+        .chunks_exact(3 * all)
+        .flat_map(|frame| &frame[..3 * own]);
+    each.copied().collect()
 }
 
 pub(crate) fn from_rows<'py, const N: usize, T: numpy::Element + Copy>(

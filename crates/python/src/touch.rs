@@ -2,17 +2,33 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
-use voxsoft_contact::touch::rigid::{frame, on_frame, pose};
-use voxsoft_contact::touch::{Description, Surface, Touch};
+use voxsoft_contact::touch::rigid::Frame;
+use voxsoft_contact::touch::{Description, PairReport, Surface, Touch};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, Mesh, Motion, Problem, ProblemError};
+use voxsoft_solid::{Body, Clamp, Mesh, Motion, Problem, ProblemError, Springs};
 
-/// A rigid object: its surface, and how it is moved.
+/// What moves a rigid object.
+#[derive(Debug, Clone)]
+pub(crate) enum Way {
+    /// It is held, or moved.
+    Held(Option<Motion>),
+    /// It moves freely, with a mass in kg.
+    Free(f64),
+}
+
+/// A rigid object: its surface, what carries it, and how it is moved.
 #[derive(Debug, Clone)]
 pub(crate) struct ObjectPart {
     pub points: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    pub motion: Option<Motion>,
+    pub frame: Frame,
+    pub way: Way,
+}
+
+impl ObjectPart {
+    fn is_free(&self) -> bool {
+        matches!(self.way, Way::Free(_))
+    }
 }
 
 /// Everything that contact is made of.
@@ -27,17 +43,47 @@ pub(crate) struct TouchParts {
 }
 
 impl TouchParts {
-    /// Adds four vertices for each object to a mesh, and the clamps that hold them.
+    /// Adds four vertices for each object to a mesh, and the clamps that hold them, or their mass.
     pub(crate) fn add_frames(&self, mesh: &mut Mesh, clamps: &mut Vec<Clamp>) {
         for object in &self.objects {
             let first = mesh.vertices.len() as u32;
-            mesh.vertices.extend(frame(&object.points));
-            clamps.push(Clamp {
-                vertices: (first..first + 4).collect(),
-                axes: [true; 3],
-                motion: object.motion.clone(),
-            });
+            mesh.vertices.extend(object.frame.vertices());
+            match &object.way {
+                Way::Held(motion) => clamps.push(Clamp {
+                    vertices: (first..first + 4).collect(),
+                    axes: [true; 3],
+                    motion: motion.clone(),
+                }),
+                Way::Free(mass) => {
+                    let each = (first..first + 4).map(|vertex| (vertex, mass / 4.0));
+                    mesh.point_masses.extend(each);
+                }
+            }
         }
+    }
+
+    /// What keeps the vertices of free objects apart, those of the first object from `first` on.
+    pub(crate) fn frame_springs(&self, body: &Body, first: usize) -> Option<Springs> {
+        let young = mean_modulus(body);
+        let free = self
+            .objects
+            .iter()
+            .enumerate()
+            .filter(|(_, object)| object.is_free());
+        let springs = free.flat_map(|(number, object)| {
+            let stiffness = object.frame.stiffness(&object.points, young, self.voxel);
+            object.frame.springs((first + 4 * number) as u32, stiffness)
+        });
+        let springs: Vec<_> = springs.collect();
+        (!springs.is_empty()).then_some(Springs(springs))
+    }
+
+    /// How many objects clamps hold.
+    pub(crate) fn held(&self) -> usize {
+        self.objects
+            .iter()
+            .filter(|object| !object.is_free())
+            .count()
     }
 
     /// The contact of a body whose objects have their vertices from `first` on.
@@ -50,8 +96,7 @@ impl TouchParts {
         let mut surfaces = vec![skin];
         for (number, object) in self.objects.iter().enumerate() {
             let at = first + 4 * number;
-            let frame = frame_at(body.rest(), at);
-            let carried = |point: &Vec3| on_frame(*point, &frame, at as u32);
+            let carried = |point: &Vec3| object.frame.carry(*point, at as u32);
             surfaces.push(Surface {
                 points: object.points.iter().map(carried).collect(),
                 triangles: object.triangles.clone(),
@@ -105,6 +150,13 @@ pub struct PyObjectPose {
     pub rotation: [Vec3; 3],
 }
 
+/// Contact and objects over time, one entry for each record.
+#[pyclass(frozen, get_all, name = "TouchHistory", module = "voxsoft._core")]
+pub struct PyTouchHistory {
+    pub contacts: Vec<Vec<Py<PyContact>>>,
+    pub objects: Vec<Vec<Py<PyObjectPose>>>,
+}
+
 /// Contact of a problem of Python, and where its objects begin among the vertices.
 pub(crate) struct Touching {
     pub parts: TouchParts,
@@ -118,30 +170,20 @@ impl Touching {
         py: Python<'_>,
         positions: &[Vec3],
     ) -> PyResult<Vec<Py<PyContact>>> {
-        let pairs = self.touch.pairs(positions).into_iter();
-        let each = pairs.map(|pair| {
-            let contact = PyContact {
-                a: pair.of[0],
-                b: pair.of[1],
-                force: pair.force,
-                pressed: pair.pressed,
-                area: pair.area,
-                gap: pair.gap,
-                slipping: pair.slipping,
-            };
-            Py::new(py, contact)
-        });
-        each.collect()
+        to_python(py, self.touch.pairs(positions))
     }
 
+    /// Where the objects are, the vertices of the first one being those from `first` on.
     pub(crate) fn poses(
         &self,
         py: Python<'_>,
         positions: &[Vec3],
+        first: usize,
     ) -> PyResult<Vec<Py<PyObjectPose>>> {
-        let numbers = 0..self.parts.objects.len();
-        let each = numbers.map(|number| {
-            let (position, rotation) = pose(&frame_at(positions, self.first + 4 * number));
+        let objects = self.parts.objects.iter().enumerate();
+        let each = objects.map(|(number, object)| {
+            let now = frame_at(positions, first + 4 * number);
+            let (position, rotation) = object.frame.pose(&now);
             Py::new(py, PyObjectPose { position, rotation })
         });
         each.collect()
@@ -156,4 +198,20 @@ impl Touching {
         body.extend_from_slice(&all[count..]);
         body
     }
+}
+
+pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<Py<PyContact>>> {
+    let each = pairs.into_iter().map(|pair| {
+        let contact = PyContact {
+            a: pair.of[0],
+            b: pair.of[1],
+            force: pair.force,
+            pressed: pair.pressed,
+            area: pair.area,
+            gap: pair.gap,
+            slipping: pair.slipping,
+        };
+        Py::new(py, contact)
+    });
+    each.collect()
 }

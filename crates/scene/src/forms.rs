@@ -257,6 +257,7 @@ impl TryFrom<Mesh> for solid::Mesh {
         Ok(Self {
             membranes: membranes?,
             attachments: form.attachments,
+            point_masses: Vec::new(),
             vertices: form.vertices,
             tets: form.tets,
             tet_part: form.tet_part,

@@ -47,6 +47,7 @@ fn full() -> Scene {
             length: 0.02,
             stiffness: 4.0,
         }]))],
+        point_masses: vec![],
     };
     let fiber = Fiber {
         direction: [0.0, 0.6, 0.8],

@@ -58,6 +58,8 @@ pub struct Mesh {
     pub membranes: Vec<Membrane>,
     /// What else is attached.
     pub attachments: Vec<Attachment>,
+    /// Masses (kg) on vertices besides those of the material: of rigid objects, whose vertices no tetrahedron has.
+    pub point_masses: Vec<(u32, f64)>,
 }
 
 /// Masses and terms.
@@ -110,6 +112,9 @@ impl Body {
         let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
+        }
+        for &(vertex, mass) in &mesh.point_masses {
+            masses[vertex as usize] += mass;
         }
         let mut found: Vec<Edge> = Vec::new();
         let mut edges_from = EdgesFrom::new(mesh.vertices.len());
@@ -478,6 +483,13 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
     for membrane in &mesh.membranes {
         for vertex in membrane.vertices() {
             in_range("vertex of a membrane", vertex as usize, mesh.vertices.len())?;
+        }
+    }
+    for &(vertex, value) in &mesh.point_masses {
+        in_range("vertex of a mass", vertex as usize, mesh.vertices.len())?;
+        if !(value > 0.0 && value.is_finite()) {
+            let what = "a mass on a vertex in kg";
+            return Err(ProblemError::NotPositive { what, value });
         }
     }
     mesh.attachments

@@ -17,8 +17,8 @@ pub trait Contact: Term {
     fn follow(&self, positions: &[Vec3]) -> bool;
 
     /// Brings the multipliers up to the forces at `positions`, an equilibrium; how far off they are. At most 1 is
-    /// good enough, and nothing changes.
-    fn correct(&self, positions: &[Vec3]) -> f64;
+    /// good enough, and nothing changes. Forces of the size `negligible` (N) do not matter.
+    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64;
 
     /// Whether the answer depends on the way to it.
     fn has_friction(&self) -> bool;

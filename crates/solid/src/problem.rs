@@ -51,9 +51,17 @@ impl Problem {
     }
 
     /// The same with surfaces that touch. They act on the body as what is attached to it does.
-    pub fn with_contact(mut self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
-        self.body.attach(Arc::clone(&contact) as Arc<dyn Term>)?;
-        self.contact = Some(contact);
+    pub fn with_contact(self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
+        let term = Arc::clone(&contact) as Arc<dyn Term>;
+        Ok(Self {
+            contact: Some(contact),
+            ..self.with_term(term)?
+        })
+    }
+
+    /// The same with another term on its body.
+    pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
+        self.body.attach(term)?;
         Ok(self)
     }
 

@@ -50,10 +50,7 @@ pub(crate) fn load_direction(
 ) -> Vec<f64> {
     let one = match unknown {
         Unknown::All => Point::all(1.0),
-        Unknown::Pressure => Point {
-            dead: 0.0,
-            pressure: 1.0,
-        },
+        Unknown::Pressure => Point::of(0.0, 1.0),
     };
     let mut forces = vec![[0.0; 3]; positions.len()];
     path.equilibrium

@@ -9,6 +9,7 @@ use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Body, Brick, Contact, Observer, Problem, Progress, elastic};
 
+use crate::inertia::Inertia;
 use crate::point::Point;
 use crate::settings::{LinearSolver, Settings};
 use crate::system::{Factor, FactorError, Means, System};
@@ -76,6 +77,10 @@ pub(crate) struct Equilibrium<'a> {
     /// How far the linear answer may turn a voxel from rest (rad), as long as only that is known of the
     /// body.
     pub largest_turn: Option<f64>,
+    /// What the forces of a body in motion count against as well.
+    pub inertia: Option<&'a Inertia>,
+    /// Forces in N that do not matter.
+    pub negligible: f64,
 }
 
 /// Iterations with strains carried along: most steps take less than ten.
@@ -116,6 +121,8 @@ impl<'a> Equilibrium<'a> {
             iterations: 0,
             back_offs: 0,
             largest_turn: None,
+            inertia: None,
+            negligible: 0.0,
         })
     }
 
@@ -145,10 +152,15 @@ impl<'a> Equilibrium<'a> {
         let supported = square(&net) - residual;
         let negligible = NEGLIGIBLE_STRAIN * self.problem.body().unit_strain_force();
         let scale = if applied > 0.0 { applied } else { supported };
+        let inertial = self.inertia.map_or(0.0, |term| term.size(positions));
         Forces {
             free,
             residual: residual.sqrt(),
-            scale: scale.sqrt().max(negligible),
+            scale: scale
+                .sqrt()
+                .max(inertial)
+                .max(negligible)
+                .max(self.negligible),
         }
     }
 
@@ -176,7 +188,7 @@ impl<'a> Equilibrium<'a> {
     fn jump(&self, positions: &[Vec3], point: Point) -> Option<Vec<Vec3>> {
         let mut target = positions.to_vec();
         self.problem
-            .place_clamps(f64::INFINITY, point.dead, &mut target);
+            .place_clamps(point.time, point.dead, &mut target);
         if let Some(floor) = self.problem.floor() {
             for vertex in 0..target.len() {
                 if self.held[vertex][2] && !self.problem.held()[vertex][2] {
@@ -361,7 +373,7 @@ impl<'a> Equilibrium<'a> {
     ) -> Result<(), Failure> {
         let progress = Progress {
             steps: u64::from(self.iterations),
-            time: point.pressure,
+            time: point.progress(),
             residual,
             positions,
             velocities: &[],
@@ -523,7 +535,7 @@ impl<'a> Equilibrium<'a> {
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.
     pub fn is_contact_settled(&self, positions: &[Vec3]) -> bool {
-        let settled = |contact: &dyn Contact| contact.correct(positions) <= 1.0;
+        let settled = |contact: &dyn Contact| contact.correct(positions, self.negligible) <= 1.0;
         self.problem.contact().is_none_or(settled)
     }
 

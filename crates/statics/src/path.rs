@@ -27,7 +27,7 @@ const LONGEST_WITH_FRICTION: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 /// How often the floor or contact may change their minds at one point.
-const ROUNDS: usize = 40;
+pub(crate) const ROUNDS: usize = 40;
 
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.

@@ -1,17 +1,40 @@
 use voxsoft_solid::Load;
 
-/// Where on the path: factors on pressures and on everything else.
+/// Where on the path: factors on pressures and on everything else, and the time of all histories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     pub dead: f64,
     pub pressure: f64,
+    /// In s; without end for equilibria.
+    pub time: f64,
 }
 
 impl Point {
     pub fn all(factor: f64) -> Self {
+        Self::of(factor, factor)
+    }
+
+    pub fn of(dead: f64, pressure: f64) -> Self {
         Self {
-            dead: factor,
-            pressure: factor,
+            dead,
+            pressure,
+            time: f64::INFINITY,
+        }
+    }
+
+    pub fn at(time: f64) -> Self {
+        Self {
+            time,
+            ..Self::all(1.0)
+        }
+    }
+
+    /// How far the path has come: the time, or for equilibria, which know none, the factor.
+    pub fn progress(self) -> f64 {
+        if self.time.is_finite() {
+            self.time
+        } else {
+            self.pressure
         }
     }
 
@@ -22,7 +45,7 @@ impl Point {
             } else {
                 self.dead
             };
-            factor * load.history.at(f64::INFINITY)
+            factor * load.history.at(self.time)
         }
     }
 }

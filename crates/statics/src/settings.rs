@@ -143,10 +143,6 @@ pub struct Answer {
 impl Answer {
     /// The factor on a load at the positions that were reached.
     pub fn factor_of(&self, load: &Load) -> f64 {
-        let point = Point {
-            dead: self.dead_factor,
-            pressure: self.factor,
-        };
-        point.factor_of()(load)
+        Point::of(self.dead_factor, self.factor).factor_of()(load)
     }
 }

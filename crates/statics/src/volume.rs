@@ -56,10 +56,7 @@ pub(crate) fn follow_volume(
     ratio: f64,
     steps: u32,
 ) -> Ending {
-    let dead = Point {
-        dead: 1.0,
-        pressure: 0.0,
-    };
+    let dead = Point::of(1.0, 0.0);
     let start = path.positions.clone();
     if let Err(failure) = path.settle(start, dead, settings, true) {
         return Ending::new(status_of(failure), None, 0.0);

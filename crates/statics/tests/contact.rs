@@ -3,68 +3,15 @@
 mod common;
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
+use common::touching::{NONE, add_box, join, moved, touching};
 use common::{block, mesh_of, rubber, vertices_where};
-use voxsoft_contact::touch::rigid::{frame, on_frame};
-use voxsoft_contact::touch::{Description, PairReport, Surface, Touch};
+use voxsoft_contact::touch::{PairReport, Surface};
 use voxsoft_solid::balance::balance;
 use voxsoft_solid::vector::{Vec3, norm};
-use voxsoft_solid::{Body, Clamp, History, Mesh, Motion, Problem, Status};
+use voxsoft_solid::{Body, Clamp, Mesh, Problem, Status};
 use voxsoft_statics::{Answer, Settings, solve};
 use voxsoft_voxel::Grid;
-
-const YOUNG: f64 = 60e3;
-
-/// Appends a mesh of the same material; the number of its first vertex.
-fn join(mesh: &mut Mesh, other: Mesh, shift: Vec3) -> u32 {
-    let first = mesh.vertices.len() as u32;
-    let blocks = mesh.tet_block.iter().max().map_or(0, |block| block + 1);
-    let moved = other
-        .vertices
-        .iter()
-        .map(|x| [0, 1, 2].map(|i| x[i] + shift[i]));
-    mesh.vertices.extend(moved);
-    mesh.tets
-        .extend(other.tets.iter().map(|t| t.map(|v| v + first)));
-    mesh.tet_part.extend(other.tet_part);
-    mesh.tet_block
-        .extend(other.tet_block.iter().map(|b| b + blocks));
-    first
-}
-
-fn moved(vertices: Vec<u32>, axes: [bool; 3], displacement: Vec3) -> Clamp {
-    Clamp {
-        vertices,
-        axes,
-        motion: Some(Motion {
-            displacement,
-            axis: [0.0, 0.0, 1.0],
-            angle: 0.0,
-            center: [0.0; 3],
-            history: History::constant(),
-        }),
-    }
-}
-
-/// Adds a rigid box to a mesh; its surface.
-fn add_box(mesh: &mut Mesh, low: Vec3, high: Vec3) -> Surface {
-    let corners: Vec<Vec3> = (0..8)
-        .map(|c| [c >> 2 & 1, c >> 1 & 1, c & 1])
-        .map(|bits| std::array::from_fn(|i| if bits[i] == 1 { high[i] } else { low[i] }))
-        .collect();
-    let first = mesh.vertices.len() as u32;
-    let frame = frame(&corners);
-    mesh.vertices.extend(frame);
-    let shape = Surface::of_voxels(&[[0, 1, 2, 3, 4, 5, 6, 7]], 1);
-    let on = |point: &voxsoft_contact::touch::Carried| {
-        on_frame(corners[point.vertices[0] as usize], &frame, first)
-    };
-    Surface {
-        points: shape.points.iter().map(on).collect(),
-        triangles: shape.triangles,
-    }
-}
 
 fn settle(problem: &Problem) -> Answer {
     let settings = Settings {
@@ -84,27 +31,6 @@ fn settle(problem: &Problem) -> Answer {
     answer
 }
 
-/// A problem with contact, and the contact.
-fn touching(
-    mesh: &Mesh,
-    clamps: Vec<Clamp>,
-    surfaces: Vec<Surface>,
-    friction: Vec<Vec<f64>>,
-    voxel: f64,
-) -> (Problem, Arc<Touch>) {
-    let body = Body::new(mesh, &[rubber()]).unwrap();
-    let young = YOUNG;
-    let description = Description {
-        surfaces,
-        friction,
-        voxel,
-        young,
-    };
-    let touch = Arc::new(Touch::new(description, &mesh.vertices).unwrap());
-    let problem = Problem::new(body, clamps, vec![], None).unwrap();
-    (problem.with_contact(touch.clone()).unwrap(), touch)
-}
-
 /// The force of supports on some vertices.
 fn reaction(problem: &Problem, positions: &[Vec3], on: &[u32]) -> Vec3 {
     let balance = balance(problem, positions, f64::INFINITY);
@@ -116,8 +42,6 @@ fn reaction(problem: &Problem, positions: &[Vec3], on: &[u32]) -> Vec3 {
     }
     sum
 }
-
-const NONE: f64 = f64::NAN;
 
 /// Blocks of voxels of 4 and of 3 mm, held against bulging and pressed by a tenth: the stress is uniform.
 #[test]
@@ -146,7 +70,7 @@ fn a_uniform_pressure_passes_between_voxels_of_different_sizes() {
     let (low, high): (Vec<_>, Vec<_>) = body.voxels().iter().partition(|v| v[0] < upper);
     let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
     let friction = vec![vec![NONE, 0.0], vec![0.0, NONE]];
-    let (problem, touch) = touching(&mesh, clamps, surfaces, friction, 3e-3);
+    let (problem, touch) = touching(&mesh, clamps, vec![], surfaces, friction, 3e-3);
     let answer = settle(&problem);
     for (rest, now) in mesh.vertices.iter().zip(&answer.positions) {
         let off = now[2] - rest[2] - press / 14e-3 * rest[2];
@@ -183,7 +107,7 @@ fn plate(layers: usize, way: Vec3, friction: f64) -> (PairReport, Problem, Answe
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
     let table = vec![vec![0.0, friction], vec![friction, NONE]];
-    let (problem, touch) = touching(&mesh, clamps, surfaces, table, 4e-3);
+    let (problem, touch) = touching(&mesh, clamps, vec![], surfaces, table, 4e-3);
     let answer = settle(&problem);
     let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
     (pair, problem, answer)
@@ -267,7 +191,7 @@ fn the_lips_of_a_slit_meet() {
     };
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2)];
-    let (problem, touch) = touching(&mesh, clamps(), surfaces, vec![vec![0.0]], side);
+    let (problem, touch) = touching(&mesh, clamps(), vec![], surfaces, vec![vec![0.0]], side);
     let answer = settle(&problem);
     let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
     assert!(pair.gap > 0.0 && pair.gap < 1e-3 * side, "{pair:?}");

@@ -14,6 +14,8 @@ from voxsoft.records import Record, closest
 
 #: What a pair calls the body of the design.
 BODY: Final = "body"
+#: What it calls the floor.
+FLOOR: Final = "floor"
 
 
 class ContactPair(Record):
@@ -22,7 +24,7 @@ class ContactPair(Record):
     Parameters
     ----------
     of
-        Names of objects, or ``"body"``; the body twice for contact with itself.
+        Names of objects, ``"body"`` or ``"floor"``; the body twice for contact with itself.
     friction
         Coulomb's coefficient; default: that of :class:`Contact`.
     kind
@@ -40,7 +42,7 @@ class ContactPair(Record):
 
 
 class Contact(Record):
-    """What touches: by default the body with itself and with every object.
+    """What touches: by default the body with itself, and all objects with it and with each other.
 
     Parameters
     ----------
@@ -52,7 +54,8 @@ class Contact(Record):
     Notes
     -----
     A design has contact where it has this table or objects. It is found in equilibrium, with
-    ``method = "statics"`` and ``control = "load"``.
+    ``method = "statics"`` and ``control = "load"``, and over time, with ``method = "dynamics"``.
+    Its floor is one of the objects then, with the friction of all.
 
     Examples
     --------
@@ -64,18 +67,25 @@ class Contact(Record):
     friction: float = Field(0.0, ge=0.0)
     pairs: tuple[ContactPair, ...] = ()
 
-    def table(self, objects: Sequence[Object]) -> list[list[float]]:
-        """The friction of the body and the objects with each other; NaN where they do not touch.
+    def table(self, objects: Sequence[Object], floor: bool = False) -> list[list[float]]:
+        """The friction of the body, the objects and a floor with each other.
+
+        NaN stands where they do not touch: two things that are held or moved do not.
 
         Examples
         --------
-        >>> Contact(friction=0.5).table([Object(name="plate", shape="plate")])
+        >>> plate = Object(name="plate", shape="plate")
+        >>> Contact(friction=0.5).table([plate])
         [[0.5, 0.5], [0.5, nan]]
         """
-        names = [BODY, *(each.name for each in objects)]
+        names = names_of(objects, floor)
+        moves = [True, *(each.is_free for each in objects), *([False] if floor else [])]
         none = float("nan")
         table = [
-            [self.friction if 0 in (a, b) else none for b in range(len(names))]
+            [
+                self.friction if (moves[a] or moves[b]) and (a != b or a == 0) else none
+                for b in range(len(names))
+            ]
             for a in range(len(names))
         ]
         for pair in self.pairs:
@@ -85,19 +95,31 @@ class Contact(Record):
         return table
 
 
-def contact_problems(objects: Sequence[Object], contact: Contact | None) -> Iterator[ErrorDetail]:
+def names_of(objects: Sequence[Object], floor: bool) -> list[str]:
+    """What touches: the body, the objects, and a floor if there is one."""
+    return [BODY, *(each.name for each in objects), *([FLOOR] if floor else [])]
+
+
+def contact_problems(
+    objects: Sequence[Object], contact: Contact | None, floor: bool
+) -> Iterator[ErrorDetail]:
     """Find names that are there twice or not at all, and pairs that cannot be."""
     names = [each.name for each in objects]
     for index, name in enumerate(names):
-        if name == BODY or name in names[:index]:
+        if name in (BODY, FLOOR) or name in names[:index]:
             what = f'the name "{name}" is taken'
             yield ErrorDetail(f"objects[{index}].name", what, "give it another name")
+    known = names_of(objects, floor)
+    free = {BODY, *(each.name for each in objects if each.is_free)}
     for index, pair in enumerate(contact.pairs if contact else ()):
         where = f"contact.pairs[{index}].of"
         for name in pair.of:
-            if name not in (BODY, *names):
-                hint = closest(name, [BODY, *names]) or f'write "{BODY}" or the name of an object'
+            if name not in known:
+                hint = closest(name, known) or f'write "{BODY}" or the name of an object'
                 yield ErrorDetail(where, f'there is no object "{name}"', hint)
-        if pair.kind == "touching" and BODY not in pair.of:
-            what = "are two objects, which do not touch each other yet"
-            yield ErrorDetail(where, what, f'name "{BODY}" and one object')
+        if pair.kind == "touching" and free.isdisjoint(pair.of):
+            what = "are held or moved, both of them, and do not touch each other"
+            yield ErrorDetail(where, what, f'name "{BODY}" or an object that is free')
+        elif pair.kind == "touching" and pair.of[0] == pair.of[1] != BODY:
+            what = "is rigid, and does not touch itself"
+            yield ErrorDetail(where, what, f'name "{BODY}" twice, or two things')

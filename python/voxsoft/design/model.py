@@ -219,7 +219,7 @@ class Design(Record):
             wrong = problems_of(error, cls, document, found.reported)
             problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
         else:
-            wrong = list(contact_problems(design.objects, design.contact))
+            wrong = list(contact_problems(design.objects, design.contact, design.floor is not None))
             problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
         dangling = list(dangling_references(document, empty))
         if problems or dangling:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, Self
 
-from pydantic import ConfigDict, field_validator
+from pydantic import ConfigDict, model_validator
 
 from voxsoft.design.clamp import Motion
 from voxsoft.design.operands import Name, ShapeOrName
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import PositiveLength
+from voxsoft.units import PositiveDensity, PositiveLength, PositiveMass
 
 
 class Object(Record):
-    """A rigid thing that the body touches: a plate, a post, a tool.
+    """A rigid thing that the body touches: a plate, a post, a tool, something to grip.
 
     Parameters
     ----------
@@ -23,7 +23,11 @@ class Object(Record):
     shape
         Name of a shape of the design, or a shape. It is not part of the body.
     motion
-        ``"fixed"`` (default), or the way that it goes, as a clamp does.
+        ``"fixed"`` (default), ``"free"``, or the way that it goes, as a clamp does. What is free
+        moves as its weight and what it touches let it, over time.
+    density, mass
+        Of a free object, either of them. Its moments of inertia are those of a solid of one
+        density.
     voxel_size
         How finely its surface is traced: edges are rounded by a third of it. Default: the voxel
         size of the design.
@@ -37,8 +41,8 @@ class Object(Record):
     >>> Object(name="ball", shape="ball", motion="free")
     Traceback (most recent call last):
     ...
-    voxsoft.errors.DesignError: motion: "free" cannot be simulated yet. Try: write "fixed", or \
-give it a displacement or a rotation
+    voxsoft.errors.DesignError: mass: an object that moves freely needs a mass. Try: write mass = \
+"50 g" or density = "1000 kg/m^3"
     """
 
     model_config = ConfigDict(
@@ -49,18 +53,31 @@ give it a displacement or a rotation
 
     name: Name
     shape: ShapeOrName
-    motion: Literal["fixed"] | Motion = "fixed"
+    motion: Literal["fixed", "free"] | Motion = "fixed"
+    density: PositiveDensity | None = None
+    mass: PositiveMass | None = None
     voxel_size: PositiveLength | None = None
 
-    @field_validator("motion", mode="before")
-    @classmethod
-    def _not_free(cls, motion: object) -> object:
-        if motion == "free":
-            what = '"free" cannot be simulated yet'
-            raise DesignError("", what, 'write "fixed", or give it a displacement or a rotation')
-        return motion
+    @model_validator(mode="after")
+    def _has_one_mass(self) -> Self:
+        given = [name for name in ("density", "mass") if getattr(self, name) is not None]
+        if self.motion != "free" and given:
+            what = 'is that of an object that moves freely, and the motion is not "free"'
+            raise DesignError(given[0], what, f'write motion = "free", or leave {given[0]} out')
+        if self.motion == "free" and not given:
+            what = "an object that moves freely needs a mass"
+            hint = 'write mass = "50 g" or density = "1000 kg/m^3"'
+            raise DesignError("mass", what, hint)
+        if len(given) > 1:
+            raise DesignError("mass", "is given twice, by the density too", "leave one of them out")
+        return self
+
+    @property
+    def is_free(self) -> bool:
+        """Whether it moves freely."""
+        return self.motion == "free"
 
     @property
     def way(self) -> Motion | None:
-        """The motion; None if it is fixed."""
+        """The motion; None if it is fixed or free."""
         return self.motion if isinstance(self.motion, Motion) else None

@@ -111,6 +111,8 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
             pass
     if given & _deciding(STATICS):
         return controlled
+    if any(each.is_free for each in design.objects):
+        return timed
     if has_contact(design) and not dynamic:
         return LoadControl
     if dynamic:
@@ -158,10 +160,8 @@ def unused_settings(
         Other keys of :data:`USERS`, where they are given.
     """
     kind = kind_of(design, solver)
-    if has_contact(design) and kind is not LoadControl:
-        what = f"means {kind.title}, and contact is found by statics with load control alone"
-        hint = 'write method = "statics", control = "load" and no end_time'
-        yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
+    if has_contact(design):
+        yield from _without_contact(design, solver, kind)
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
@@ -173,6 +173,29 @@ def unused_settings(
         instead = _ASKING.get(name, _ASKING_FOR_DYNAMICS)
         what = f"is a setting of {_together(users)}, and {_because(name, kind, solver)}"
         yield ErrorDetail(where, what, f"{instead}, or leave {name} out")
+
+
+def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
+    """Find what a design with contact cannot be solved by."""
+    if kind not in {LoadControl, *DYNAMICS} or solver.method == "xpbd":
+        title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
+        what = f"means {title}, and contact is found by load control and by implicit dynamics"
+        hint = 'write method = "statics" and control = "load", or method = "dynamics"'
+        yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
+    free = [index for index, each in enumerate(design.objects) if each.is_free]
+    if kind is LoadControl and free:
+        what = 'is "free", and statics knows only objects that are held or moved'
+        hint = 'write method = "dynamics", or motion = "fixed"'
+        yield ErrorDetail(f"objects[{free[0]}].motion", what, hint)
+    for index, part in enumerate(design.parts):
+        material = design.material_of(part)
+        if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:
+            what = "relaxes, and implicit dynamics with contact knows no viscosity"
+            yield ErrorDetail(f"parts[{index}].material", what, "leave prony out of it")
+    for name in ("substeps", "iterations", "retardation"):
+        if kind in DYNAMICS and getattr(solver, name) is not None:
+            what = "is a setting of explicit dynamics, which knows no contact"
+            yield ErrorDetail(f"solver.{name}", what, f"leave {name} out")
 
 
 def check_solver(

@@ -7,6 +7,9 @@ from typing import Any, ClassVar, Final
 
 from pydantic import Field
 
+from voxsoft import _core
+from voxsoft._memory import memory_limit
+from voxsoft.design import Design
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.method import Answer, Method, Report, Watch
@@ -44,6 +47,8 @@ class Dynamics(Method):
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Move the body from its unloaded state."""
         interval = watch.record_interval or max(DEFAULT_RECORD_INTERVAL, self.time_step or 0.0)
+        if setup.touching is not None:
+            return self._with_contact(setup, watch, interval)
         rate, ends = self.rate, self.ends()
         asked: dict[str, Any] = {
             "time_step": self._step(interval),
@@ -65,6 +70,26 @@ class Dynamics(Method):
         used = {"method": "xpbd", "way": "dynamics", **asked, **ends, "substep": answer.substep}
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
+    def _with_contact(self, setup: Setup, watch: Watch, interval: float) -> Answer:
+        """The same by implicit steps, each of which ends with all contacts settled."""
+        rate, ends = self.rate, self.ends()
+        step = self._step(interval)
+        answer = _core.transient(
+            setup.problem,
+            step=step,
+            damping=rate,
+            end_time=ends.get("end_time"),
+            max_time=ends.get("max_time", DEFAULT_MAX_TIME),
+            tolerance=ends.get("tolerance", DEFAULT_DYNAMIC_TOLERANCE),
+            record_interval=interval,
+            memory=memory_limit(),
+            sensors=[(place.vertices, place.weights) for place in setup.places.values()],
+            frames=watch.frames,
+            progress=watch.progress,
+        )
+        used = {"method": "implicit", "way": "dynamics", "time_step": step, **ends}
+        return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
+
     def _step(self, interval: float) -> float:
         """The length of a step in s: probes are recorded after whole steps."""
         if self.time_step is None:
@@ -76,6 +101,11 @@ class Dynamics(Method):
                 "record after whole steps, or shorten the step",
             )
         return self.time_step
+
+
+def may_lie(design: Design, method: Method) -> bool:
+    """Whether nothing needs to clamp a body, because it may come to lie on an object."""
+    return isinstance(method, Dynamics) and bool(design.objects)
 
 
 class DynamicsToRest(Dynamics):

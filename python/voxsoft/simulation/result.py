@@ -46,11 +46,20 @@ class Recording:
         Displacement of each probe in m, (f, 3) by name.
     frames
         Positions of all vertices in m, (f, n, 3); f is 0 unless frames were asked for.
+    contacts
+        What touched what, at each instant; empty without contact.
+    objects
+        Positions in m, (f, 3), and rotations from the first pose, (f, 3, 3), of each object by
+        name.
     """
 
     times: NDArray[np.float64]
     probes: Mapping[str, NDArray[np.float64]]
     frames: NDArray[np.float64]
+    contacts: tuple[tuple[ContactState, ...], ...] = ()
+    objects: Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = field(
+        default_factory=dict
+    )
 
 
 @dataclass(frozen=True, repr=False)

@@ -13,6 +13,7 @@ from voxsoft._core import Status as Ended
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
@@ -91,7 +92,8 @@ def simulate(
         setup = design
         _check_refinement(setup, settings)
     else:
-        setup = Setup.of(design, allow_loose=not method.to_rest, refine=solver.refine)
+        loose = not method.to_rest or may_lie(given, method)
+        setup = Setup.of(design, allow_loose=loose, refine=solver.refine)
     started = time.perf_counter()
     used, report = method.solve(setup, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
@@ -180,6 +182,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
             for index, name in enumerate(setup.places)
         },
         frames=answer.frames,
+        **_touch_history(setup, answer),
     )
     return Result(
         design=setup.design,
@@ -206,9 +209,26 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         load_factor=1.0 if path is None else path.factor,
         limit_factor=None if path is None else path.limit,
         stable=None if path is None else path.stable,
-        contacts=() if touching is None else touching.contacts(answer),
-        objects={} if touching is None else touching.poses(answer),
+        contacts=() if touching is None else touching.contacts(answer.contacts),
+        objects={} if touching is None else touching.poses(answer.objects),
     )
+
+
+def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
+    """What touched, and where the objects were, as keywords of a recording."""
+    if setup.touching is None or answer.history is None:
+        return {}
+    poses = [setup.touching.poses(found) for found in answer.history.objects]
+    return {
+        "contacts": tuple(setup.touching.contacts(found) for found in answer.history.contacts),
+        "objects": {
+            each.name: (
+                np.array([pose[each.name].position for pose in poses]),
+                np.array([pose[each.name].rotation for pose in poses]),
+            )
+            for each in setup.design.objects
+        },
+    }
 
 
 def _sentence(report: Report, way: str) -> str:

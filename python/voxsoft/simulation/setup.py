@@ -167,10 +167,10 @@ class Setup:
                 action.give_to(receiver)
         for term, elements in self.attached.items():
             parts.attach(term, json.dumps(elements, allow_nan=False))
-        if self.design.floor is not None:
-            parts.floor(self.design.floor.z)
         if self.touching is not None:
             self.touching.give_to(parts)
+        elif self.design.floor is not None:
+            parts.floor(self.design.floor.z)
         return parts
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft._shown import rounded
 from voxsoft.design import Contact, Design, History, Motion, Object
-from voxsoft.design.contact import BODY
+from voxsoft.design.contact import names_of
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
@@ -23,6 +24,8 @@ from voxsoft.units import format_quantity
 _SAMPLES: Final = 2
 #: How deep an object may be in the unloaded body, in voxels: rounding of a surface that touches.
 _TOUCH: Final = 1e-6
+#: How far the floor goes, in sizes of all that is above it: farther than anything may go.
+_FLOOR: Final = 20.0
 
 
 @dataclass(frozen=True)
@@ -161,39 +164,106 @@ class Touching:
             what = f"is {depth:.3g} mm deep in the body at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
             raise DesignError(where, what, f"move it away by {depth:.3g} mm or more")
 
+    @cached_property
+    def floor(self) -> Surface | None:
+        """The floor under everything, a square."""
+        if self.design.floor is None:
+            return None
+        all_points = [self.mesh.vertices, *(surface.vertices for surface in self.surfaces)]
+        points = np.concatenate(all_points)
+        low, high = points.min(axis=0), points.max(axis=0)
+        reach = _FLOOR * float(np.linalg.norm(high - low))
+        middle = (low + high) / 2.0
+        corners = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+        level = np.full((4, 1), self.design.floor.z)
+        vertices = np.hstack([middle[:2] + reach * corners, level])
+        return Surface(vertices, np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32))
+
     def give_to(self, parts: _core.ProblemParts) -> None:
         """Add it to the parts of a problem."""
-        surface = self.mesh.triangles.astype(np.uint32)
-        parts.touch(surface, self.voxel_size, _SAMPLES)
-        for each, surface_of_it in zip(self.design.objects, self.surfaces, strict=True):
-            motion = motion_arguments(each.way)
-            parts.object(surface_of_it.vertices, surface_of_it.triangles, **motion)
+        body = self.mesh.triangles.astype(np.uint32)
+        parts.touch(body, self.voxel_size, _SAMPLES)
+        for each, surface in zip(self.design.objects, self.surfaces, strict=True):
+            if each.is_free:
+                solid = Solid.of(surface, each)
+                parts.free_object(
+                    surface.vertices,
+                    surface.triangles,
+                    solid.mass,
+                    solid.center,
+                    solid.axes,
+                    solid.radii,
+                )
+            else:
+                motion = motion_arguments(each.way)
+                parts.object(surface.vertices, surface.triangles, **motion)
+        if self.floor is not None:
+            parts.object(self.floor.vertices, self.floor.triangles)
         contact = self.design.contact or Contact()
-        parts.friction(np.array(contact.table(self.design.objects)))
+        parts.friction(np.array(contact.table(self.design.objects, self.floor is not None)))
 
-    def contacts(self, answer: _core.Answer) -> tuple[ContactState, ...]:
+    def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
         """What touches, as the core found it."""
-        names = [BODY, *(each.name for each in self.design.objects)]
+        names = names_of(self.design.objects, self.design.floor is not None)
         return tuple(
             ContactState(
-                of=(names[found.a], names[found.b]),
-                force=(found.force[0], found.force[1], found.force[2]),
-                pressed=found.pressed,
-                area=found.area,
-                gap=found.gap,
-                slipping=found.slipping,
+                of=(names[each.a], names[each.b]),
+                force=(each.force[0], each.force[1], each.force[2]),
+                pressed=each.pressed,
+                area=each.area,
+                gap=each.gap,
+                slipping=each.slipping,
             )
-            for found in answer.contacts
+            for each in found
         )
 
-    def poses(self, answer: _core.Answer) -> dict[str, Pose]:
+    def poses(self, found: Sequence[_core.ObjectPose]) -> dict[str, Pose]:
         """Where the objects are, by name."""
         poses = {}
-        for each, found in zip(self.design.objects, answer.objects, strict=True):
-            x, y, z = found.position
-            rotation = tuple((row[0], row[1], row[2]) for row in found.rotation)
+        for each, pose in zip(self.design.objects, found, strict=False):  # a floor comes last
+            x, y, z = pose.position
+            rotation = tuple((row[0], row[1], row[2]) for row in pose.rotation)
             poses[each.name] = Pose((x, y, z), rotation)
         return poses
+
+
+@dataclass(frozen=True)
+class Solid:
+    """What a free object answers to forces with.
+
+    Attributes
+    ----------
+    mass
+        In kg.
+    center
+        Of mass, m.
+    axes
+        Its principal axes, unit vectors row by row, (3, 3).
+    radii
+        The roots of its second moments of mass along them over its mass, m.
+    """
+
+    mass: float
+    center: list[float]
+    axes: list[list[float]]
+    radii: list[float]
+
+    @classmethod
+    def of(cls, surface: Surface, each: Object) -> Solid:
+        """A solid of one density with a closed surface."""
+        import trimesh
+
+        solid = trimesh.Trimesh(surface.vertices, surface.triangles, process=False)
+        volume = float(solid.volume)
+        # The moment of inertia about an axis is the second moment along the other two.
+        inertia = np.asarray(solid.moment_inertia) / volume
+        second = np.trace(inertia) / 2.0 * np.eye(3) - inertia
+        squares, columns = np.linalg.eigh(second)
+        density = each.density
+        mass = each.mass if density is None else density * volume
+        assert mass is not None  # a free object has a mass or a density
+        center = np.asarray(solid.center_mass).tolist()
+        return cls(mass, center, columns.T.tolist(), np.sqrt(squares).tolist())
 
 
 def surface_of(each: Object, design: Design, where: str) -> Surface:

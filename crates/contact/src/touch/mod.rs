@@ -18,8 +18,8 @@
 //!
 //! A sample in contact has an anchor on the other surface and slips from it by `u`. Its friction is
 //! `t = P (τ − k u)`, cut to the length `μ λ` (return mapping), with the multiplier `τ` brought up like `λ`: what
-//! sticks does not move, however long it is held. The bound is that of the last correction, so that the tangent stays symmetric; at the end it is that of
-//! the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
+//! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
+//! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
 mod gap;
 mod listing;
@@ -45,8 +45,11 @@ pub use surface::{Carried, Surface};
 /// The penalty in units of Young's modulus over the voxel size. What multipliers still have to learn shrinks by it
 /// with every correction; at 100, blocks of rubber that is held against bulging take ten times as many.
 const PENALTY: f64 = 1000.0;
-/// The penalty of slip, relative to that of gaps: what sticks gives way by more, and lets go less suddenly.
-const STICK: f64 = 0.01;
+/// The penalty of slip, relative to that of gaps: what sticks gives way by more, and lets go less suddenly. Where
+/// corrections take it on too slowly, because what they hold is stiffer than that, it grows.
+const STICK: [f64; 2] = [0.01, 1.0];
+/// By how much a correction must bring down what sticks and still creeps, and how much stiffer it is else.
+const STIFFER: f64 = 4.0;
 /// The clearance of surfaces that touch, in voxels.
 const CLEARANCE: f64 = 1e-4;
 /// Looks at the start of a search for equilibrium; after a correction there is one.
@@ -60,8 +63,11 @@ const DEEPEST: f64 = 0.9 * CLEARANCE;
 /// different voxels do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
 const CREEP: f64 = 1e-4;
-/// By how much a bound of friction may be off, of the largest one.
-const BOUND: f64 = 3e-3;
+/// By how much a bound of friction may be off, of the largest one: at first, and after [`PATIENCE`] corrections, as
+/// long as the sum of the bounds on each surface is that good. Surfaces that do not fit share a pressure among their
+/// samples in many ways, between which multipliers decide slowly and nothing moves.
+const BOUND: [f64; 2] = [3e-3, 0.05];
+const PATIENCE: u32 = 10;
 
 /// Who touches whom, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -295,17 +301,19 @@ impl Touch {
         (memory.normal - k * (meeting.gap - self.clearance())).max(0.0)
     }
 
-    /// The friction of a sample that is in contact and has an anchor.
+    /// The friction of a sample that was in contact at the last correction and had an anchor: also where it has lost
+    /// contact since, or its force would jump.
     fn friction(
         &self,
-        memory: &Memory,
-        meeting: &Meeting,
+        state: &State,
+        sample: u32,
         point: Vec3,
         points: &[Vec3],
     ) -> Option<Friction> {
+        let memory = &state.now[sample as usize];
         let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
-        let k = STICK * self.penalty(meeting.sample);
-        let n = meeting.normal;
+        let k = state.stick * self.penalty(sample);
+        let n = memory.plane;
         let along = |v: Vec3| sub(v, scale(dot(v, n), n));
         let mut slip = point;
         for (weight, corner) in anchor.1.iter().zip(self.corners(anchor.0, points)) {
@@ -357,6 +365,25 @@ impl Touch {
             let pressure = self.pressure(&state.now[index], &meeting);
             if pressure > 0.0 {
                 take(&meeting, pressure, point, &points);
+            }
+        }
+    }
+
+    /// Hands over the friction of every sample that has some.
+    fn each_friction(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(u32, Friction),
+    ) {
+        if !state.now.iter().any(|memory| memory.bound > 0.0) {
+            return;
+        }
+        let points = self.points_at(positions);
+        for sample in 0..self.samples.len() as u32 {
+            let point = self.samples[sample as usize].point.at(positions);
+            if let Some(friction) = self.friction(state, sample, point, &points) {
+                take(sample, friction);
             }
         }
     }
@@ -431,7 +458,7 @@ mod tests {
         }
         touch.follow(&positions);
         check_term(&touch, &apart, &positions).unwrap();
-        touch.correct(&positions);
+        touch.correct(&positions, 0.0);
         check_term(&touch, &apart, &positions).unwrap();
     }
 }

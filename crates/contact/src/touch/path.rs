@@ -1,11 +1,15 @@
 //! Contact along a load path: who faces whom, corrections of multipliers, anchors that come along.
 
+use std::collections::BTreeMap;
+
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
 use super::gap::{self, normal};
 use super::state::{Facing, Memory, State};
-use super::{APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, STICK, STRAYED, Touch, listing};
+use super::{
+    APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED, Touch, listing,
+};
 
 impl Contact for Touch {
     fn start(&self, positions: &[Vec3]) {
@@ -18,6 +22,8 @@ impl Contact for Touch {
             accepted_samples: samples,
             accepted: nothing.clone(),
             now: nothing,
+            stick: STICK[0],
+            crept: f64::INFINITY,
             ..State::default()
         };
         self.list(&mut state, points);
@@ -37,19 +43,18 @@ impl Contact for Touch {
         state.looks = state.looks.saturating_sub(1);
         self.face(&mut state, positions, all);
         let mut pairs = Vec::new();
-        self.each_contact(&state, positions, |meeting, _, point, points| {
+        self.each_contact(&state, positions, |meeting, _, _, _| {
             pairs.push((meeting.sample, meeting.triangle));
-            let memory = &state.now[meeting.sample as usize];
-            if let Some(friction) = self.friction(memory, meeting, point, points) {
-                pairs.push((meeting.sample, friction.anchor.0));
-            }
+        });
+        self.each_friction(&state, positions, |sample, friction| {
+            pairs.push((sample, friction.anchor.0));
         });
         let before = state.pattern.len();
         state.pattern.extend(pairs);
         state.pattern.len() > before
     }
 
-    fn correct(&self, positions: &[Vec3]) -> f64 {
+    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
         let mut state = self.write();
         // What loses contact for now keeps its anchor: it may come back before the state is accepted.
         let anchor_of = |memory: &Memory| Memory {
@@ -60,38 +65,43 @@ impl Contact for Touch {
         self.each_contact(&state, positions, |meeting, pressure, point, points| {
             let sample = meeting.sample as usize;
             let memory = &state.now[sample];
-            let friction = self.friction(memory, meeting, point, points);
+            let friction = self.friction(&state, meeting.sample, point, points);
             let coefficient = self.coefficient(meeting.sample, meeting.triangle);
             now[sample] = Memory {
                 normal: pressure,
                 friction: friction.map_or([0.0; 3], |friction| friction.force),
+                plane: meeting.normal,
                 bound: coefficient * pressure,
                 anchor: memory
                     .anchor
                     .or_else(|| Some(self.first_anchor(&state, meeting, point, points))),
             };
         });
+        state.corrections += 1;
+        let patient = state.corrections <= PATIENCE;
         let bounds = now.iter().chain(&state.now).map(|memory| memory.bound);
-        let largest_bound = bounds.fold(0.0, f64::max);
-        let mut largest = 0.0f64;
+        let known = BOUND[usize::from(!patient)] * bounds.fold(negligible, f64::max);
+        let mut largest = self.off_bounds(&state.now, &now, negligible);
+        let mut farthest = 0.0f64;
         for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
             if old == new {
                 continue;
             }
             let unit = self.penalty(sample as u32) * self.description.voxel;
             let pressed = (new.normal - old.normal) / unit;
+            let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
+            largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
             let bound = (new.bound - old.bound).abs();
-            let crept = norm(sub(new.friction, old.friction)) / (STICK * unit);
-            largest = largest
-                .max(pressed / DEEPEST)
-                .max(-pressed / APART)
-                .max(if bound > 0.0 {
-                    bound / (BOUND * largest_bound)
-                } else {
-                    0.0
-                })
-                .max(crept / CREEP);
+            if bound > 0.0 {
+                largest = largest.max(bound / known);
+            }
+            farthest = farthest.max(crept / CREEP);
         }
+        largest = largest.max(farthest);
+        if farthest > 1.0 && farthest > state.crept / STIFFER {
+            state.stick = (STIFFER * state.stick).min(STICK[1]);
+        }
+        state.crept = farthest;
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
         if largest > 1.0 {
             state.now = now;
@@ -111,8 +121,9 @@ impl Contact for Touch {
         self.each_contact(&state, positions, |meeting, _, point, points| {
             let memory = &mut moved[meeting.sample as usize];
             *memory = state.now[meeting.sample as usize];
-            let friction = self.friction(memory, meeting, point, points);
+            let friction = self.friction(&state, meeting.sample, point, points);
             if friction.is_none_or(|friction| friction.slips) {
+                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
                 let corners = self.corners(meeting.triangle, points);
                 memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
             }
@@ -122,6 +133,7 @@ impl Contact for Touch {
         state.accepted_points.clone_from(&points);
         state.accepted.clone_from(&moved);
         state.now = moved;
+        (state.crept, state.corrections) = (f64::INFINITY, 0);
         self.list(&mut state, points);
         state.looks = LOOKS;
     }
@@ -129,6 +141,7 @@ impl Contact for Touch {
     fn go_back(&self) {
         let mut state = self.write();
         state.now = state.accepted.clone();
+        (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
         self.list(&mut state, points);
         state.looks = LOOKS;
@@ -136,6 +149,30 @@ impl Contact for Touch {
 }
 
 impl Touch {
+    /// How far the sum of the bounds of friction between two surfaces is off, as a part of what it may.
+    fn off_bounds(&self, old: &[Memory], new: &[Memory], negligible: f64) -> f64 {
+        let mut sums: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
+        for (sample, (old, new)) in self.samples.iter().zip(old.iter().zip(new)) {
+            let Some((triangle, _)) = new.anchor else {
+                continue;
+            };
+            let mut pair = [sample.surface, self.surface_of[triangle as usize]];
+            pair.sort_unstable();
+            let [change, size] = sums.entry(pair).or_default();
+            *change += new.bound - old.bound;
+            *size += new.bound;
+        }
+        let part = |[change, size]: &[f64; 2]| {
+            let off = change.abs();
+            if off > 0.0 {
+                off / (BOUND[0] * size.max(negligible))
+            } else {
+                0.0
+            }
+        };
+        sums.values().map(part).fold(0.0, f64::max)
+    }
+
     /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
     /// way as the gap says.
     fn first_anchor(

@@ -37,7 +37,7 @@ impl Touch {
             let other = self.surface_of[meeting.triangle as usize];
             let of = [sample.surface.min(other), sample.surface.max(other)];
             let memory = &state.now[meeting.sample as usize];
-            let friction = self.friction(memory, meeting, point, points);
+            let friction = self.friction(&state, meeting.sample, point, points);
             let mut force = scale(pressure, meeting.normal);
             let (mut pressed, mut slipping) = (pressure, pressure);
             if let Some(friction) = friction {

@@ -11,6 +11,8 @@ pub(super) struct Memory {
     pub normal: f64,
     /// That of its slip in N, along the surface.
     pub friction: Vec3,
+    /// The normal of the surface that it slips on, of the last correction.
+    pub plane: Vec3,
     /// The most that friction may be, in N.
     pub bound: f64,
     /// Where on the other surface it sticks: a triangle, and affine coordinates in it.
@@ -44,6 +46,12 @@ pub(super) struct State {
     pub candidates: Vec<Vec<u32>>,
     /// What each of them faces now.
     pub facing: Vec<Option<Facing>>,
+    /// The penalty of slip, relative to that of gaps.
+    pub stick: f64,
+    /// How far what sticks had crept at the last correction, as a part of what it may.
+    pub crept: f64,
+    /// Corrections since the last accepted state.
+    pub corrections: u32,
     /// How often all samples may still look for what they face before that is fixed.
     pub looks: u32,
     /// Samples and triangles whose stiffness there is room for.

@@ -30,27 +30,22 @@ impl Term for Touch {
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let state = self.read();
         let mut energy = 0.0;
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
-            let memory = &state.now[meeting.sample as usize];
-            let k = self.penalty(meeting.sample);
-            energy += pressure * pressure / (2.0 * k);
-            if let Some(friction) = self.friction(memory, meeting, point, points) {
-                energy += friction.energy;
-            }
+        self.each_contact(&state, positions, |meeting, pressure, _, _| {
+            energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
         });
+        self.each_friction(&state, positions, |_, friction| energy += friction.energy);
         energy
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let state = self.read();
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
-            let sample = meeting.sample;
-            let memory = &state.now[sample as usize];
+        self.each_contact(&state, positions, |meeting, pressure, _, _| {
             let place = (meeting.triangle, meeting.weights);
-            self.add_force(scale(pressure, meeting.normal), sample, place, forces);
-            if let Some(friction) = self.friction(memory, meeting, point, points) {
-                self.add_force(friction.force, sample, friction.anchor, forces);
-            }
+            let force = scale(pressure, meeting.normal);
+            self.add_force(force, meeting.sample, place, forces);
+        });
+        self.each_friction(&state, positions, |sample, friction| {
+            self.add_force(friction.force, sample, friction.anchor, forces);
         });
     }
 
@@ -60,19 +55,18 @@ impl Term for Touch {
 
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
         let state = self.read();
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
+        self.each_contact(&state, positions, |meeting, pressure, _, points| {
             self.visit_gap(meeting, pressure, points, tangent, visit);
-            let memory = &state.now[meeting.sample as usize];
-            if let Some(friction) = self.friction(memory, meeting, point, points) {
-                let [b0, b1, b2] = friction.anchor.1;
-                let factors = [1.0, -b0, -b1, -b2];
-                let block = |a: usize, b: usize| {
-                    friction
-                        .stiffness
-                        .map(|row| scale(factors[a] * factors[b], row))
-                };
-                self.visit_local(meeting.sample, friction.anchor.0, block, visit);
-            }
+        });
+        self.each_friction(&state, positions, |sample, friction| {
+            let [b0, b1, b2] = friction.anchor.1;
+            let factors = [1.0, -b0, -b1, -b2];
+            let block = |a: usize, b: usize| {
+                friction
+                    .stiffness
+                    .map(|row| scale(factors[a] * factors[b], row))
+            };
+            self.visit_local(sample, friction.anchor.0, block, visit);
         });
     }
 }

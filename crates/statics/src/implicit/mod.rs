@@ -20,7 +20,7 @@ mod objective;
 mod pressures;
 mod quasi_newton;
 mod rest;
-mod scheme;
+pub(crate) mod scheme;
 mod stepper;
 mod turns;
 mod viscosity;

@@ -13,7 +13,7 @@ use voxsoft_solid::State;
 use voxsoft_solid::vector::{Vec3, add, scale};
 
 /// What a step starts from.
-pub(super) struct Start {
+pub(crate) struct Start {
     /// `σ` in 1/s.
     pub rate: f64,
     /// `x̂` in m.

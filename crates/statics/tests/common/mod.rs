@@ -1,6 +1,8 @@
 //! Bodies for the tests: boxes of voxels along the axes from the origin.
 #![allow(dead_code, reason = "each test file uses some of it")]
 
+pub mod touching;
+
 use std::ops::ControlFlow;
 
 use voxsoft_solid::vector::Vec3;

@@ -1,0 +1,122 @@
+//! `_core.transient`: motion over time with contact, on a `_core.Problem`.
+use std::sync::{Arc, Mutex};
+
+use numpy::PyReadonlyArray1;
+use pyo3::prelude::*;
+use voxsoft_contact::touch::PairReport;
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Damping, Progress, State};
+use voxsoft_statics::Transient;
+use voxsoft_xpbd::Answer;
+
+use crate::answer::PyAnswer;
+use crate::gate;
+use crate::simulate::PyProblem;
+use crate::touch::PyTouchHistory;
+use crate::watch::{Watch, collect_sensors};
+
+/// Motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate, `damping` is critical.
+#[pyfunction]
+#[pyo3(signature = (problem, *, step, damping, end_time, max_time, tolerance, record_interval=None, memory=u64::MAX, sensors=vec![], frames=false, progress=None))]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "keyword arguments of one Python call"
+)]
+pub fn transient(
+    problem: PyRef<'_, PyProblem>,
+    py: Python<'_>,
+    step: f64,
+    damping: Option<f64>,
+    end_time: Option<f64>,
+    max_time: f64,
+    tolerance: f64,
+    record_interval: Option<f64>,
+    memory: u64,
+    sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
+    frames: bool,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<PyAnswer> {
+    let settings = Transient {
+        step,
+        damping: damping.map_or(Damping::Critical, Damping::Rate),
+        tolerance,
+        end_time,
+        max_time,
+        record_interval,
+        memory,
+    };
+    let inner = Arc::clone(&problem.problem);
+    let touch = problem
+        .touching
+        .as_ref()
+        .map(|touching| Arc::clone(&touching.touch));
+    let first = problem.own();
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
+    let seen: Mutex<Seen> = Mutex::default();
+    let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
+        let mut see = |now: &Progress<'_>| {
+            if let Some(touch) = touch.as_ref().filter(|_| now.record) {
+                let mut seen = seen.lock().expect("no holder of the lock panics");
+                // Before the first step there are no forces yet that keep what touches apart.
+                let started = now.steps > 0;
+                seen.pairs.push(if started {
+                    touch.pairs(now.positions)
+                } else {
+                    Vec::new()
+                });
+                seen.frames.push(now.positions[first..].to_vec());
+            }
+            watch.see(now, cancel)
+        };
+        let start = State::at_rest(inner.body());
+        let solution = settings.follow(&inner, start, &mut see);
+        (solution, watch, seen)
+    })?;
+    let seen = seen.into_inner().expect("no holder of the lock panics");
+    let history = seen.into_python(py, &problem)?;
+    let time = solution.state.time;
+    let answer = Answer {
+        state: solution.state,
+        status: solution.status,
+        residual: solution.residual,
+        steps: solution.steps,
+        back_offs: solution.back_offs,
+        substep: step,
+        breakdown: solution.breakdown,
+    };
+    let found = problem.answer(py, answer, watch, &|load| load.history.at(time))?;
+    Ok(PyAnswer { history, ..found })
+}
+
+/// What was seen of contact at every record.
+#[derive(Default)]
+struct Seen {
+    pairs: Vec<Vec<PairReport>>,
+    /// The vertices of all objects.
+    frames: Vec<Vec<Vec3>>,
+}
+
+impl Seen {
+    fn into_python(
+        self,
+        py: Python<'_>,
+        problem: &PyProblem,
+    ) -> PyResult<Option<Py<PyTouchHistory>>> {
+        let Some(touching) = &problem.touching else {
+            return Ok(None);
+        };
+        let contacts = self
+            .pairs
+            .into_iter()
+            .map(|pairs| crate::touch::to_python(py, pairs));
+        let objects = self
+            .frames
+            .iter()
+            .map(|frames| touching.poses(py, frames, 0));
+        let history = PyTouchHistory {
+            contacts: contacts.collect::<PyResult<_>>()?,
+            objects: objects.collect::<PyResult<_>>()?,
+        };
+        Ok(Some(Py::new(py, history)?))
+    }
+}

@@ -1,0 +1,111 @@
+//! Inertia over one step, as a term of the body.
+
+use std::sync::{RwLock, RwLockReadGuard};
+
+use voxsoft_solid::Term;
+use voxsoft_solid::assembly::Visitor;
+use voxsoft_solid::vector::{Vec3, dot, norm, scale, sub};
+
+/// `κ/2 Σ m |x − y|²`: where a step ends is the equilibrium of a body that springs pull to where it would be without
+/// forces.
+#[derive(Debug)]
+pub(crate) struct Inertia {
+    /// In kg.
+    masses: Vec<f64>,
+    goal: RwLock<Goal>,
+}
+
+#[derive(Debug, Default)]
+struct Goal {
+    /// `κ` in 1/s².
+    rate: f64,
+    /// `y` in m.
+    free: Vec<Vec3>,
+}
+
+impl Inertia {
+    pub fn new(masses: &[f64]) -> Self {
+        let free = vec![[0.0; 3]; masses.len()];
+        Self {
+            masses: masses.to_vec(),
+            goal: RwLock::new(Goal { rate: 0.0, free }),
+        }
+    }
+
+    /// Takes the `κ` (1/s²) and the `y` (m) of another step.
+    pub fn set(&self, rate: f64, free: Vec<Vec3>) {
+        *self.goal.write().expect("no holder of the lock panics") = Goal { rate, free };
+    }
+
+    fn read(&self) -> RwLockReadGuard<'_, Goal> {
+        self.goal.read().expect("no holder of the lock panics")
+    }
+
+    fn each(&self, positions: &[Vec3], mut take: impl FnMut(usize, f64, Vec3)) {
+        let goal = self.read();
+        for (vertex, mass) in self.masses.iter().enumerate() {
+            let away = sub(positions[vertex], goal.free[vertex]);
+            take(vertex, goal.rate * mass, away);
+        }
+    }
+
+    /// The norm of its forces in N.
+    pub fn size(&self, positions: &[Vec3]) -> f64 {
+        let mut sum = 0.0;
+        self.each(positions, |_, k, away| sum += (k * norm(away)).powi(2));
+        sum.sqrt()
+    }
+}
+
+impl Term for Inertia {
+    fn name(&self) -> &'static str {
+        "inertia"
+    }
+
+    fn is_anchored(&self) -> bool {
+        true
+    }
+
+    fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        (0..self.masses.len() as u32).for_each(|vertex| visit(&[vertex]));
+    }
+
+    fn energy(&self, positions: &[Vec3]) -> f64 {
+        let mut sum = 0.0;
+        self.each(positions, |_, k, away| sum += k * dot(away, away) / 2.0);
+        sum
+    }
+
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.each(positions, |vertex, k, away| {
+            forces[vertex] = sub(forces[vertex], scale(k, away));
+        });
+    }
+
+    fn visit_stiffness(&self, _positions: &[Vec3], visit: Visitor<'_>) {
+        let rate = self.read().rate;
+        for (vertex, mass) in self.masses.iter().enumerate() {
+            let k = rate * mass;
+            visit(&[vertex as u32], &[k, 0.0, 0.0, 0.0, k, 0.0, 0.0, 0.0, k]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voxsoft_solid::conformance::check_term;
+
+    #[test]
+    fn inertia_keeps_the_laws_of_terms() {
+        let inertia = Inertia::new(&[0.1, 0.2]);
+        inertia.set(40.0, vec![[0.1, 0.0, 0.2], [0.3, -0.1, 0.0]]);
+        let rest = [[0.0; 3], [0.2, 0.1, 0.0]];
+        let positions = [[0.05, 0.0, 0.1], [0.2, 0.1, 0.3]];
+        check_term(&inertia, &rest, &positions).unwrap();
+        let mut forces = vec![[0.0; 3]; 2];
+        inertia.add_forces(&positions, &mut forces);
+        let square: f64 = forces.iter().map(|f| dot(*f, *f)).sum();
+        assert!((inertia.size(&positions) - square.sqrt()).abs() < 1e-15);
+    }
+}

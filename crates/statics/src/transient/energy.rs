@@ -1,0 +1,130 @@
+//! What a state comes to: forces, energies, rest.
+
+use voxsoft_solid::balance::{NEGLIGIBLE_STRAIN, balance_of_forces, is_still_with};
+use voxsoft_solid::hands::loads_end;
+use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
+use voxsoft_solid::{Problem, State, elastic};
+
+use super::Run;
+
+/// The part of the energy that a step turns over by which it may end with more than it should: the work of loads that
+/// follow the body is known to second order only.
+const GAIN: f64 = 1e-2;
+/// The same of the energy of motion: that of a steady turn oscillates by the square of the angle of a step after any
+/// change of the step.
+const GAIN_OF_MOTION: f64 = 1e-3;
+/// Energies are sums of many terms and known to about this part of their size.
+const ROUNDING: f64 = 1e-9;
+
+/// Forces and energies at a state.
+#[derive(Default)]
+pub(super) struct Now {
+    /// Of everything but loads, N.
+    pub internal: Vec<Vec3>,
+    /// Of loads, N.
+    pub external: Vec<Vec3>,
+    /// What supports answer with, inertia included, N.
+    pub reactions: Vec<Vec3>,
+    /// J, without that of multipliers.
+    pub elastic: f64,
+    /// J.
+    pub kinetic: f64,
+}
+
+impl Now {
+    pub fn take_reactions(&mut self, problem: &Problem, accelerations: impl Iterator<Item = Vec3>) {
+        let forces = self.internal.iter().zip(&self.external);
+        let all = forces.zip(problem.body().masses()).zip(accelerations);
+        let each = all.map(|(((f, load), mass), a)| sub(scale(*mass, a), add(*f, *load)));
+        self.reactions = each.collect();
+    }
+}
+
+impl Run<'_> {
+    pub(super) fn look_at(&self, state: &State) -> Now {
+        let (problem, positions) = (self.problem, &state.positions);
+        let mut internal = vec![[0.0; 3]; positions.len()];
+        elastic::add_forces(problem.body(), positions, &mut internal);
+        let mut external = vec![[0.0; 3]; positions.len()];
+        problem.add_loads(positions, state.time, &mut external);
+        let stored = elastic::energy(problem.body(), positions);
+        let touching = problem
+            .contact()
+            .map_or(0.0, |contact| contact.energy(positions));
+        let mut now = Now {
+            internal,
+            external,
+            reactions: Vec::new(),
+            elastic: stored - touching,
+            kinetic: state.kinetic_energy(problem.body().masses()),
+        };
+        now.take_reactions(problem, std::iter::repeat_n([0.0; 3], positions.len()));
+        now
+    }
+
+    /// Whether a state has more energy than the last one had and was given.
+    pub(super) fn gains_energy(&self, next: &State, found: &Now) -> bool {
+        let held = self.problem.held();
+        let mut work = 0.0;
+        for (vertex, (x, old)) in next.positions.iter().zip(&self.state.positions).enumerate() {
+            let way = sub(*x, *old);
+            let mean = add(found.external[vertex], self.now.external[vertex]);
+            work += dot(mean, way) / 2.0;
+            for axis in (0..3).filter(|axis| held[vertex][*axis]) {
+                // What is met within a step pushes back for all of it.
+                let mean = (found.reactions[vertex][axis] + self.now.reactions[vertex][axis]) / 2.0;
+                let last = found.reactions[vertex][axis];
+                work += f64::max(mean * way[axis], last * way[axis]);
+            }
+            let brake = self.damping_rate * self.problem.body().masses()[vertex];
+            work -= brake * dot(next.velocities[vertex], way);
+        }
+        let (kinetic, stored) = (
+            found.kinetic - self.now.kinetic,
+            found.elastic - self.now.elastic,
+        );
+        let turned_over = kinetic.abs() + stored.abs() + work.abs();
+        let moving = found.kinetic + self.now.kinetic;
+        let stored_in_all = found.elastic.abs() + self.now.elastic.abs();
+        let negligible = NEGLIGIBLE_STRAIN.powi(2) * self.problem.body().unit_strain_energy();
+        let allowed = GAIN * turned_over + GAIN_OF_MOTION * moving + ROUNDING * stored_in_all;
+        kinetic + stored - work > allowed + negligible
+    }
+
+    /// An estimate of the frequency (rad/s) that the present motion lives on: the change of all forces along the
+    /// motion over the motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
+    pub(super) fn frequency(&self, next: &State, found: &Now) -> f64 {
+        // The loads as they are now, so that one that has changed counts as no stiffness.
+        let mut before = vec![[0.0; 3]; next.positions.len()];
+        self.problem
+            .add_loads(&self.state.positions, next.time, &mut before);
+        let (mut stiffness, mut inertia) = (0.0, 0.0);
+        for (vertex, mass) in self.problem.body().masses().iter().enumerate() {
+            let way = sub(next.positions[vertex], self.state.positions[vertex]);
+            let internal = sub(self.now.internal[vertex], found.internal[vertex]);
+            let external = sub(before[vertex], found.external[vertex]);
+            stiffness += dot(way, add(internal, external));
+            inertia += mass * dot(way, way);
+        }
+        if inertia > 0.0 {
+            (stiffness / inertia).max(0.0).sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// The relative residual of an equilibrium without inertia.
+    pub(super) fn residual(&self) -> f64 {
+        let pairs = self.now.internal.iter().zip(&self.now.external);
+        let net = pairs.map(|(a, b)| add(*a, *b)).collect();
+        let external = &self.now.external;
+        balance_of_forces(self.problem, &self.state.positions, external, net).relative_residual()
+    }
+
+    pub(super) fn is_at_rest(&self, residual: f64) -> bool {
+        let tolerance = self.settings.tolerance;
+        self.state.time >= loads_end(self.problem)
+            && residual <= tolerance
+            && is_still_with(self.problem, self.now.elastic, self.now.kinetic, tolerance)
+    }
+}

@@ -1,0 +1,333 @@
+//! Motion over time with contact, by implicit steps.
+//!
+//! The end of a step is an equilibrium of the body, its loads and its contact with the forces of inertia, by the second-order
+//! backward difference formula ([`crate::implicit::scheme`]):
+//!
+//! ```text
+//! M (a + c v) = f(x)   ⇔   x is an equilibrium with κ/2 |x − y|²_M,   κ = σ (σ + c),   y = x̂ + v̂/(σ + c).
+//! ```
+//!
+//! It is found as one of statics is: Newton's method on the exact tangent, contact corrected until it has settled. So no
+//! step ends with surfaces in each other, and what sticks stays where it is.
+//!
+//! # Energy
+//!
+//! Of a vibration of the period `T` the formula takes `π (2π h/T)³` of its energy in each period, so it damps only what a
+//! step does not resolve. Where two things meet, velocities jump, and a formula that looks two steps back lets them
+//! rebound too fast. A step that would end with more energy than the last state had and the loads have given is
+//! therefore taken again by the backward Euler formula, which gains none where the potential is convex. What meets is
+//! inelastic then, vertex by vertex; what rebounds is the body behind. Both formulas keep momentum to the tolerance of
+//! a step.
+
+mod energy;
+mod step;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Damping, Observer, Problem, Progress, Solution, Solver, State, Status, Term};
+
+use self::energy::Now;
+use crate::equilibrium::{Equilibrium, Failure};
+use crate::inertia::Inertia;
+use crate::settings::LinearSolver;
+use crate::system::{FactorError, Means};
+
+/// How often a step is halved before a run counts as diverged.
+const MAX_BACK_OFFS: u32 = 10;
+/// Good steps after which a halved one is doubled again.
+const PATIENCE: u32 = 3;
+/// A step that ends so near to the next record goes on to it.
+const SAME_TIME: f64 = 1e-9;
+
+/// How a body moves through time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transient {
+    /// The length of a step in s.
+    pub step: f64,
+    /// Damping of all motion.
+    pub damping: Damping,
+    /// Rest is where the relative residual force is below this, and the kinetic energy below this part of the
+    /// elastic energy.
+    pub tolerance: f64,
+    /// The time in s to run to exactly; `None` runs to rest.
+    pub end_time: Option<f64>,
+    /// The time in s after which a run that does not come to rest is given up.
+    pub max_time: f64,
+    /// The time between two records in s, which steps do not go beyond.
+    pub record_interval: Option<f64>,
+    /// The bytes that the tangent may take.
+    pub memory: u64,
+}
+
+impl Default for Transient {
+    fn default() -> Self {
+        Self {
+            step: 0.01,
+            damping: Damping::Rate(0.0),
+            tolerance: 1e-4,
+            end_time: None,
+            max_time: 60.0,
+            record_interval: None,
+            memory: u64::MAX,
+        }
+    }
+}
+
+impl Solver for Transient {
+    fn name(&self) -> &'static str {
+        "transient"
+    }
+
+    fn solve(
+        &self,
+        problem: &Problem,
+        start: Option<&[Vec3]>,
+        observer: &mut Observer<'_>,
+    ) -> Solution {
+        let mut state = State::at_rest(problem.body());
+        if let Some(start) = start {
+            state.positions = start.to_vec();
+        }
+        self.follow(problem, state, observer)
+    }
+}
+
+impl Transient {
+    /// Moves a problem on from a state.
+    pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
+        let inertia = Arc::new(Inertia::new(problem.body().masses()));
+        let moving = problem
+            .clone()
+            .with_term(Arc::clone(&inertia) as Arc<dyn Term>);
+        let moving = moving.expect("inertia has the vertices of its body");
+        if let Some(contact) = problem.contact() {
+            contact.start(&start.positions);
+        }
+        let means = Means {
+            solver: LinearSolver::Direct,
+            memory: self.memory,
+        };
+        let equilibrium = match Equilibrium::new(&moving, means) {
+            Ok(equilibrium) => equilibrium,
+            Err(error) => return refused(start, error),
+        };
+        let run = Run {
+            problem,
+            settings: self,
+            equilibrium: Equilibrium {
+                inertia: Some(&inertia),
+                ..equilibrium
+            },
+            inertia: &inertia,
+            now: Now::default(),
+            before: None,
+            damping_rate: match self.damping {
+                Damping::Rate(rate) => rate,
+                Damping::Critical => 0.0,
+            },
+            step: self.step,
+            good: 0,
+            steps: 0,
+            back_offs: 0,
+            travel_limit: travel_limit(problem),
+            state: start,
+        };
+        run.go(observer)
+    }
+}
+
+fn refused(state: State, error: FactorError) -> Solution {
+    Solution {
+        state,
+        status: error.into(),
+        residual: f64::INFINITY,
+        steps: 0,
+        back_offs: 0,
+        breakdown: None,
+    }
+}
+
+struct Run<'a> {
+    problem: &'a Problem,
+    settings: &'a Transient,
+    equilibrium: Equilibrium<'a>,
+    inertia: &'a Inertia,
+    state: State,
+    now: Now,
+    /// The state one step ago.
+    before: Option<State>,
+    damping_rate: f64,
+    step: f64,
+    /// Good steps since the last halving.
+    good: u32,
+    steps: u64,
+    back_offs: u32,
+    travel_limit: f64,
+}
+
+impl Run<'_> {
+    fn go(mut self, observer: &mut Observer<'_>) -> Solution {
+        let mut recorded = -1i64;
+        self.now = self.look_at(&self.state);
+        loop {
+            let residual = self.residual();
+            let slot = self.settings.record_interval;
+            let slot = slot.map_or(-1, |each| {
+                (self.state.time / each + SAME_TIME).floor() as i64
+            });
+            let progress = Progress {
+                steps: self.steps,
+                time: self.state.time,
+                positions: &self.state.positions,
+                velocities: &self.state.velocities,
+                residual,
+                record: slot > recorded,
+            };
+            recorded = recorded.max(slot);
+            if let ControlFlow::Break(()) = observer(&progress) {
+                return self.ended(Status::Cancelled, residual, None);
+            }
+            match self.settings.end_time {
+                Some(end) if self.state.time >= end * (1.0 - 1e-12) => {
+                    return self.ended(Status::EndTime, residual, None);
+                }
+                None if self.is_at_rest(residual) => {
+                    return self.ended(Status::AtRest, residual, None);
+                }
+                None if self.state.time >= self.settings.max_time => {
+                    return self.ended(Status::NotAtRest, residual, None);
+                }
+                _ => {}
+            }
+            if let Err(failure) = self.take_step(recorded, observer) {
+                let state = &self.state;
+                let far = || Breakdown::farthest(self.problem, &state.positions, state.time);
+                return match failure {
+                    Stop::Gone(place) => self.ended(Status::Diverged, residual, Some(place)),
+                    Stop::Failed(Failure::Memory(bytes)) => {
+                        self.ended(Status::OutOfMemory(bytes), residual, None)
+                    }
+                    Stop::Failed(Failure::Cancelled) => {
+                        self.ended(Status::Cancelled, residual, None)
+                    }
+                    Stop::Failed(_) => {
+                        let place = far();
+                        self.ended(Status::Diverged, residual, Some(place))
+                    }
+                };
+            }
+        }
+    }
+
+    fn ended(self, status: Status, residual: f64, breakdown: Option<Breakdown>) -> Solution {
+        Solution {
+            state: self.state,
+            status,
+            residual,
+            steps: self.steps,
+            back_offs: self.back_offs,
+            breakdown,
+        }
+    }
+
+    /// Takes one step, in halves of halves where a whole one fails.
+    fn take_step(&mut self, recorded: i64, observer: &mut Observer<'_>) -> Result<(), Stop> {
+        let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
+        loop {
+            self.steps += 1;
+            let step = self.next_step(recorded);
+            let failure = match self.try_step(step, observer) {
+                Ok(()) => {
+                    self.good += 1;
+                    if self.good >= PATIENCE && self.step < self.settings.step {
+                        self.step = (2.0 * self.step).min(self.settings.step);
+                        self.good = 0;
+                    }
+                    return Ok(());
+                }
+                Err(failure) => failure,
+            };
+            if let Some(contact) = self.problem.contact() {
+                contact.go_back();
+            }
+            let hopeless = matches!(
+                failure,
+                Stop::Failed(Failure::Memory(_) | Failure::Cancelled)
+            );
+            self.step = step / 2.0;
+            if hopeless || self.step < least {
+                return Err(failure);
+            }
+            self.back_offs += 1;
+            self.good = 0;
+        }
+    }
+
+    /// As long as asked, but not beyond the end or the next record.
+    fn next_step(&self, recorded: i64) -> f64 {
+        let end = self.settings.end_time.unwrap_or(f64::INFINITY);
+        let each = self.settings.record_interval;
+        let record = each.map_or(f64::INFINITY, |each| (recorded + 1) as f64 * each);
+        let left = end.min(record) - self.state.time;
+        // Two steps of equal length rather than one with a rest.
+        let parts = (left / self.step - SAME_TIME).ceil().max(1.0);
+        if left.is_finite() {
+            left / parts
+        } else {
+            self.step
+        }
+    }
+
+    /// A step by the second-order formula, or again by backward Euler if that one gains energy.
+    fn try_step(&mut self, step: f64, observer: &mut Observer<'_>) -> Result<(), Stop> {
+        if self.before.is_some() {
+            let before = self.before.take();
+            let outcome = self.find(step, before.as_ref(), observer);
+            self.before = before;
+            let (next, found) = outcome?;
+            if !self.gains_energy(&next, &found) {
+                return self.accept(next, found);
+            }
+            if let Some(contact) = self.problem.contact() {
+                contact.go_back();
+            }
+        }
+        let (next, found) = self.find(step, None, observer)?;
+        self.accept(next, found)
+    }
+
+    fn accept(&mut self, next: State, found: Now) -> Result<(), Stop> {
+        if let Some(contact) = self.problem.contact() {
+            contact.accept(&next.positions);
+        }
+        if self.settings.damping == Damping::Critical {
+            self.damping_rate = 2.0 * self.frequency(&next, &found);
+        }
+        self.before = Some(std::mem::replace(&mut self.state, next));
+        self.now = found;
+        Ok(())
+    }
+}
+
+/// Why a run ends early.
+enum Stop {
+    /// A step was not found.
+    Failed(Failure),
+    /// Something has gone too far away.
+    Gone(Breakdown),
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+impl From<FactorError> for Stop {
+    fn from(error: FactorError) -> Self {
+        Self::Failed(error.into())
+    }
+}

@@ -1,0 +1,105 @@
+//! One step: where it ends, with contact settled.
+
+use voxsoft_solid::Observer;
+use voxsoft_solid::State;
+use voxsoft_solid::breakdown::Breakdown;
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
+
+use super::energy::Now;
+use super::{Run, Stop};
+use crate::equilibrium::Failure;
+use crate::implicit::scheme::Start;
+use crate::path::ROUNDS;
+use crate::point::Point;
+use crate::settings::Settings;
+
+/// What a step may leave of the forces that act in it.
+const STEP_TOLERANCE: f64 = 1e-7;
+/// The part of the momentum that a force may change in a step and does not matter.
+const NEGLIGIBLE_CHANGE: f64 = 1e-3;
+
+impl Run<'_> {
+    /// The state at the end of a step.
+    pub(super) fn find(
+        &mut self,
+        step: f64,
+        before: Option<&State>,
+        observer: &mut Observer<'_>,
+    ) -> Result<(State, Now), Stop> {
+        let start = Start::new(&self.state, before, step);
+        let braked = start.rate + self.damping_rate;
+        let coast = |(x, v): (&Vec3, &Vec3)| add(*x, scale(1.0 / braked, *v));
+        let free = start.positions.iter().zip(&start.velocities).map(coast);
+        self.inertia.set(start.rate * braked, free.collect());
+        self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
+        let time = self.state.time + step;
+        let mut positions = self.predicted(step, before);
+        self.settle(&mut positions, Point::at(time), observer)?;
+        let pairs = positions.iter().zip(&start.positions);
+        let velocities = pairs.map(|(x, from)| scale(start.rate, sub(*x, *from)));
+        let next = State {
+            velocities: velocities.collect(),
+            positions,
+            time,
+        };
+        let place = Breakdown::find(self.problem, &next.positions, self.travel_limit, time);
+        if let Some(place) = place {
+            return Err(Stop::Gone(place));
+        }
+        let mut found = self.look_at(&next);
+        let inertia = |(v, old): (&Vec3, &Vec3)| {
+            add(
+                scale(start.rate, sub(*v, *old)),
+                scale(self.damping_rate, *v),
+            )
+        };
+        let accelerations = next.velocities.iter().zip(&start.velocities).map(inertia);
+        found.take_reactions(self.problem, accelerations);
+        Ok((next, found))
+    }
+
+    /// The norm of the momenta of all vertices, kg m/s.
+    fn momentum(&self) -> f64 {
+        let masses = self.problem.body().masses();
+        let pairs = self.state.velocities.iter().zip(masses);
+        pairs.map(|(v, m)| m * m * dot(*v, *v)).sum::<f64>().sqrt()
+    }
+
+    /// Where the search begins: motion goes on as it did.
+    fn predicted(&self, step: f64, before: Option<&State>) -> Vec<Vec3> {
+        let mut positions = self.state.positions.clone();
+        for (x, v) in positions.iter_mut().zip(&self.state.velocities) {
+            axpy(x, step, *v);
+        }
+        if let Some(before) = before {
+            let ratio = 0.5 * step * step / (self.state.time - before.time);
+            let velocities = self.state.velocities.iter().zip(&before.velocities);
+            for (x, (v, old)) in positions.iter_mut().zip(velocities) {
+                axpy(x, ratio, sub(*v, *old));
+            }
+        }
+        positions
+    }
+
+    /// The equilibrium of a step, with contact settled.
+    fn settle(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        observer: &mut Observer<'_>,
+    ) -> Result<(), Stop> {
+        let settings = Settings {
+            tolerance: STEP_TOLERANCE,
+            ..Settings::default()
+        };
+        for _ in 0..ROUNDS {
+            self.equilibrium
+                .newton(positions, point, &settings, true, observer)?;
+            let floor_changed = self.equilibrium.update_floor(positions, point)?;
+            if !floor_changed && self.equilibrium.is_contact_settled(positions) {
+                return Ok(());
+            }
+        }
+        Err(Stop::Failed(Failure::Lost))
+    }
+}

@@ -1,0 +1,283 @@
+//! Motion over time with contact: closed forms, and what must be kept.
+
+mod common;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use common::touching::{NONE, YOUNG, add_box, add_rigid, corners_of, join, touching};
+use common::{block, rubber, vertices_where};
+use voxsoft_contact::touch::Surface;
+use voxsoft_contact::touch::rigid::Frame;
+use voxsoft_solid::matrix::IDENTITY;
+use voxsoft_solid::vector::{Vec3, add, cross, norm, scale, sub};
+use voxsoft_solid::{
+    Body, Clamp, Damping, Load, Mesh, Problem, Solution, Springs, State, Status, elastic,
+};
+use voxsoft_statics::Transient;
+
+const GRAVITY: f64 = 9.81;
+
+fn undamped(step: f64, end_time: f64) -> Transient {
+    Transient {
+        step,
+        damping: Damping::Rate(0.0),
+        end_time: Some(end_time),
+        ..Transient::default()
+    }
+}
+
+/// Runs to the end and shows every state on the way.
+fn run(
+    settings: &Transient,
+    problem: &Problem,
+    start: State,
+    mut see: impl FnMut(f64, &[Vec3], &[Vec3]),
+) -> Solution {
+    let mut last = -1.0;
+    let solution = settings.follow(problem, start, &mut |now| {
+        if now.time > last && !now.velocities.is_empty() {
+            last = now.time;
+            see(now.time, now.positions, now.velocities);
+        }
+        ControlFlow::Continue(())
+    });
+    assert_eq!(solution.status, Status::EndTime, "{:?}", solution.breakdown);
+    solution
+}
+
+fn mean(vectors: &[Vec3], masses: &[f64]) -> Vec3 {
+    let total: f64 = masses.iter().sum();
+    let pairs = vectors.iter().zip(masses);
+    pairs.fold([0.0; 3], |sum, (v, m)| add(sum, scale(m / total, *v)))
+}
+
+/// Kinetic energy, and that of the body and its weight, in J.
+fn energy(problem: &Problem, positions: &[Vec3], velocities: &[Vec3]) -> f64 {
+    let state = State {
+        positions: positions.to_vec(),
+        velocities: velocities.to_vec(),
+        time: 0.0,
+    };
+    let body = problem.body();
+    let stored = elastic::energy(body, positions);
+    let touching = problem
+        .contact()
+        .map_or(0.0, |contact| contact.energy(positions));
+    let weight = problem.load_potential(positions, &|_| 1.0);
+    state.kinetic_energy(body.masses()) + stored - touching + weight
+}
+
+/// A block of 12 mm that lies on a rigid plate, with gravity tilted by `tangent` times its normal part.
+fn on_a_slope(tangent: f64, friction: f64) -> Problem {
+    let mut mesh = block([2, 2, 2], 6e-3);
+    let count = mesh.vertices.len() as u32;
+    let plate = add_box(&mut mesh, [-0.02, -0.02, -4e-3], [0.1, 0.04, 0.0]);
+    let angle = f64::atan(tangent);
+    let pull = [GRAVITY * angle.sin(), 0.0, -GRAVITY * angle.cos()];
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
+    let table = vec![vec![NONE, friction], vec![friction, NONE]];
+    let hold = Clamp::fixed((count..count + 4).collect());
+    touching(
+        &mesh,
+        vec![hold],
+        vec![Load::gravity(pull)],
+        surfaces,
+        table,
+        6e-3,
+    )
+    .0
+}
+
+#[test]
+fn a_block_slides_down_a_slope_as_coulomb_says() {
+    let friction = 0.5;
+    for tangent in [0.7, 1.0] {
+        let problem = on_a_slope(tangent, friction);
+        let masses = problem.body().masses();
+        let mut velocities = vec![];
+        run(
+            &undamped(5e-3, 0.15),
+            &problem,
+            State::at_rest(problem.body()),
+            |t, _, v| {
+                velocities.push((t, mean(v, masses)[0]));
+            },
+        );
+        let angle = f64::atan(tangent);
+        let expected = GRAVITY * (angle.sin() - friction * angle.cos());
+        let &(late, fast) = velocities.last().unwrap();
+        let &(early, slow) = velocities.iter().find(|(t, _)| *t >= 0.05).unwrap();
+        let found = (fast - slow) / (late - early);
+        // The block still shakes from its start by what a fall through its own sag of 10 µm brings, 15 mm/s, of which a
+        // few percent are left after 50 ms.
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    }
+}
+
+#[test]
+fn a_block_stays_where_friction_is_enough() {
+    let problem = on_a_slope(0.45, 0.5);
+    let settings = Transient {
+        damping: Damping::Critical,
+        ..undamped(10e-3, 1.0)
+    };
+    let masses = problem.body().masses();
+    let mut places = vec![];
+    run(
+        &settings,
+        &problem,
+        State::at_rest(problem.body()),
+        |t, x, _| {
+            places.push((t, mean(x, masses)[0]));
+        },
+    );
+    let &(_, end) = places.last().unwrap();
+    let &(_, before) = places.iter().find(|(t, _)| *t >= 0.5).unwrap();
+    // Nothing but what is left of the shaking moves in half a second.
+    assert!((end - before).abs() < 1e-10, "{:e}", end - before);
+}
+
+#[test]
+fn a_rubber_cube_that_bounces_gains_no_energy() {
+    let mut mesh = block([2, 2, 2], 6e-3);
+    let count = mesh.vertices.len() as u32;
+    let height = 10e-3;
+    let plate = add_box(
+        &mut mesh,
+        [-0.02, -0.02, -height - 4e-3],
+        [0.04, 0.04, -height],
+    );
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
+    let table = vec![vec![NONE, 0.3], vec![0.3, NONE]];
+    let hold = Clamp::fixed((count..count + 4).collect());
+    let loads = vec![Load::gravity([0.0, 0.0, -GRAVITY])];
+    let (problem, _) = touching(&mesh, vec![hold], loads, surfaces, table, 6e-3);
+    let fall = problem.body().total_mass() * GRAVITY * height;
+    for step in [1e-3, 5e-3] {
+        let (mut lowest, mut grown) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut heights = vec![];
+        let masses = problem.body().masses();
+        run(
+            &undamped(step, 0.2),
+            &problem,
+            State::at_rest(problem.body()),
+            |_, x, v| {
+                let now = energy(&problem, x, v);
+                grown = f64::max(grown, now - lowest);
+                lowest = f64::min(lowest, now);
+                heights.push(mean(x, masses)[2]);
+            },
+        );
+        // What a step may gain is a hundredth of what it turns over, which the check of every step allows.
+        assert!(grown < 1e-2 * fall, "{step}: {:e}", grown / fall);
+        let deepest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        assert!(
+            deepest < 6e-3 - height + 0.3e-3,
+            "it met the plate: {deepest}"
+        );
+    }
+}
+
+#[test]
+fn two_blocks_that_meet_keep_their_momentum() {
+    let mut mesh = block([2, 2, 2], 6e-3);
+    let second = join(&mut mesh, block([3, 3, 3], 4e-3), [14e-3, 1e-3, 2e-3]);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let (one, other): (Vec<_>, Vec<_>) = body.voxels().iter().partition(|v| v[0] < second);
+    let surfaces = vec![Surface::of_voxels(&one, 2), Surface::of_voxels(&other, 2)];
+    let table = vec![vec![NONE, 0.4], vec![0.4, NONE]];
+    let (problem, touch) = touching(&mesh, vec![], vec![], surfaces, table, 4e-3);
+    let mut start = State::at_rest(problem.body());
+    for velocity in &mut start.velocities[..second as usize] {
+        *velocity = [0.5, 0.0, 0.1];
+    }
+    let masses = problem.body().masses();
+    let before = mean(&start.velocities, masses);
+    let (mut met, mut first) = (false, energy(&problem, &start.positions, &start.velocities));
+    let solution = run(&undamped(1e-3, 0.02), &problem, start, |_, x, v| {
+        let off = norm(sub(mean(v, masses), before));
+        assert!(off < 1e-6 * norm(before), "{off:e}");
+        met |= !touch.pairs(x).is_empty();
+        let now = energy(&problem, x, v);
+        assert!(now < first * (1.0 + 1e-2), "{now:e} {first:e}");
+        first = f64::min(now, first);
+    });
+    assert!(met);
+    let mean_of = |range: std::ops::Range<usize>| {
+        mean(&solution.state.velocities[range.clone()], &masses[range])[0]
+    };
+    let last = masses.len();
+    assert!(mean_of(second as usize..last) > mean_of(0..second as usize));
+}
+
+/// A rigid box without a body that could touch it, and its frame.
+fn lonely_box(size: Vec3) -> (Problem, Frame, State) {
+    let mut mesh = block([1, 1, 1], 4e-3);
+    let count = mesh.vertices.len() as u32;
+    let (low, high) = ([0.1; 3], add([0.1; 3], size));
+    let radii = size.map(|side| side / f64::sqrt(12.0));
+    let frame = Frame::of_mass(scale(0.5, add(low, high)), IDENTITY, radii).unwrap();
+    let corners = corners_of(low, high);
+    let surface = add_rigid(&mut mesh, &corners, &frame);
+    mesh.point_masses = (count..count + 4)
+        .map(|vertex| (vertex, 0.05 / 4.0))
+        .collect();
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let surfaces = vec![Surface::of_voxels(body.voxels(), 1), surface];
+    let table = vec![vec![NONE, 0.0], vec![0.0, NONE]];
+    let hold = Clamp::fixed((0..count).collect());
+    let (problem, _) = touching(&mesh, vec![hold], vec![], surfaces, table, 4e-3);
+    let springs = frame.springs(count, frame.stiffness(&corners, YOUNG, 4e-3));
+    let problem = problem
+        .with_term(Arc::new(Springs(springs.to_vec())))
+        .unwrap();
+    let start = State::at_rest(problem.body());
+    (problem, frame, start)
+}
+
+#[test]
+fn a_rigid_box_turns_about_its_longest_axis_for_good() {
+    let (problem, frame, mut start) = lonely_box([40e-3, 20e-3, 10e-3]);
+    let count = start.positions.len() - 4;
+    let spin = [10.0, 0.0, 0.0];
+    let at = |state: &State| -> [Vec3; 4] { std::array::from_fn(|i| state.positions[count + i]) };
+    let (middle, _) = frame.pose(&at(&start));
+    for vertex in count..count + 4 {
+        start.velocities[vertex] = cross(spin, sub(start.positions[vertex], middle));
+    }
+    let time = 0.1;
+    let solution = run(&undamped(2e-3, time), &problem, start, |_, _, _| {});
+    let (end, rotation) = frame.pose(&at(&solution.state));
+    assert!(norm(sub(end, middle)) < 1e-9);
+    // Second order in the angle of a step: (ω h)²/2 of the rate, and as much for the first step alone.
+    let angle = f64::atan2(rotation[2][1], rotation[1][1]);
+    assert!((angle / (10.0 * time) - 1.0).abs() < 5e-3, "{angle}");
+}
+
+#[test]
+fn a_vibration_converges_with_the_square_of_the_step() {
+    let mesh: Mesh = block([4, 1, 1], 5e-3);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
+    let tip = vertices_where(&mesh, |x| x[0] > 20e-3 - 1e-9)[0] as usize;
+    let history = voxsoft_solid::History::new(vec![0.0, 0.1], vec![0.0, 1.0]).unwrap();
+    let load = Load {
+        history,
+        ..Load::gravity([0.0, 0.0, -GRAVITY])
+    };
+    let problem = Problem::new(body, vec![Clamp::fixed(wall)], vec![load], None).unwrap();
+    let tip_at = |step: f64| {
+        let start = State::at_rest(problem.body());
+        run(&undamped(step, 0.1), &problem, start, |_, _, _| {})
+            .state
+            .positions[tip][2]
+    };
+    let finest = tip_at(0.25e-3);
+    let errors = [2e-3, 1e-3].map(|step| (tip_at(step) - finest).abs());
+    // Four for an exact reference; that of a step four times shorter has a 16th of the error itself.
+    let ratio = errors[0] / errors[1];
+    assert!((3.0..6.0).contains(&ratio), "{ratio} of {errors:?}");
+}

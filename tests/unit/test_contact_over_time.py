@@ -1,0 +1,212 @@
+"""Contact over time: objects that fall, are pinched, slip, and what is refused."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.design import Contact, Floor, History, Object, Solver
+from voxsoft.errors import DesignError, SimulationError
+from voxsoft.simulation import simulate
+from voxsoft.units import kPa, mm
+
+GRAVITY = 9.81
+RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45, density=1000)
+BALL = vs.Sphere(radius=6 * mm, center=(10 * mm, 10 * mm, 20 * mm))
+
+
+def dropped(**changes):
+    """A heavy ball above a soft pad."""
+    whole = {
+        "name": "dropped",
+        "voxel_size": 4 * mm,
+        "parts": [vs.Part(shape=vs.Box(size=(20 * mm, 20 * mm, 8 * mm)), material=RUBBER)],
+        "clamps": [vs.Clamp(region=vs.Region(z=(0, 0)))],
+        "loads": [vs.Gravity()],
+        "objects": [Object(name="ball", shape=BALL, motion="free", mass="10 g", voxel_size=3 * mm)],
+        "contact": Contact(friction=0.5),
+        "probes": {"top": vs.Probe(z=(8 * mm, 8 * mm))},
+    }
+    return vs.Design(**(whole | changes))
+
+
+@pytest.fixture(scope="module")
+def landed():
+    return simulate(dropped(), end_time=0.3, time_step=0.01)
+
+
+def test_a_ball_falls_freely_until_it_meets_the_pad(landed):
+    times = landed.recording.times
+    heights = landed.recording.objects["ball"][0][:, 2]
+    falling = times <= 0.025
+    # Backward Euler takes the first step, which falls by h²/2 g too far.
+    expected = heights[0] - GRAVITY * times**2 / 2.0
+    assert falling.sum() >= 2
+    assert heights[falling] == pytest.approx(expected[falling], abs=GRAVITY * 0.01**2)
+    contacts = landed.recording.contacts
+    assert all(not contacts[index] for index in np.flatnonzero(falling))
+
+
+def test_the_pad_carries_the_weight_of_the_ball_in_the_end(landed):
+    assert landed.status == "ok"
+    (contact,) = landed.contacts
+    assert contact.of == ("body", "ball")
+    # It still swings a little.
+    assert contact.force[2] == pytest.approx(-0.01 * GRAVITY, rel=0.02)
+    assert contact.gap > 0.0
+    position = landed.objects["ball"].position
+    assert position[:2] == pytest.approx((10 * mm, 10 * mm), abs=0.01 * mm)
+    assert landed.recording.objects["ball"][1].shape == (len(landed.recording.times), 3, 3)
+
+
+def test_a_run_to_rest_ends_where_statics_would():
+    rest = simulate(dropped(), method="dynamics", time_step=0.01)
+    assert rest.status == "ok"
+    assert rest.solver["method"] == "implicit"
+    (contact,) = rest.contacts
+    assert contact.force[2] == pytest.approx(-0.01 * GRAVITY, rel=1e-3)
+    assert rest.residual < 1e-4
+
+
+def test_free_objects_ask_for_motion_over_time():
+    assert simulate(dropped(solver=Solver(time_step="20 ms"))).solver["method"] == "implicit"
+
+
+def pinched(friction, **changes):
+    """A capsule between two pads that close, and its weight, which comes after."""
+    pad = [vs.Box(size=(4 * mm, 8 * mm, 8 * mm), center=(x, 0, 0)) for x in (-6 * mm, 6 * mm)]
+    close = History(time=[0.0, 0.05], factor=[0.0, 1.0])
+    firm = vs.NeoHookean(young=1000 * kPa, poisson=0.45, density=1000)
+    capsule = vs.Capsule(start=(0, -2 * mm, 0), end=(0, 2 * mm, 0), radius=3.9 * mm)
+    whole = {
+        "name": "pinched",
+        "voxel_size": 2 * mm,
+        "parts": [vs.Part(shape=pad[0] | pad[1], material=firm)],
+        "clamps": [
+            vs.Clamp(
+                region=vs.Region(x=(8 * mm * side, 8 * mm * side)),
+                motion=vs.Motion(displacement=(-0.5 * mm * side, 0, 0), history=close),
+            )
+            for side in (-1, 1)
+        ],
+        "loads": [vs.Gravity(history=History(time=[0.05, 0.1], factor=[0.0, 1.0]))],
+        "objects": [
+            Object(name="capsule", shape=capsule, motion="free", mass="45 g", voxel_size=2 * mm)
+        ],
+        "contact": Contact(friction=friction),
+    }
+    return vs.Design(**(whole | changes))
+
+
+@pytest.mark.parametrize("step", [5e-3, 20e-3])
+def test_what_is_pinched_does_not_creep(step):
+    result = simulate(pinched(0.7), end_time=0.6, time_step=step)
+    times, heights = result.recording.times, result.recording.objects["capsule"][0][:, 2]
+    assert result.status == "ok"
+    (contact,) = result.contacts
+    assert contact.force[2] == pytest.approx(-0.045 * GRAVITY, rel=1e-3)
+    later = heights[times >= 0.4]
+    # A tenth of a micrometer a minute, of which this is a third of a hundredth.
+    assert np.ptp(later) < 0.1e-6 / 300.0
+
+
+def test_what_is_pinched_slips_at_its_bound():
+    # Faces wider than the pads: as it slides nothing changes but the friction.
+    block = Object(
+        name="block",
+        shape=vs.Box(size=(8 * mm, 16 * mm, 40 * mm), center=(0, 0, 0)),
+        motion="free",
+        mass="45 g",
+        voxel_size=4 * mm,
+    )
+    weight = 0.045 * GRAVITY
+    friction = 0.05
+    for _ in range(2):  # the pads press by a little more or less, as they may bulge
+        slipping = simulate(pinched(friction, objects=[block]), end_time=0.05, time_step=5e-3)
+        (contact,) = slipping.contacts
+        friction = weight / contact.pressed
+    held = simulate(pinched(1.04 * friction, objects=[block]), end_time=0.3, time_step=5e-3)
+    slid = simulate(pinched(0.96 * friction, objects=[block]), end_time=0.3, time_step=5e-3)
+    heights, fallen = (run.recording.objects["block"][0][:, 2] for run in (held, slid))
+    # Nothing damps what is left of its start, a swing of a ten-thousandth of a micrometer.
+    assert np.ptp(heights[-5:]) < 1e-8
+    contact = {contact.of: contact for contact in slid.contacts}[("body", "block")]
+    # What slips is held by the coefficient times the pressure; bounds are right to 0.3 %.
+    pressure = np.sqrt(contact.pressed**2 - contact.force[2] ** 2)
+    assert -contact.force[2] == pytest.approx(0.96 * friction * pressure, rel=5e-3)
+    steady = slid.recording.times >= 0.15
+    fit = np.polyfit(slid.recording.times[steady], fallen[steady], 2)
+    expected = -contact.force[2] / 0.045 - GRAVITY
+    assert 2.0 * fit[0] == pytest.approx(expected, abs=5e-3 * GRAVITY)
+    assert fallen[-1] < -1 * mm
+
+
+def test_the_floor_is_one_of_the_objects():
+    block = dropped(
+        clamps=[],
+        objects=[],
+        floor=Floor(z=-1 * mm),
+        solver=Solver(method="dynamics", time_step="10 ms", damping="critical"),
+    )
+    result = simulate(block)
+    (contact,) = result.contacts
+    assert contact.of == ("body", "floor")
+    assert contact.force[2] == pytest.approx(result.mass * GRAVITY, rel=1e-3)
+    assert result.probes["top"][2] == pytest.approx(-1 * mm, abs=0.05 * mm)
+
+
+def test_the_mass_of_an_object_is_that_of_its_density():
+    by_density = Object(name="ball", shape=BALL, motion="free", density=2000, voxel_size=2 * mm)
+    result = simulate(dropped(objects=[by_density]), method="dynamics", time_step=0.01)
+    volume = 4.0 / 3.0 * np.pi * (6 * mm) ** 3
+    (contact,) = result.contacts
+    # The traced sphere is inscribed: 2 % at three voxels in its radius.
+    assert contact.force[2] == pytest.approx(-2000 * volume * GRAVITY, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"motion": "free"}, "mass: an object that moves freely needs a mass"),
+        ({"mass": "1 g"}, "mass: is that of an object that moves freely"),
+        ({"motion": "free", "mass": "1 g", "density": 1000}, "mass: is given twice"),
+        ({"motion": "free", "mass": "0 g"}, "mass"),
+        ({"motion": "free", "mass": "1 g", "name": "floor"}, 'the name "floor" is taken'),
+    ],
+)
+def test_what_cannot_be_is_refused_with_its_place(changes, message):
+    with pytest.raises(DesignError, match=message):
+        dropped(objects=[{"name": "ball", "shape": BALL} | changes])
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"method": "statics"}, r'objects\[0\]\.motion: is "free"'),
+        ({"method": "dynamics", "substeps": 4}, "substeps: is a setting of explicit dynamics"),
+        ({"method": "xpbd", "end_time": 1}, "means dynamics to an end time by xpbd"),
+        ({"method": "dynamics", "retardation": 1e-3}, "retardation: is a setting of explicit"),
+    ],
+)
+def test_settings_that_know_no_free_objects_are_refused(settings, message):
+    with pytest.raises(SimulationError, match=message):
+        simulate(dropped(solver=Solver(**settings)))
+
+
+def test_materials_that_relax_are_refused():
+    relaxing = RUBBER.replace(prony=[{"g": 0.2, "tau": 0.1}])
+    part = vs.Part(shape=vs.Box(size=(20 * mm, 20 * mm, 8 * mm)), material=relaxing)
+    with pytest.raises(SimulationError, match=r"parts\[0\]\.material: relaxes"):
+        simulate(dropped(parts=[part]))
+
+
+def test_two_objects_touch_where_one_of_them_is_free():
+    table = Object(
+        name="table",
+        shape=vs.Box(size=(20 * mm, 20 * mm, 4 * mm), center=(10 * mm, 10 * mm, 30 * mm)),
+    )
+    ball = vs.Sphere(radius=6 * mm, center=(10 * mm, 10 * mm, 40 * mm))
+    both = [table, Object(name="ball", shape=ball, motion="free", mass="10 g", voxel_size=3 * mm)]
+    result = simulate(dropped(objects=both), method="dynamics", time_step=0.01)
+    found = {contact.of: contact for contact in result.contacts}
+    assert found[("table", "ball")].force[2] == pytest.approx(-0.01 * GRAVITY, rel=1e-3)
+    assert ("body", "ball") not in found
