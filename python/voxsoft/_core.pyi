@@ -326,6 +326,19 @@ class ObjectPose:
     def rotation(self) -> list[list[float]]: ...
 
 @final
+class ContactField:
+    """What touches the vertices of the body; forces are on it, per area of the surface now."""
+
+    @property
+    def pressure(self) -> NDArray[np.float64]: ...
+    @property
+    def friction(self) -> NDArray[np.float64]: ...
+    @property
+    def gap(self) -> NDArray[np.float64]: ...
+    @property
+    def area(self) -> NDArray[np.float64]: ...
+
+@final
 class Answer:
     """The last good state, how it was reached and what was recorded on the way."""
 
@@ -373,6 +386,8 @@ class Answer:
     def contacts(self) -> list[Contact]: ...
     @property
     def objects(self) -> list[ObjectPose]: ...
+    @property
+    def contact_field(self) -> ContactField | None: ...
 
 @final
 class Settlement:

@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
+use crate::contact_field::PyContactField;
 use crate::touch::{PyContact, PyObjectPose};
 
 /// How a solution ended.
@@ -72,6 +73,8 @@ pub struct PyAnswer {
     pub contacts: Vec<Py<PyContact>>,
     /// Where the objects are.
     pub objects: Vec<Py<PyObjectPose>>,
+    /// Contact over the vertices of the body; none where the problem has none.
+    pub contact_field: Option<Py<PyContactField>>,
 }
 
 /// How statics followed the loads.

@@ -565,6 +565,10 @@ impl PyProblem {
             ),
             None => (Vec::new(), Vec::new()),
         };
+        let touching = self.touching.as_ref();
+        let contact_field = touching
+            .map(|touching| touching.field(py, positions))
+            .transpose()?;
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let sensors = watch.sensors.len();
@@ -595,6 +599,7 @@ impl PyProblem {
             path: None,
             contacts,
             objects,
+            contact_field,
         })
     }
 }

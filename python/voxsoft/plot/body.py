@@ -34,6 +34,7 @@ _FIELDS: Final[Mapping[str, tuple[str, str]]] = {
     "von_mises": ("von Mises stress", "pressure"),
     "max_stretch": ("largest stretch", "number"),
     "energy_density": ("energy density", "pressure"),
+    "contact_pressure": ("contact pressure", "pressure"),
 }
 
 #: Pixels of the longer side of the picture; it is computed twice as fine and averaged.
@@ -65,10 +66,10 @@ def plot_body(
         A result, which is drawn deformed, or a mesh.
     field
         What the color says: ``"displacement"`` (its magnitude; the default for a result),
-        ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, ``"part"``,
-        ``"plain"`` (the default for a mesh), or one number for each vertex, (n,). Where a few
-        values lie far beyond all others, colors end where 99 % of the area do, and the picture
-        says where the farthest is.
+        ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, with contact also
+        ``"contact_pressure"``, ``"part"``, ``"plain"`` (the default for a mesh), or one number for
+        each vertex, (n,). Where a few values lie far beyond all others, colors end where 99 % of
+        the area do, and the picture says where the farthest is.
     label
         What the color bar says of such numbers.
     section
@@ -235,6 +236,11 @@ def _values(
         words, kind = of_result[field]
         if field == "displacement":
             numbers: Floats = np.linalg.norm(body.displacements, axis=1)
+        elif field == "contact_pressure":
+            if body.contact_field is None:
+                what = "is that of a design with contact, and nothing touches in this one"
+                raise MeshError("field", what, "add [[objects]] or [contact]")
+            numbers = body.contact_field.pressure
         else:
             numbers = getattr(body.fields.at_vertices, field)
         scale = scale_for(numbers, kind)

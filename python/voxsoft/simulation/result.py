@@ -20,6 +20,7 @@ from voxsoft.geometry import mean_displacement
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Place, Target, metric_named
 from voxsoft.metrics.contact import object_problems
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads import readings
@@ -102,6 +103,8 @@ class Result(Shown):
         What touches what, with how much force; pairs that are apart are left out.
     objects
         Where the rigid objects are, by name.
+    contact_field
+        Pressure, friction and gap at each vertex; None for a design without contact.
     """
 
     design: Design
@@ -130,6 +133,7 @@ class Result(Shown):
     stable: bool | None = None
     contacts: tuple[ContactState, ...] = ()
     objects: Mapping[str, Pose] = field(default_factory=dict)
+    contact_field: ContactField | None = field(default=None, repr=False)
 
     @property
     def history(self) -> NoReturn:

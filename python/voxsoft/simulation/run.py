@@ -13,6 +13,7 @@ from voxsoft._core import Status as Ended
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
@@ -208,6 +209,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         stable=None if path is None else path.stable,
         contacts=() if touching is None else touching.contacts(answer),
         objects={} if touching is None else touching.poses(answer),
+        contact_field=ContactField.of(answer.contact_field),
     )
 
 
