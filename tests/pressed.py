@@ -15,7 +15,9 @@ PLATE = Object(
 )
 #: Beside the block; nothing touches it.
 POST = Object(
-    name="post", shape=vs.Box(size=(4 * mm, 4 * mm, 4 * mm), center=(-7 * mm, 6 * mm, 6 * mm))
+    name="post",
+    shape=vs.Box(size=(4 * mm, 4 * mm, 4 * mm), center=(-7 * mm, 6 * mm, 6 * mm)),
+    voxel_size=1 * mm,
 )
 
 
