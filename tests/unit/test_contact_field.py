@@ -1,5 +1,7 @@
 """Contact over the surface: its pressure, its sums, and where it goes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from pressed import BLOCK, PLATE, SIDE, pressed, slit
@@ -13,6 +15,7 @@ from voxsoft.files import save, write_run
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.plot import plot_body
 from voxsoft.simulation import simulate
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.units import kPa, mm
 
 
@@ -91,5 +94,15 @@ def test_the_command_line_tells_and_draws_it(dragged, tmp_path):
     assert ran.exit_code == 0, ran.stderr
     assert "body touches plate with" in ran.stderr + ran.stdout
     assert (tmp_path / "run" / "contact.png").stat().st_size > 10_000
-    figure = plot_body(dragged, "contact_pressure")
-    assert figure.axes[1].get_ylabel().startswith("contact pressure (kPa)")
+
+
+def test_colors_of_a_picture_go_up_to_the_largest_pressure_of_a_small_place():
+    """Most of a body is pressed by nothing; 99 % of its area end far below that."""
+    fine = simulate(pressed(voxel_size=1 * mm, objects=[], loads=[vs.Gravity()]))
+    count = len(fine.mesh.vertices)
+    one, none = np.zeros(count), np.full(count, np.inf)
+    one[np.flatnonzero(top_of(fine))[84]] = 10 * kPa
+    field = ContactField(one, np.zeros((count, 3)), none, np.zeros(count))
+    bar = plot_body(replace(fine, contact_field=field), "contact_pressure").axes[1]
+    assert bar.get_ylabel() == "contact pressure (kPa)"
+    assert bar.get_ylim()[1] == pytest.approx(10.0)
