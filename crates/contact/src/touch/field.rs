@@ -126,3 +126,69 @@ impl Touch {
         toward.iter().zip(&whole).map(either).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touch::{Carried, Description, Surface};
+    use voxsoft_solid::Contact;
+
+    const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+    /// A cube of 1 m on another one that is an object, a thousandth apart, and then as deep in it.
+    fn stacked() -> (Touch, Vec<Vec3>) {
+        let corner = |c: u32| {
+            let at = |shift: u32| f64::from(c >> shift & 1);
+            [at(2), at(1), at(0)]
+        };
+        let mut rest: Vec<Vec3> = CUBE.iter().map(|c| corner(*c)).collect();
+        rest.extend(CUBE.iter().map(|c| {
+            let [x, y, z] = corner(*c);
+            [x, y, z - 1.001]
+        }));
+        let first = Surface::of_voxels(&[CUBE], 2);
+        let moved = |point: &Carried| Carried {
+            vertices: point.vertices.iter().map(|v| v + 8).collect(),
+            weights: point.weights.clone(),
+        };
+        let second = Surface {
+            points: first.points.iter().map(moved).collect(),
+            triangles: first.triangles.clone(),
+        };
+        let description = Description {
+            surfaces: vec![first, second],
+            friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
+            voxel: 1.0,
+            young: 2.0,
+        };
+        let touch = Touch::new(description, &rest).unwrap();
+        for x in &mut rest[8..] {
+            x[2] += 0.002;
+        }
+        touch.follow(&rest);
+        (touch, rest)
+    }
+
+    #[test]
+    fn an_even_pressure_is_even_and_sums_to_the_force() {
+        let (touch, positions) = stacked();
+        let field = touch.field(&positions, 8);
+        let pairs = touch.pairs(&positions);
+        let force = pairs[0].force[2];
+        assert!(force > 0.0, "{pairs:?}");
+        for c in 0..8 {
+            // Corners with an even number are at the bottom.
+            let (pressure, gap) = (field.pressure[c], field.gap[c]);
+            if c % 2 == 0 {
+                assert!(
+                    (pressure - force).abs() < 1e-9 * force,
+                    "{pressure} {force}"
+                );
+                assert!((gap + 0.001).abs() < 1e-12, "{gap}");
+                assert!((field.area[c] - 0.25).abs() < 1e-12);
+            } else {
+                assert_eq!((pressure, gap), (0.0, f64::INFINITY));
+            }
+        }
+    }
+}
