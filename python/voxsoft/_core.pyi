@@ -344,6 +344,19 @@ class TouchHistory:
     def objects(self) -> list[list[ObjectPose]]: ...
 
 @final
+class ContactField:
+    """What touches the vertices of the body; forces are on it, per area of the surface now."""
+
+    @property
+    def pressure(self) -> NDArray[np.float64]: ...
+    @property
+    def friction(self) -> NDArray[np.float64]: ...
+    @property
+    def gap(self) -> NDArray[np.float64]: ...
+    @property
+    def area(self) -> NDArray[np.float64]: ...
+
+@final
 class Answer:
     """The last good state, how it was reached and what was recorded on the way."""
 
@@ -393,6 +406,8 @@ class Answer:
     def objects(self) -> list[ObjectPose]: ...
     @property
     def history(self) -> TouchHistory | None: ...
+    @property
+    def contact_field(self) -> ContactField | None: ...
 
 @final
 class Settlement:

@@ -492,6 +492,7 @@ export interface Metric {
   needs_probe: boolean;
   needs_cavity: boolean;
   takes_percentile: boolean;
+  needs_object: boolean;
 }
 
 /** A quantity that colors the body; `signed` ones have zero in the middle of their range. */

@@ -41,6 +41,7 @@ def world(names=NAMES, **entries):
         "shapes": {name: Sphere(radius=0.01) for name in names},
         "materials": {name: Lattice(edge="20 kPa", bulk="1 kPa") for name in names},
         "probes": {name: {"point": (0, 0, 0)} for name in names},
+        "objects": [{"name": name, "shape": "plain"} for name in names],
         "chambers": {name: {"point": (0, 0, 0)} for name in names},
         "parts": [{"shape": "plain", "material": "plain"}],
         "objectives": {"least": {"minimize": "mass"}},

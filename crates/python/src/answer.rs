@@ -4,6 +4,7 @@ use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
+use crate::contact_field::PyContactField;
 use crate::touch::{PyContact, PyObjectPose, PyTouchHistory};
 
 /// How a solution ended.
@@ -74,6 +75,8 @@ pub struct PyAnswer {
     pub objects: Vec<Py<PyObjectPose>>,
     /// What touched what, and where the objects were, at the times of the records.
     pub history: Option<Py<PyTouchHistory>>,
+    /// Contact over the vertices of the body; none where the problem has none.
+    pub contact_field: Option<Py<PyContactField>>,
 }
 
 /// How statics followed the loads.

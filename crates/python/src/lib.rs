@@ -3,6 +3,7 @@ use pyo3::prelude::*;
 
 mod answer;
 mod contact;
+mod contact_field;
 mod display;
 mod ensemble;
 mod equilibrium;
@@ -33,6 +34,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<materials::PyMaterial>()?;
     module.add_class::<materials::PyFiber>()?;
     module.add_class::<touch::PyContact>()?;
+    module.add_class::<contact_field::PyContactField>()?;
     module.add_class::<touch::PyObjectPose>()?;
     module.add_class::<touch::PyTouchHistory>()?;
     module.add_class::<simulate::PyProblem>()?;

@@ -599,6 +599,10 @@ impl PyProblem {
             ),
             None => (Vec::new(), Vec::new()),
         };
+        let touching = self.touching.as_ref();
+        let contact_field = touching
+            .map(|touching| touching.field(py, positions))
+            .transpose()?;
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let sensors = watch.sensors.len();
@@ -630,6 +634,7 @@ impl PyProblem {
             contacts,
             objects,
             history: None,
+            contact_field,
         })
     }
 }

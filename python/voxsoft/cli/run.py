@@ -28,7 +28,11 @@ def run(
     ] = None,
     solver: Annotated[str | None, typer.Option("--solver", help=_METHODS)] = None,
     figure: Annotated[
-        bool, typer.Option("--figure", help="Also draw the deformed body, as body.png.")
+        bool,
+        typer.Option(
+            "--figure",
+            help="Also draw the deformed body, as body.png, and what touches it, as contact.png.",
+        ),
     ] = False,
     json: Json = False,
 ) -> None:
@@ -83,6 +87,8 @@ def _show(result: Result, folder: Path) -> None:
     metrics |= {name: constraint.metric for name, constraint in design.constraints.items()}
     for name, metric in metrics.items():
         say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}")
+    for contact in result.contacts:
+        say(plain(contact.sentence))
     say(_stress_line(result))
     say(_stretch_line(result))
     for found in result.warnings:

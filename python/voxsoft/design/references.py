@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
+from voxsoft.design.contact import BODY
 from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import Record, closest, place
@@ -45,6 +46,7 @@ def dangling_references(
             probe = entry_of(target, "probe")
             if isinstance(probe, str) and probe not in probes:
                 yield _unknown((table, key, "probe"), "probe", probe, probes)
+    yield from _objects(document)
 
 
 def entry_of(table: object, key: str) -> Any:  # noqa: ANN401 - a document holds anything
@@ -96,6 +98,16 @@ def _chambers(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
             hint = closest(choice, map(str, known))
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
             yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
+
+
+def _objects(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
+    names = [entry_of(each, "name") for _, each in _list(document, "objects")]
+    known = [BODY, *(name for name in names if isinstance(name, str))]
+    for table in ("objectives", "constraints"):
+        for key, target in _table(document, table).items():
+            name = entry_of(target, "object")
+            if isinstance(name, str) and name not in known:
+                yield _unknown((table, key, "object"), "object", name, known)
 
 
 def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:

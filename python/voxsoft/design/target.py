@@ -41,6 +41,9 @@ class Objective(Record):
     percentile
         Of a metric that takes the largest of all voxels: what so many percent of the volume stay
         at or below, above 0 and at most 100; default: 100.
+    object
+        What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
+        body with itself. Default: the only object there is.
 
     Examples
     --------
@@ -55,6 +58,7 @@ class Objective(Record):
     axis: Axis | None = None
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
+    object: Name | None = None
 
     @model_validator(mode="after")
     def _one_direction(self) -> Objective:
@@ -80,7 +84,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, axis, cavity, percentile
+    probe, axis, cavity, percentile, object
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -98,6 +102,7 @@ class Constraint(Record):
     axis: Axis | None = None
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
+    object: Name | None = None
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None
     kind: str = "number"

@@ -52,6 +52,7 @@ def write_run(
         **(more or {}),
     }
     write_json(folder / "summary.json", summary)
+    contact = result.contact_field
     write_mesh(
         folder / "result.vtu",
         result.mesh,
@@ -60,6 +61,7 @@ def write_run(
             "velocity": result.velocities,
             "reaction": result.reactions,
             **result.fields.point_data(),
+            **({} if contact is None else contact.point_data()),
         },
         cell_data=result.fields.cell_data(result.mesh),
         regions=named_regions(result.design, result.mesh),

@@ -35,6 +35,8 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
         from voxsoft.plot import plot_body
 
         save_figure(plot_body(result), folder / "body.png")
+        if result.contacts:
+            save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
     notify(Progress(100, 100, "percent"))
     sentence = f"{result.message[:1].upper()}{result.message[1:]}."
     return JobOutcome(folder, result, sentence)

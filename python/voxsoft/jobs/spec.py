@@ -59,7 +59,7 @@ class RunSpec(JobSpec):
     solver
         Settings in place of those of the design.
     figure
-        Whether ``body.png`` is drawn too.
+        Whether ``body.png`` is drawn too, and ``contact.png`` where something touches.
     kept
         Whether the folder holds what stood on the studio's screen: such a state no job repeats.
 

@@ -5,7 +5,7 @@
 in ``registry.py``.
 """
 
-from voxsoft.metrics.definition import Metric, Option, Place, SlopeState, State, Target
+from voxsoft.metrics.definition import Metric, Option, Place, SlopeState, State, Target, Touch
 from voxsoft.metrics.own import metric
 from voxsoft.metrics.registry import METRICS, metric_named
 
@@ -17,6 +17,7 @@ __all__ = [
     "SlopeState",
     "State",
     "Target",
+    "Touch",
     "metric",
     "metric_named",
 ]

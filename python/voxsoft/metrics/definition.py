@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, Protocol
 
@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 #: What asks for a metric, with its place and its direction.
 Target = Objective | Constraint
 #: Keys of a target that say where, along what or of which voxels a metric is measured.
-Option = Literal["probe", "axis", "cavity", "percentile"]
+Option = Literal["probe", "axis", "cavity", "percentile", "object"]
 
 #: What a metric lacks that does not take a key.
 _LACKS: Final[Mapping[Option, str]] = {
@@ -26,6 +26,7 @@ _LACKS: Final[Mapping[Option, str]] = {
     "axis": "has no direction",
     "cavity": "is not measured in a cavity",
     "percentile": "is not one number for each voxel",
+    "object": "is not measured between the body and an object",
 }
 
 
@@ -43,6 +44,30 @@ class Depth(Protocol):
     @property
     def depth(self) -> float:
         """In m; 0 where nothing overlaps."""
+
+
+class Touch(Protocol):
+    """What touches what; :class:`~voxsoft.simulation.touching.ContactState` says more."""
+
+    @property
+    def of(self) -> tuple[str, str]:
+        """The body and an object, or the body twice."""
+
+    @property
+    def force(self) -> tuple[float, float, float]:
+        """On the first, N; zero for the body with itself."""
+
+    @property
+    def pressed(self) -> float:
+        """The sum of the sizes of all forces, N."""
+
+    @property
+    def area(self) -> float:
+        """In the unloaded body, m²."""
+
+    @property
+    def slipping(self) -> float:
+        """The part of the pressure under which the surfaces slip, 0 to 1."""
 
 
 class State(Protocol):
@@ -86,6 +111,13 @@ class State(Protocol):
     @property
     def penetration(self) -> Depth:
         """Where the body is in itself or in its floor."""
+
+    @property
+    def contacts(self) -> Sequence[Touch]:
+        """What touches what; pairs that are apart are left out."""
+
+    def gap_to(self, name: str) -> float:
+        """The smallest distance of the body and an object, m."""
 
 
 class SlopeState(State, Protocol):

@@ -8,6 +8,7 @@ from typing import Final
 
 from voxsoft.errors import DesignError
 from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
+from voxsoft.metrics.contact import CONTACT_AREA, CONTACT_FORCE, CONTACT_GAP, STICKING
 from voxsoft.metrics.definition import Metric
 from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
 from voxsoft.metrics.penetration import PENETRATION
@@ -34,6 +35,10 @@ _ALL: Final[dict[str, Metric]] = {
         MAX_STRESS,
         MIN_VOLUME_RATIO,
         PENETRATION,
+        CONTACT_FORCE,
+        CONTACT_AREA,
+        CONTACT_GAP,
+        STICKING,
     )
 }
 

@@ -15,6 +15,7 @@ from voxsoft.plot import shading
 from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.color_range import CLIP, ColorRange, color_range
+from voxsoft.plot.objects import cut, near, objects_of, with_objects
 from voxsoft.plot.quantities import Scale, scale_for
 from voxsoft.plot.raster import Raster, rasterize
 from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
@@ -34,6 +35,7 @@ _FIELDS: Final[Mapping[str, tuple[str, str]]] = {
     "von_mises": ("von Mises stress", "pressure"),
     "max_stretch": ("largest stretch", "number"),
     "energy_density": ("energy density", "pressure"),
+    "contact_pressure": ("contact pressure", "pressure"),
 }
 
 #: Pixels of the longer side of the picture; it is computed twice as fine and averaged.
@@ -55,6 +57,7 @@ def plot_body(
     view: tuple[float, float] = (-60.0, 25.0),
     ghost: bool = True,
     lines: bool | None = None,
+    objects: bool | None = None,
     title: str | None = None,
 ) -> Figure:
     """Draw a body: shaded, deformed as it is, with a scale bar.
@@ -65,10 +68,10 @@ def plot_body(
         A result, which is drawn deformed, or a mesh.
     field
         What the color says: ``"displacement"`` (its magnitude; the default for a result),
-        ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, ``"part"``,
-        ``"plain"`` (the default for a mesh), or one number for each vertex, (n,). Where a few
-        values lie far beyond all others, colors end where 99 % of the area do, and the picture
-        says where the farthest is.
+        ``"von_mises"``, ``"max_stretch"`` or ``"energy_density"`` of a result, with contact also
+        ``"contact_pressure"``, ``"part"``, ``"plain"`` (the default for a mesh), or one number for
+        each vertex, (n,). Where a few values lie far beyond all others, colors end where 99 % of
+        the area do, and the picture says where the farthest is.
     label
         What the color bar says of such numbers.
     section
@@ -81,6 +84,9 @@ def plot_body(
         Whether to show the undeformed body behind a deformed one.
     lines
         Whether to draw the edges of triangles; default: where they are long enough to be seen.
+    objects
+        Whether to draw the rigid objects of a result, gray; default: but where the color says what
+        they press.
     title
         Default: the name of the design.
 
@@ -107,13 +113,20 @@ def plot_body(
     positions = body.positions if isinstance(body, Result) else mesh.vertices
     has_ghost = ghost and isinstance(body, Result) and section is None
     shown = [positions, mesh.vertices] if has_ghost else [positions]
+    covered = objects if objects is not None else not _is(field, "contact_pressure")
+    rigid = objects_of(body) if covered and isinstance(body, Result) else None
+    if rigid is not None:
+        shown.append(near(rigid, positions))
     camera = Camera.around(np.concatenate(shown), view, PIXELS * _FINER)
-    surface = boundary_of(mesh, _kept(mesh, section, camera))
+    plane = _plane(mesh, section, camera)
+    surface = boundary_of(mesh, _kept(mesh, plane))
     colors = _colors(body, mesh, surface, field, label)
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, lines)
     if has_ghost:
         picture = _with_ghost(picture, seen, mesh, surface, camera)
+    if rigid is not None:
+        picture = with_objects(picture, seen, cut(rigid, *plane) if plane else rigid, camera)
     name = body.design.name if isinstance(body, Result) else ""
     return _figure(picture, camera, colors, name if title is None else title)
 
@@ -146,11 +159,15 @@ def body_image(
     """
     mesh = body.mesh if isinstance(body, Result) else body
     positions = body.positions if isinstance(body, Result) else mesh.vertices
-    camera = Camera.around(positions, view, pixels * _FINER)
+    rigid = objects_of(body) if isinstance(body, Result) else None
+    shown = [positions] if rigid is None else [positions, near(rigid, positions)]
+    camera = Camera.around(np.concatenate(shown), view, pixels * _FINER)
     surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
     colors = _colors(body, mesh, surface, None, "")
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, None)
+    if rigid is not None:
+        picture = with_objects(picture, seen, rigid, camera)
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
 
 
@@ -167,19 +184,30 @@ class _Colors:
     clipped: str = ""  # what lies beyond the colors
 
 
-def _kept(
+def _is(field: str | ArrayLike | None, name: str) -> bool:
+    return isinstance(field, str) and field == name
+
+
+def _plane(
     mesh: Mesh, section: Axis | tuple[Axis, float] | None, camera: Camera
-) -> NDArray[np.bool_]:
+) -> tuple[Axis, float, int] | None:
+    """Where a section cuts: the axis, the position on it, and the side that stays."""
     if section is None:
-        return np.ones(len(mesh.tets), dtype=bool)
+        return None
     if isinstance(section, tuple):
         axis, position = section
     else:
         axis = section
         along = mesh.vertices[:, "xyz".index(axis)]
         position = 0.5 * float(along.min() + along.max())
-    side = -1 if camera.toward["xyz".index(axis)] > 0 else 1
-    kept = beyond(mesh, axis, position, side)
+    return axis, position, -1 if camera.toward["xyz".index(axis)] > 0 else 1
+
+
+def _kept(mesh: Mesh, plane: tuple[Axis, float, int] | None) -> NDArray[np.bool_]:
+    if plane is None:
+        return np.ones(len(mesh.tets), dtype=bool)
+    kept = beyond(mesh, *plane)
+    axis, position, _ = plane
     if not kept.any():
         raise MeshError(
             "section", f"at {axis} = {position * 1e3:g} mm leaves nothing of the body", "move it"
@@ -196,19 +224,20 @@ def _colors(
         field = "displacement" if isinstance(body, Result) else "plain"
     flat = np.tile(to_rgb(_PLAIN_COLOR), (len(surface.triangles), 1))
     lined = surface.cavity >= 0
-    if isinstance(field, str) and field == "part":
+    if _is(field, "part"):
         palette = np.array([to_rgb(color) for color in (_PLAIN_COLOR, *SERIES[1:])])
         return _Colors(palette[(surface.part - 1) % len(palette)])
     walls = np.array([to_rgb(color) for color in SERIES[1:]])
     flat[lined] = walls[surface.cavity[lined] % len(walls)]
-    if isinstance(field, str) and field == "plain":
+    if _is(field, "plain"):
         return _Colors(flat)
     values, label = _values(body, mesh, field, label)
     of_corners = values[surface.triangles]
     # With a field on the outside, cavity walls keep their own color, by which they are known.
     outside = surface.triangles if lined.all() else surface.triangles[~lined]
-    moved = isinstance(field, str) and field == "displacement"
-    shown = color_range(values, outside, mesh.vertices, clip=not moved)
+    # Most of a body is pressed by nothing, so that 99 % of its area say little.
+    whole = _is(field, "displacement") or _is(field, "contact_pressure")
+    shown = color_range(values, outside, mesh.vertices, clip=not whole)
     norm = Normalize(shown.low, shown.high)
     clipped = _clipped(shown, values, mesh)
     return _Colors(flat, of_corners, norm, label, ~lined, shown.extend, clipped)
@@ -235,6 +264,11 @@ def _values(
         words, kind = of_result[field]
         if field == "displacement":
             numbers: Floats = np.linalg.norm(body.displacements, axis=1)
+        elif field == "contact_pressure":
+            if body.contact_field is None:
+                what = "is that of a design with contact, and nothing touches in this one"
+                raise MeshError("field", what, "add [[objects]] or [contact]")
+            numbers = body.contact_field.pressure
         else:
             numbers = getattr(body.fields.at_vertices, field)
         scale = scale_for(numbers, kind)

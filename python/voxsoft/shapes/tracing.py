@@ -18,6 +18,8 @@ SAMPLES: Final = (3, 2)
 #: Samples of the shapes, and of the grid that holds them, beyond which there is no smooth surface.
 MOST_SAMPLES: Final = 2_000_000
 LARGEST_GRID: Final = 16_000_000
+#: Samples as near to a surface as this are outside, in steps between samples.
+_ON_SURFACE: Final = 1e-5
 #: Corners of a cube in the order of marching cubes, as (i, j, k).
 _CORNERS: Final = (
     ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)),
@@ -89,6 +91,8 @@ def _refined(cells: NDArray[np.bool_], along: int) -> NDArray[np.bool_]:
 
 def _union(shapes: Sequence[_core.Shape], points: Floats, step: float) -> Floats:
     values: Floats = np.min([shape.evaluate(points) for shape in shapes], axis=0)
+    # Of a side that goes through samples: chance would leave holes, and triangles without area.
+    values[np.abs(values) < _ON_SURFACE * step] = _ON_SURFACE * step
     return np.nan_to_num(values, nan=step, posinf=step, neginf=-step)
 
 

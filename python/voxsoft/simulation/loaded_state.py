@@ -17,7 +17,9 @@ from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads.actions import SurfacePressure
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import ContactState, refuse_contact
 
 Floats = NDArray[np.float64]
 
@@ -91,6 +93,17 @@ class LoadedState:
     def penetration(self) -> Penetration:
         """Where the body is in itself or in its floor."""
         return penetration_of(self.design, self.mesh, self.positions)
+
+    @property
+    def contacts(self) -> tuple[ContactState, ...]:
+        """None: derivatives of contact are not known yet."""
+        refuse_contact(self.design, "gradients")
+        return ()
+
+    def gap_to(self, name: str) -> float:
+        """The distance to an object, m, where nothing has moved it."""
+        refuse_contact(self.design, "gradients")
+        return distance_between(self.mesh, self.positions, posed_surface(self.design, name, None))
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""

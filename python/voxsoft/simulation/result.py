@@ -13,16 +13,20 @@ from numpy.typing import NDArray
 from voxsoft._shown import Shown, rounded, shortened
 from voxsoft.design import Design, Objective
 from voxsoft.design.chamber import chosen_cavities
+from voxsoft.design.contact import BODY
 from voxsoft.errors import DesignError
 from voxsoft.fields import Fields
 from voxsoft.geometry import mean_displacement
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Place, Target, metric_named
+from voxsoft.metrics.contact import object_problems
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
+from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.touching import ContactState, Pose
 from voxsoft.simulation.warnings import warnings_at
 from voxsoft.units import format_percent, format_quantity
@@ -108,6 +112,8 @@ class Result(Shown):
         What touches what, with how much force; pairs that are apart are left out.
     objects
         Where the rigid objects are, by name.
+    contact_field
+        Pressure, friction and gap at each vertex; None for a design without contact.
     """
 
     design: Design
@@ -136,6 +142,7 @@ class Result(Shown):
     stable: bool | None = None
     contacts: tuple[ContactState, ...] = ()
     objects: Mapping[str, Pose] = field(default_factory=dict)
+    contact_field: ContactField | None = field(default=None, repr=False)
 
     @property
     def history(self) -> NoReturn:
@@ -185,6 +192,7 @@ class Result(Shown):
         axis: Literal["x", "y", "z"] | None = None,
         cavity: int | str | None = None,
         percentile: float | None = None,
+        object: str | None = None,
     ) -> float:
         """Return one metric in SI units.
 
@@ -201,16 +209,25 @@ class Result(Shown):
         percentile
             What so many percent of the volume stay at or below, which one sharp corner does not
             decide; default: 100, the largest of all.
+        object
+            What touches the body: an object by its name, or ``"body"`` for the body with itself;
+            default: the only object there is.
 
         Raises
         ------
         DesignError
-            An unknown metric, probe or cavity, a probe that is missing, or one that is not used.
+            An unknown metric, probe, cavity or object; one that is missing or not used.
         """
         target = Objective(
-            maximize=name, probe=probe, axis=axis, cavity=cavity, percentile=percentile
+            maximize=name,
+            probe=probe,
+            axis=axis,
+            cavity=cavity,
+            percentile=percentile,
+            object=object,
         )
-        problems = list(metric_named(name).refusals(target))
+        metric = metric_named(name)
+        problems = [*metric.refusals(target), *object_problems(metric, target, self.design)]
         if problems:
             raise DesignError.listing(problems)
         return self._value(target)
@@ -230,6 +247,25 @@ class Result(Shown):
     def penetration(self) -> Penetration:
         """Where the body is in itself or in its floor, and how deep."""
         return penetration_of(self.design, self.mesh, self.positions)
+
+    def gap_to(self, name: str) -> float:
+        """The smallest distance of the body and an object [m].
+
+        Parameters
+        ----------
+        name
+            Of the object.
+
+        Raises
+        ------
+        DesignError
+            There is no such object.
+        """
+        for each in self.contacts:
+            if each.of == (BODY, name) and name != BODY:
+                return each.gap
+        surface = posed_surface(self.design, name, self.objects.get(name))
+        return distance_between(self.mesh, self.positions, surface)
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:

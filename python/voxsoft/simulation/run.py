@@ -13,6 +13,7 @@ from voxsoft._core import Status as Ended
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.method import Report, Watch
@@ -211,6 +212,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         stable=None if path is None else path.stable,
         contacts=() if touching is None else touching.contacts(answer.contacts),
         objects={} if touching is None else touching.poses(answer.objects),
+        contact_field=ContactField.of(answer.contact_field),
     )
 
 

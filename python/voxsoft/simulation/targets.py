@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.metrics import METRICS
+from voxsoft.metrics.contact import object_problems
 from voxsoft.records import closest
 from voxsoft.units import KINDS, describe_dimension
 
@@ -81,5 +82,5 @@ def _problems(
         yield ErrorDetail(
             f"{where}.probe", f"is missing: where is {name} measured?", f"name {known}"
         )
-    for problem in metric.refusals(target):
+    for problem in (*metric.refusals(target), *object_problems(metric, target, design)):
         yield ErrorDetail(f"{where}.{problem.where}", problem.what, problem.hint)

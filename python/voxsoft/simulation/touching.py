@@ -154,8 +154,8 @@ class Touching:
         body = Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
         # Either may be so small or so thin that no vertex of the other is in it.
         places = np.concatenate([body.vertices, surface.vertices])
-        into_object = _distances(surface, body.vertices)
-        into_body = _distances(body, surface.vertices)
+        into_object = distances_to(surface, body.vertices)
+        into_body = distances_to(body, surface.vertices)
         distances = np.concatenate([into_object, into_body])
         deepest = int(distances.argmin())
         if -distances[deepest] > _TOUCH * self.voxel_size:
@@ -288,7 +288,7 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
     return Surface(vertices, np.ascontiguousarray(triangles, dtype=np.uint32))
 
 
-def _distances(surface: Surface, places: NDArray[np.float64]) -> NDArray[np.float64]:
+def distances_to(surface: Surface, places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Distances of places to a surface [m], negative inside."""
     import igl
 

@@ -46,6 +46,7 @@ def hello(runs_folder: Path) -> events.Hello:
                 needs_probe="probe" in metric.needs,
                 needs_cavity="cavity" in metric.takes,
                 takes_percentile="percentile" in metric.takes,
+                needs_object="object" in metric.needs | metric.takes,
             )
             for name, metric in METRICS.items()
         ],

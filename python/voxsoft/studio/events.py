@@ -69,6 +69,7 @@ class Metric(Entry):
     needs_probe: bool
     needs_cavity: bool
     takes_percentile: bool
+    needs_object: bool
 
 
 class FitRange(Entry):

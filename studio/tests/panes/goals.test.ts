@@ -5,7 +5,7 @@ import type { Metric } from "../../src/protocol";
 const metric = (takes: Partial<Metric>): Metric => ({
   name: "max_stress",
   kind: "pressure",
-  ...{ needs_probe: false, needs_cavity: false, takes_percentile: false },
+  ...{ needs_probe: false, needs_cavity: false, takes_percentile: false, needs_object: false },
   ...takes,
 });
 
@@ -17,6 +17,12 @@ it("keeps a percentile only where the next metric takes one", () => {
     max: "20 kPa",
     probe: "tip",
   });
+});
+
+it("keeps an object only where the next metric asks of one", () => {
+  const value = { object: "plate", max: "2 N" };
+  expect(fittingKeys(metric({ needs_object: true }), value, [])).toEqual(value);
+  expect(fittingKeys(metric({}), value, [])).toEqual({ max: "2 N" });
 });
 
 it("reads a percentile, and refuses what is none", () => {

@@ -21,6 +21,7 @@
 //! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
 //! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
+mod field;
 mod gap;
 mod listing;
 mod path;
@@ -36,6 +37,7 @@ use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 use voxsoft_solid::{Contact, ProblemError};
 
+pub use field::ContactField;
 use gap::{Closest, closest, normal, unit};
 pub use report::PairReport;
 use state::{Facing, Memory, State};

@@ -29,6 +29,7 @@ function MetricFields(props: {
   const probes = Object.keys((source.probes as object | undefined) ?? {});
   const metric = metrics?.find((one) => one.name === props.metric);
   const probe = String(props.value.probe ?? "");
+  const object = String(props.value.object ?? "");
   return (
     <>
       <Select
@@ -59,6 +60,17 @@ function MetricFields(props: {
           onChange={(next) => props.onKey("axis", next || null)}
         />
       )}
+      {metric?.needs_object && (
+        <Select
+          label="Object"
+          value={object}
+          options={withCurrent(
+            objectsOf(source).map((name) => ({ value: name, label: name })),
+            object,
+          )}
+          onChange={(next) => props.onKey("object", next)}
+        />
+      )}
       {metric?.needs_cavity && (
         <CavityField
           label="Cavity"
@@ -81,6 +93,12 @@ function MetricFields(props: {
       )}
     </>
   );
+}
+
+/** What a body may touch: objects by their names, and itself. */
+function objectsOf(source: Table): string[] {
+  const objects = Array.isArray(source.objects) ? source.objects : [];
+  return [...objects.map((one) => String((one as Table).name ?? "")), "body"];
 }
 
 /** A percentile as a user types it, or its formula; null for none, which is the largest value. */
@@ -109,7 +127,7 @@ export function fittingKeys(
   value: Table,
   probes: readonly string[],
 ): Record<string, unknown> {
-  const { probe: _p, axis: _a, cavity: _c, percentile, ...kept } = value;
+  const { probe: _p, axis: _a, cavity: _c, percentile, object, ...kept } = value;
   if (metric?.needs_probe) {
     return {
       ...kept,
@@ -118,6 +136,7 @@ export function fittingKeys(
     };
   }
   if (metric?.needs_cavity && value.cavity !== undefined) return { ...kept, cavity: value.cavity };
+  if (metric?.needs_object && object !== undefined) return { ...kept, object };
   return metric?.takes_percentile && percentile !== undefined ? { ...kept, percentile } : kept;
 }
 

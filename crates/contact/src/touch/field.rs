@@ -1,0 +1,193 @@
+//! Contact as a field over the vertices of the body.
+//!
+//! The pressure of a vertex is what it carries of all contact forces along their normals, over the area of the
+//! surface that it stands for and that lies toward them: a vertex on the edge of a block stands for a part of its side
+//! too, which nothing presses. As points move bilinearly with their faces, an even pressure comes out even.
+
+use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
+
+use super::gap::{area, normal, unit};
+use super::{Meeting, Touch};
+
+/// The body among the surfaces.
+const BODY: u32 = 0;
+/// How far the normal of a triangle may be from the direction that presses it: the cosine of 60 degrees.
+const TOWARD: f64 = 0.5;
+
+/// What touches the vertices of the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactField {
+    /// In Pa, over the surface as it is now; 0 where nothing touches.
+    pub pressure: Vec<f64>,
+    /// Of friction, on the body, in Pa.
+    pub friction: Vec<Vec3>,
+    /// To what a vertex faces, in m; infinite where nothing is near.
+    pub gap: Vec<f64>,
+    /// Of the surface now that each vertex stands for, in m²; where it is pressed, of the side toward that.
+    pub area: Vec<f64>,
+}
+
+impl Touch {
+    /// What touches the first surface at `positions`, with the multipliers of the last correction. Its vertices are
+    /// the first `count`.
+    pub fn field(&self, positions: &[Vec3], count: usize) -> ContactField {
+        let state = self.read();
+        let mut pressed = vec![0.0; count];
+        let mut direction = vec![[0.0; 3]; count];
+        let mut friction = vec![[0.0; 3]; count];
+        self.each_contact(&state, positions, |meeting, pressure, _, _| {
+            let Meeting { sample, normal, .. } = *meeting;
+            let place = (meeting.triangle, meeting.weights);
+            self.each_share(sample, place, |vertex, sign, share| {
+                pressed[vertex] += share * pressure;
+                axpy(&mut direction[vertex], sign * share * pressure, normal);
+            });
+        });
+        self.each_friction(&state, positions, |sample, found| {
+            self.each_share(sample, found.anchor, |vertex, sign, share| {
+                axpy(&mut friction[vertex], sign * share, found.force);
+            });
+        });
+        let points = self.points_at(positions);
+        let area = self.areas(&points, &direction);
+        let over = |area: f64| if area > 0.0 { 1.0 / area } else { 0.0 };
+        for (vertex, &area) in area.iter().enumerate() {
+            pressed[vertex] *= over(area);
+            friction[vertex] = scale(over(area), friction[vertex]);
+        }
+        let mut gap = vec![f64::INFINITY; count];
+        for (index, sample) in self.samples.iter().enumerate() {
+            if let (BODY, [vertex], Some(facing)) = (
+                sample.surface,
+                sample.point.vertices.as_slice(),
+                state.facing[index],
+            ) {
+                let point = sample.point.at(positions);
+                let meeting = self.meeting(index as u32, facing, point, &points);
+                gap[*vertex as usize] = meeting.gap;
+            }
+        }
+        ContactField {
+            pressure: pressed,
+            friction,
+            gap,
+            area,
+        }
+    }
+
+    /// Hands over the vertices of the body that share a force on a sample, which the triangle before it returns: the
+    /// sign of the force on them, and their share.
+    fn each_share(
+        &self,
+        sample: u32,
+        (triangle, weights): (u32, [f64; 3]),
+        mut take: impl FnMut(usize, f64, f64),
+    ) {
+        let own = self.samples[sample as usize].surface;
+        let other = self.surface_of[triangle as usize];
+        let parts = self.relative(sample, triangle, weights);
+        for (number, (factor, point)) in parts.into_iter().enumerate() {
+            let (surface, sign) = if number == 0 {
+                (own, 1.0)
+            } else {
+                (other, -1.0)
+            };
+            if surface == BODY {
+                for (vertex, weight) in point.vertices.iter().zip(&point.weights) {
+                    take(*vertex as usize, sign, sign * factor * weight);
+                }
+            }
+        }
+    }
+
+    /// The area that each vertex of the body stands for; where forces press it, of what lies toward them.
+    fn areas(&self, points: &[Vec3], direction: &[Vec3]) -> Vec<f64> {
+        let mut whole = vec![0.0; direction.len()];
+        let mut toward = whole.clone();
+        for (triangle, &surface) in self.surface_of.iter().enumerate() {
+            if surface != BODY {
+                continue;
+            }
+            let corners = self.corners(triangle as u32, points);
+            let (third, outward) = (area(corners) / 3.0, normal(corners));
+            for point in self.triangles[triangle] {
+                let carried = &self.points[point as usize];
+                for (vertex, weight) in carried.vertices.iter().zip(&carried.weights) {
+                    let vertex = *vertex as usize;
+                    whole[vertex] += weight * third;
+                    if dot(outward, unit(direction[vertex])) < -TOWARD {
+                        toward[vertex] += weight * third;
+                    }
+                }
+            }
+        }
+        let either = |(toward, whole): (&f64, &f64)| if *toward > 0.0 { *toward } else { *whole };
+        toward.iter().zip(&whole).map(either).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touch::{Carried, Description, Surface};
+    use voxsoft_solid::Contact;
+
+    const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+
+    /// A cube of 1 m on another one that is an object, a thousandth apart, and then as deep in it.
+    fn stacked() -> (Touch, Vec<Vec3>) {
+        let corner = |c: u32| {
+            let at = |shift: u32| f64::from(c >> shift & 1);
+            [at(2), at(1), at(0)]
+        };
+        let mut rest: Vec<Vec3> = CUBE.iter().map(|c| corner(*c)).collect();
+        rest.extend(CUBE.iter().map(|c| {
+            let [x, y, z] = corner(*c);
+            [x, y, z - 1.001]
+        }));
+        let first = Surface::of_voxels(&[CUBE], 2);
+        let moved = |point: &Carried| Carried {
+            vertices: point.vertices.iter().map(|v| v + 8).collect(),
+            weights: point.weights.clone(),
+        };
+        let second = Surface {
+            points: first.points.iter().map(moved).collect(),
+            triangles: first.triangles.clone(),
+        };
+        let description = Description {
+            surfaces: vec![first, second],
+            friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
+            voxel: 1.0,
+            young: 2.0,
+        };
+        let touch = Touch::new(description, &rest).unwrap();
+        for x in &mut rest[8..] {
+            x[2] += 0.002;
+        }
+        touch.follow(&rest);
+        (touch, rest)
+    }
+
+    #[test]
+    fn an_even_pressure_is_even_and_sums_to_the_force() {
+        let (touch, positions) = stacked();
+        let field = touch.field(&positions, 8);
+        let pairs = touch.pairs(&positions);
+        let force = pairs[0].force[2];
+        assert!(force > 0.0, "{pairs:?}");
+        for c in 0..8 {
+            // Corners with an even number are at the bottom.
+            let (pressure, gap) = (field.pressure[c], field.gap[c]);
+            if c % 2 == 0 {
+                assert!(
+                    (pressure - force).abs() < 1e-9 * force,
+                    "{pressure} {force}"
+                );
+                assert!((gap + 0.001).abs() < 1e-12, "{gap}");
+                assert!((field.area[c] - 0.25).abs() < 1e-12);
+            } else {
+                assert_eq!((pressure, gap), (0.0, f64::INFINITY));
+            }
+        }
+    }
+}

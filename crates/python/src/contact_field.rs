@@ -1,0 +1,33 @@
+//! Contact over the vertices of the body, as Python is told of it.
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use voxsoft_solid::vector::Vec3;
+
+use crate::simulate::from_rows;
+use crate::touch::Touching;
+
+/// What touches the vertices of the body.
+#[pyclass(frozen, get_all, name = "ContactField", module = "voxsoft._core")]
+pub struct PyContactField {
+    /// Pa.
+    pub pressure: Py<PyArray1<f64>>,
+    /// On the body, Pa.
+    pub friction: Py<PyArray2<f64>>,
+    /// m; infinite where nothing is near.
+    pub gap: Py<PyArray1<f64>>,
+    /// Of the surface that each stands for, m².
+    pub area: Py<PyArray1<f64>>,
+}
+
+impl Touching {
+    pub(crate) fn field(&self, py: Python<'_>, positions: &[Vec3]) -> PyResult<Py<PyContactField>> {
+        let found = self.touch.field(positions, self.first);
+        let field = PyContactField {
+            pressure: PyArray1::from_vec(py, found.pressure).unbind(),
+            friction: from_rows(py, &found.friction).unbind(),
+            gap: PyArray1::from_vec(py, found.gap).unbind(),
+            area: PyArray1::from_vec(py, found.area).unbind(),
+        };
+        Py::new(py, field)
+    }
+}

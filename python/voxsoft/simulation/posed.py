@@ -1,0 +1,45 @@
+"""Rigid objects where they are now: their surfaces, and how far they are from a body."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design
+from voxsoft.errors import DesignError
+from voxsoft.mesh import Mesh
+from voxsoft.records import closest
+from voxsoft.simulation.touching import Pose, Surface, distances_to, surface_of
+
+
+def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:
+    """The surface of an object of a design at a pose; where it is at first without one.
+
+    A pose has the middle of the box of the surface, and turns around it.
+
+    Raises
+    ------
+    DesignError
+        There is no such object.
+    """
+    names = [each.name for each in design.objects]
+    if name not in names:
+        raise DesignError("object", f'there is no object "{name}"', closest(name, names))
+    index = names.index(name)
+    first = surface_of(design.objects[index], design, f"objects[{index}]")
+    if pose is None:
+        return first
+    middle = 0.5 * (first.vertices.min(axis=0) + first.vertices.max(axis=0))
+    turned = (first.vertices - middle) @ np.asarray(pose.rotation).T
+    return Surface(turned + np.asarray(pose.position), first.triangles)
+
+
+def distance_between(mesh: Mesh, positions: NDArray[np.float64], surface: Surface) -> float:
+    """The smallest distance of a body and an object [m]; negative where they overlap.
+
+    From the vertices of each to the triangles of the other, as contact is looked for.
+    """
+    body = Surface(positions, mesh.triangles.astype(np.uint32))
+    own = positions[np.unique(mesh.triangles)]
+    there, back = distances_to(surface, own), distances_to(body, surface.vertices)
+    return float(min(there.min(), back.min()))

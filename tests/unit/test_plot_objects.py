@@ -1,0 +1,97 @@
+"""Rigid objects in pictures: where they are, in front of a body or behind it, and cut with it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from pressed import PLATE, POST, SIDE, pressed
+
+import voxsoft as vs
+from voxsoft.plot import plot_body
+from voxsoft.plot.body import body_image
+from voxsoft.plot.objects import cut, near, objects_of
+from voxsoft.simulation import simulate
+from voxsoft.units import mm
+
+FRONT, BEHIND = (180.0, 0.0), (0.0, 0.0)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return simulate(pressed(objects=[PLATE, POST]))
+
+
+@pytest.fixture(scope="module")
+def beside():
+    return simulate(pressed(objects=[POST], loads=[vs.Gravity()]))
+
+
+def gray(image):
+    """How many pixels of a picture are gray: neither of the body's colors nor white."""
+    image = image.astype(int)
+    colorless = np.ptp(image, axis=-1) <= 2
+    return int((colorless & (image[..., 0] > 120) & (image[..., 0] < 240)).sum())
+
+
+def test_an_object_is_gray_beside_the_body_and_hidden_behind_it(beside):
+    image = body_image(beside, view=(90.0, 0.0))
+    # 4 mm of the 21 mm from the post to the far side of the block, and a margin of 2 % beside each.
+    meter = max(image.shape[:2]) / (1.04 * 21 * mm)
+    assert gray(image) == pytest.approx((4 * mm * meter) ** 2, rel=0.15)
+    free = replace(beside, design=beside.design.replace(objects=[]), objects={})
+    hidden, without = (body_image(each, view=BEHIND) for each in (beside, free))
+    assert np.array_equal(hidden, without)
+
+
+def test_a_body_shows_through_what_is_in_front_of_it(beside):
+    free = replace(beside, design=beside.design.replace(objects=[]), objects={})
+    with_post, without = (body_image(each, view=FRONT).astype(int) for each in (beside, free))
+    assert with_post.shape == without.shape  # both hold the body alone
+    covered = np.abs(with_post - without).max(axis=2) > 5
+    side = with_post.shape[1] / 12.5
+    assert covered.sum() == pytest.approx((4 * side) ** 2, rel=0.2)
+    assert np.ptp(with_post[covered], axis=1).mean() > 20  # not gray: colors of the body in it
+
+
+def test_objects_are_where_the_result_has_them(result):
+    bottom = objects_of(result).vertices[:, 2]
+    plate = bottom[bottom > SIDE - 3 * mm]
+    assert plate.min() == pytest.approx(SIDE - 1.5 * mm, abs=5e-3 * mm)
+
+
+def test_what_draws_pressure_leaves_objects_out_unless_they_are_asked_for(result):
+    def gray_of(*args, **options):
+        return gray(np.asarray(255 * plot_body(result, *args, **options).axes[0].images[0]._A))
+
+    drawn = gray_of()
+    assert drawn > 10_000
+    assert gray_of(objects=False) < 0.3 * drawn  # what is left is the undeformed body
+    assert gray_of("contact_pressure") < 0.3 * drawn
+    assert gray_of("contact_pressure", objects=True) > 10_000
+
+
+def test_a_large_object_does_not_dwarf_the_body():
+    floor = vs.design.Object(
+        name="floor",
+        shape=vs.Box(size=(300 * mm, 300 * mm, 8 * mm), center=(0, 0, -9 * mm)),
+        voxel_size=8 * mm,
+    )
+    found = simulate(pressed(objects=[floor], loads=[vs.Gravity()]))
+    shown = near(objects_of(found), found.positions)
+    assert np.ptp(shown, axis=0).max() < 3.1 * SIDE
+    assert max(body_image(found, pixels=64).shape) <= 80
+
+
+def test_a_section_cuts_objects_where_it_cuts_the_body(result):
+    whole, at = objects_of(result), 6.1 * mm
+    left, right = (cut(whole, "y", at, side) for side in (-1, 1))
+    assert left.vertices[:, 1].max() == pytest.approx(at, abs=1e-12)
+    assert right.vertices[:, 1].min() == pytest.approx(at, abs=1e-12)
+
+    def area(surface):
+        a, b, c = surface.vertices[surface.triangles].swapaxes(0, 1)
+        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1).sum()
+
+    # Both halves have both sides of their triangles.
+    assert area(left) + area(right) == pytest.approx(2 * area(whole), rel=1e-9)
+    assert plot_body(result, section="y").axes
