@@ -17,6 +17,8 @@ YOUNG = 100 * kPa
 SPHERE, BALL, BLOCK = 20.0, 10.0, 30.0
 #: Heights of the stacked blocks, and how wide the upper and the lower one are.
 LAYER, UPPER, LOWER = 10.0, 20.0, 40.0
+#: Where plane strain holds the slab.
+EVERYWHERE = vs.Region(x=(-1.0, 1.0))
 #: The body does not meet itself.
 APART = ContactPair(of=("body", "body"), kind="none")
 
@@ -95,7 +97,7 @@ def two_blocks(voxel: float, press: float, friction: float = 0.0) -> vs.Design:
             vs.Clamp(region=vs.Region(z=(0, 0)), axes="xz"),
             moved("xz", (0, 0, -press - voxel), z=(top, top)),
             *symmetry("x"),
-            vs.Clamp(region=vs.Region(), axes="y"),
+            vs.Clamp(region=EVERYWHERE, axes="y"),
         ],
         probes={
             name: vs.Probe(point=(x * mm, voxel / 2 * mm, z * mm))
@@ -122,7 +124,7 @@ def bellows(voxel: float, pressure: float, *, touching: bool = True) -> vs.Desig
         parts=[vs.Part(shape=body, material=rubber())],
         clamps=[
             vs.Clamp(region=vs.Region(x=(0, 0), z=(0, 3 * mm)), axes="xz"),
-            vs.Clamp(region=vs.Region(), axes="y"),
+            vs.Clamp(region=EVERYWHERE, axes="y"),
         ],
         loads=[vs.Traction(region=region, value=pressure * kPa) for region in regions],
         probes={
