@@ -4,7 +4,8 @@
 match, a half sphere on a rigid plane, a rigid ball pressed into a block, a block on a block, and a
 bellows whose walls meet. Nothing is fitted: every solution has the default settings, and ratios
 are those to the reference. Where the load path ends early, the row says which part of the load was
-reached, and there is no figure. `--fine` adds what takes minutes.
+reached, and there is no figure. The whole takes four minutes. `--fine`
+adds cases that take minutes each, twenty in all.
 
 The references have the same material law (``tests/data/README.md``), so the ratios are errors of
 the discretization and of contact.
@@ -37,11 +38,7 @@ SPHERES = [
     (2.5, False, 0.49, (2.5, 5)),
     (1.25, False, 0.45, (2,)),
 ]
-FINE_SPHERES = [
-    (1.25, False, 0.45, (1, 5)),
-    (1.25, True, 0.45, (1, 2, 5)),
-    (1.25, False, 0.49, (2.5,)),
-]
+FINE_SPHERES = [(1.25, True, 0.45, (2,)), (1.25, False, 0.45, (5,))]
 #: Cases of the ball: voxel in mm, Poisson's ratio, friction, depths in mm.
 BALLS = [
     (5.0, 0.45, 0.0, (2, 4, 6)),
@@ -52,9 +49,8 @@ BALLS = [
 ]
 FINE_BALLS = [
     (2.5, 0.45, 0.0, (6,)),
-    (2.5, 0.49, 0.0, (2, 6)),
-    (2.5, 0.45, 0.5, (2, 4, 6)),
-    (5 / 3, 0.45, 0.0, (2, 4)),
+    (2.5, 0.45, 0.5, (2,)),
+    (5 / 3, 0.45, 0.0, (2,)),
 ]
 #: Cases of the two blocks: voxel in mm, friction, ways in mm.
 BLOCKS = [
