@@ -4,8 +4,8 @@
 match, a half sphere on a rigid plane, a rigid ball pressed into a block, a block on a block, and a
 bellows whose walls meet. Nothing is fitted: every solution has the default settings, and ratios
 are those to the reference. Where the load path ends early, the row says which part of the load was
-reached, and there is no figure. The whole takes four minutes. `--fine`
-adds cases that take minutes each, twenty in all.
+reached, and there is no figure. All of it takes four minutes; `--fine` adds cases that take minutes
+each, some twenty more.
 
 The references have the same material law (``tests/data/README.md``), so the ratios are errors of
 the discretization and of contact.
