@@ -140,6 +140,23 @@ def test_what_is_pinched_slips_at_its_bound():
     assert fallen[-1] < -1 * mm
 
 
+def test_what_slides_out_of_a_grip_falls_freely():
+    block = Object(
+        name="block",
+        shape=vs.Box(size=(8 * mm, 16 * mm, 16 * mm), center=(0, 0, 0)),
+        motion="free",
+        mass="45 g",
+        voxel_size=4 * mm,
+    )
+    # Its upper edge passes the faces of the pads, which bulge out over it.
+    result = simulate(pinched(0.01, objects=[block]), end_time=0.2, time_step=5e-3)
+    assert result.status == "ok"
+    assert result.contacts == ()
+    heights = result.recording.objects["block"][0][:, 2]
+    rate, before = ((heights[-k] - heights[-k - 1]) / 0.02 for k in (1, 2))
+    assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-6)
+
+
 def test_the_floor_is_one_of_the_objects():
     block = dropped(
         clamps=[],

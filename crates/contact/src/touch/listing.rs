@@ -3,7 +3,7 @@
 use voxsoft_solid::vector::{Vec3, dot, sub};
 
 use super::Touch;
-use super::gap::{closest, normal};
+use super::gap::normal;
 use super::state::State;
 use crate::bounds::Bounds;
 use crate::tree::Tree;
@@ -11,7 +11,7 @@ use crate::tree::Tree;
 /// How far apart a sample and a triangle may pass each other and be listed, in voxels.
 pub(super) const REACH: f64 = 0.5;
 /// How deep a sample may be in what it touches at an accepted state, in voxels: less than half of the thinnest wall.
-const DEPTH: f64 = 0.25;
+pub(super) const DEPTH: f64 = 0.25;
 /// Faces that can meet look at each other: the product of their normals is below this. A sample on an edge has
 /// several, of which those along the other face do not meet it.
 const FACING: f64 = -0.1;
@@ -73,9 +73,7 @@ impl Touch {
         if !sample.triangles.iter().any(faces) {
             return false;
         }
-        let start = state.accepted_samples[index];
-        let found = closest(start, corners);
-        dot(found.away, n) >= -DEPTH * self.description.voxel
+        self.is_in_front(triangle, state.accepted_samples[index], points)
     }
 }
 

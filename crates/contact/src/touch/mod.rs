@@ -59,6 +59,8 @@ const LOOKS: u32 = 2;
 /// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
 /// coordinates.
 const STRAYED: f64 = 0.5;
+/// How far a sample may be beside an edge and still count as flush with it, in voxels.
+const FLUSH: f64 = 1e-6;
 /// What may be left of the clearance, in voxels: surfaces that touch do not intersect.
 const DEEPEST: f64 = 0.9 * CLEARANCE;
 /// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
@@ -223,9 +225,9 @@ impl Touch {
     }
 
     /// What a sample at `point` is in front of, or in, among its candidates.
-    fn look(&self, point: Vec3, candidates: &[u32], points: &[Vec3]) -> Option<Facing> {
+    fn look(&self, state: &State, index: usize, point: Vec3, points: &[Vec3]) -> Option<Facing> {
         let mut best: Option<(u32, Closest)> = None;
-        for &triangle in candidates {
+        for &triangle in &state.candidates[index] {
             let found = closest(point, self.corners(triangle, points));
             if best.is_none_or(|(_, other)| found.distance < other.distance) {
                 best = Some((triangle, found));
@@ -235,6 +237,16 @@ impl Touch {
         if found.is_inside() {
             return Some(Facing::Plane(triangle));
         }
+        if let Some((beside, nearer)) = self.nearer_beside(triangle, found, point, points) {
+            let height = dot(nearer.away, normal(self.corners(beside, points)));
+            if height.abs() > FLUSH * self.description.voxel {
+                // It has gone round the edge; it meets what is behind that if it was in front of it.
+                let before = &state.accepted_points;
+                let met = nearer.is_inside()
+                    && self.is_in_front(beside, state.accepted_samples[index], before);
+                return met.then_some(Facing::Plane(beside));
+            }
+        }
         let outward = self.normal_beside(triangle, found.weights, points);
         let normal = if found.distance <= 1e-9 * self.description.voxel {
             outward
@@ -243,6 +255,36 @@ impl Touch {
             scale(sign / found.distance, found.away)
         };
         Some(Facing::Edge(triangle, found.weights, normal))
+    }
+
+    /// A triangle at the edge or corner of another that comes closer to a point than that does.
+    fn nearer_beside(
+        &self,
+        triangle: u32,
+        found: Closest,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<(u32, Closest)> {
+        let corners = self.triangles[triangle as usize];
+        let on = (0..3)
+            .filter(|c| found.weights[*c] > 0.0)
+            .map(|c| corners[c]);
+        let least = found.distance - 1e-9 * self.description.voxel;
+        let mut best: Option<(u32, Closest)> = None;
+        for &other in on.flat_map(|corner| &self.around[corner as usize]) {
+            let beside = closest(point, self.corners(other, points));
+            if beside.distance < best.map_or(least, |(_, best)| best.distance) {
+                best = Some((other, beside));
+            }
+        }
+        best
+    }
+
+    /// Whether a point is in front of a triangle, or not too deep behind it.
+    fn is_in_front(&self, triangle: u32, point: Vec3, points: &[Vec3]) -> bool {
+        let corners = self.corners(triangle, points);
+        let found = closest(point, corners);
+        dot(found.away, normal(corners)) >= -listing::DEPTH * self.description.voxel
     }
 
     /// How a sample at `point` lies to what it faces.

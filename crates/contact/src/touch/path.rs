@@ -209,8 +209,7 @@ impl Touch {
     fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
         for index in 0..self.samples.len() {
-            let candidates = &state.candidates[index];
-            if candidates.is_empty() {
+            if state.candidates[index].is_empty() {
                 state.facing[index] = None;
                 continue;
             }
@@ -226,7 +225,7 @@ impl Touch {
             if !all && !strayed {
                 continue;
             }
-            state.facing[index] = self.look(point, candidates, &points);
+            state.facing[index] = self.look(state, index, point, &points);
         }
     }
 }
