@@ -158,6 +158,14 @@ def test_what_slides_out_of_a_grip_falls_freely():
     assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-3)
 
 
+def test_what_falls_for_ever_is_called_by_its_name():
+    away = Object(name="stone", shape=BALL, motion="free", mass="1 g", voxel_size=3 * mm)
+    aside = {"shape": vs.Sphere(radius=6 * mm, center=(60 * mm, 10 * mm, 20 * mm))}
+    result = simulate(dropped(objects=[away.replace(**aside)]), end_time=2.0, time_step=0.02)
+    assert result.status == "diverged"
+    assert 'the object "stone" falls or flies away' in result.message
+
+
 def test_the_floor_is_one_of_the_objects():
     block = dropped(
         clamps=[],

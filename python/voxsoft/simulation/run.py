@@ -190,7 +190,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         mesh=setup.mesh,
         places=setup.places,
         status=_STATUSES[report.status],
-        message=_sentence(report, used["way"]),
+        message=_sentence(setup, report, used["way"]),
         positions=answer.positions,
         velocities=answer.velocities,
         residual=answer.residual,
@@ -233,7 +233,7 @@ def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
     }
 
 
-def _sentence(report: Report, way: str) -> str:
+def _sentence(setup: Setup, report: Report, way: str) -> str:
     answer = report.answer
     if answer.path is not None:
         return sentence(way, report.status, report.steps, answer.residual, answer.path)
@@ -251,7 +251,14 @@ def _sentence(report: Report, way: str) -> str:
             )
         case _:
             assert answer.breakdown is not None  # so it is where a body diverged
-            _, place, when = answer.breakdown
+            vertex, place, when = answer.breakdown
+            fallen = vertex - len(setup.mesh.vertices)
+            if fallen >= 0:  # the vertices of objects come after those of the body
+                name = setup.design.objects[fallen // 4].name
+                return (
+                    f'the object "{name}" falls or flies away: it left everything else behind '
+                    f"after {when:.3g} s; hold it, put something under it, or end before that"
+                )
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             return (
                 f"diverged at ({point}) mm, after {when:.6g} "
