@@ -72,7 +72,7 @@ def test_what_draws_pressure_leaves_objects_out_unless_they_are_asked_for(result
 
 def test_a_large_object_does_not_dwarf_the_body():
     floor = vs.design.Object(
-        name="floor",
+        name="ground",
         shape=vs.Box(size=(300 * mm, 300 * mm, 8 * mm), center=(0, 0, -9 * mm)),
         voxel_size=8 * mm,
     )

@@ -1,5 +1,7 @@
 //! Contact of closed surfaces, each with each other and with itself, with Coulomb friction.
 //!
+//! Long because the laws of gaps and of friction stand with the settings that they share.
+//!
 //! # Gap
 //!
 //! Samples of every surface look for the closest triangle in front of them ([`gap`]). Both sides have samples, and
