@@ -1,10 +1,10 @@
 """Contact over time: what is pinched must not creep, and what slides must slide as Coulomb says.
 
-``python benchmarks/contact_over_time.py [--json] [--fine]``. A capsule of 45 g held by friction alone
-between two soft pads (μ = 0.7), by steps of 1, 5 and 20 ms with the same settings: how far it creeps
-after the weight has come, in a minute (`--fine`; else in some seconds), and the processor time for a
-second of it. A soft block on an incline (μ = 0.5) that holds it, and on steeper ones down which it
-slides: its acceleration over that of Coulomb's law.
+``python benchmarks/contact_over_time.py [--json] [--fine]``. A capsule of 45 g is held by friction
+alone between two soft pads (μ = 0.7), by steps of 1, 5 and 20 ms with the same settings: how far it
+creeps once the weight has come, in some seconds or (`--fine`) a minute, and what a second of it
+takes. A soft block lies on an incline (μ = 0.5) that holds it, and slides down steeper ones: its
+acceleration over that of Coulomb's law.
 """
 
 from __future__ import annotations
@@ -88,8 +88,8 @@ def creep(report: Report, step: float, seconds: float) -> None:
     later = heights[times >= FADED - 1e-9]
     (contact,) = result.contacts
     report.add(f"{name}: force of a pad", contact.pressed / 2.0, "N")
-    weight = -contact.force[2] / (0.045 * GRAVITY)
-    report.add(f"{name}: friction over the weight", 0.045 * GRAVITY * weight, "N", weight)
+    carried = -contact.force[2]
+    report.add(f"{name}: friction, over the weight", carried, "N", carried / (0.045 * GRAVITY))
     report.add(f"{name}: creep in {seconds:g} s", 1e6 * float(np.ptp(later)), "µm")
     report.add(f"{name}: a second of it takes", result.seconds / (FADED + seconds), "s")
 

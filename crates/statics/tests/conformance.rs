@@ -10,10 +10,10 @@ use voxsoft_solid::conformance::{Law, check_solver, check_stepper};
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Ask, Attachment, History, LatticeMaterial, PointForces, Spring, Springs};
 use voxsoft_solid::{
-    Body, Clamp, Floor, Grab, Load, Look, Method, Motion, Observer, Problem, ProblemError,
+    Body, Clamp, Damping, Floor, Grab, Load, Look, Method, Motion, Observer, Problem, ProblemError,
     Solution, Solver, State, Status, Stepper,
 };
-use voxsoft_statics::{Control, Implicit, ImplicitSettings, LinearSolver, Settings};
+use voxsoft_statics::{Control, Implicit, ImplicitSettings, LinearSolver, Settings, Transient};
 
 fn lattice() -> LatticeMaterial {
     LatticeMaterial::from_moduli(60e3, 400e3, 1070.0).unwrap()
@@ -83,6 +83,20 @@ fn statics_keeps_the_laws_of_a_solver() {
             control,
             linear,
             ..Settings::default()
+        };
+        check_solver(&settings, &problem, settings.tolerance).unwrap();
+    }
+}
+
+#[test]
+fn motion_to_rest_keeps_the_laws_of_a_solver() {
+    for problem in [
+        cantilever([8, 2, 2], 5e-3, rubber()),
+        cantilever([8, 2, 2], 5e-3, lattice()),
+    ] {
+        let settings = Transient {
+            damping: Damping::Critical,
+            ..Transient::default()
         };
         check_solver(&settings, &problem, settings.tolerance).unwrap();
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
-from voxsoft.design.contact import BODY
+from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import Record, closest, place
@@ -103,6 +103,7 @@ def _chambers(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
 def _objects(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
     names = [entry_of(each, "name") for _, each in _list(document, "objects")]
     known = [BODY, *(name for name in names if isinstance(name, str))]
+    known += [FLOOR] if document.get("floor") is not None else []
     for table in ("objectives", "constraints"):
         for key, target in _table(document, table).items():
             name = entry_of(target, "object")

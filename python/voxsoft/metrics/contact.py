@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from voxsoft.design import Design
-from voxsoft.design.contact import BODY
+from voxsoft.design.contact import BODY, names_of
 from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.metrics.definition import Metric, State, Target, Touch
 from voxsoft.metrics.vectors import component
@@ -26,10 +26,11 @@ def object_problems(metric: Metric, target: Target, design: Design) -> Iterator[
             yield ErrorDetail("object", what, "add [[objects]], or [contact] for the body alone")
         return
     if name is None and "object" in metric.needs and len(names) > 1:
-        known = ", ".join([*names, BODY])
-        yield ErrorDetail("object", f"is missing: what does {metric.name} ask of?", f"name {known}")
-    if name is not None and name not in (BODY, *names):
-        hint = closest(name, [BODY, *names]) or f'write "{BODY}" or the name of an object'
+        some = ", ".join([*names, BODY])
+        yield ErrorDetail("object", f"is missing: what does {metric.name} ask of?", f"name {some}")
+    known = names_of(design.objects, design.floor is not None)
+    if name is not None and name not in known:
+        hint = closest(name, known) or f'write "{BODY}" or the name of an object'
         yield ErrorDetail("object", f'there is no object "{name}"', hint)
     if _named(target, design) == BODY:
         if metric.name == CONTACT_GAP.name:

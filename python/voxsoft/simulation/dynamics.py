@@ -8,10 +8,12 @@ from typing import Any, ClassVar, Final
 from pydantic import Field
 
 from voxsoft import _core
+from voxsoft._core import Status
 from voxsoft._memory import memory_limit
 from voxsoft.design import Design
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.equilibrium import too_large_a_tangent
 from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
@@ -87,6 +89,12 @@ class Dynamics(Method):
             frames=watch.frames,
             progress=watch.progress,
         )
+        if answer.status == Status.OUT_OF_MEMORY:
+            raise SimulationError(
+                "solver.method",
+                too_large_a_tangent(len(setup.mesh.vertices), 0),
+                "use larger voxels",
+            )
         used = {"method": "implicit", "way": "dynamics", "time_step": step, **ends}
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 

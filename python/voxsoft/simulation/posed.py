@@ -29,8 +29,7 @@ def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:
     first = surface_of(design.objects[index], design, f"objects[{index}]")
     if pose is None:
         return first
-    middle = 0.5 * (first.vertices.min(axis=0) + first.vertices.max(axis=0))
-    turned = (first.vertices - middle) @ np.asarray(pose.rotation).T
+    turned = (first.vertices - first.middle) @ np.asarray(pose.rotation).T
     return Surface(turned + np.asarray(pose.position), first.triangles)
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from voxsoft._shown import Shown, rounded, shortened
 from voxsoft.design import Design, Objective
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.design.contact import BODY
+from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.errors import DesignError
 from voxsoft.fields import Fields
 from voxsoft.geometry import mean_displacement
@@ -264,6 +264,8 @@ class Result(Shown):
         for each in self.contacts:
             if each.of == (BODY, name) and name != BODY:
                 return each.gap
+        if name == FLOOR and self.design.floor is not None:
+            return float(self.positions[:, 2].min()) - self.design.floor.z
         surface = posed_surface(self.design, name, self.objects.get(name))
         return distance_between(self.mesh, self.positions, surface)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
+
+#: An object that went this many sizes of the body is gone.
+_FAR: Final = 5.0
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
@@ -251,20 +254,35 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
             )
         case _:
             assert answer.breakdown is not None  # so it is where a body diverged
-            vertex, place, when = answer.breakdown
-            fallen = vertex - len(setup.mesh.vertices)
-            if fallen >= 0:  # the vertices of objects come after those of the body
-                name = setup.design.objects[fallen // 4].name
-                return (
-                    f'the object "{name}" falls or flies away: it left everything else behind '
-                    f"after {when:.3g} s; hold it, put something under it, or end before that"
-                )
+            _, place, when = answer.breakdown
+            if setup.touching is not None:
+                return _lost_contact(setup, answer)
             point = ", ".join(f"{value * 1e3:.1f}" for value in place)
             return (
                 f"diverged at ({point}) mm, after {when:.6g} "
                 f"{'s' if answer.substep else 'steps'} and {answer.back_offs} halvings of "
                 "the step: the material cannot carry the load, or it is a mechanism"
             )
+
+
+def _lost_contact(setup: Setup, answer: _core.Answer) -> str:
+    """Why a run over time with contact ended early."""
+    assert setup.touching is not None
+    body = setup.mesh.vertices
+    far = _FAR * float(np.linalg.norm(np.ptp(body, axis=0)))
+    poses = setup.touching.poses(answer.objects)
+    for each, surface in zip(setup.design.objects, setup.touching.surfaces, strict=True):
+        gone = float(np.linalg.norm(np.array(poses[each.name].position) - surface.middle))
+        if each.is_free and gone > far:
+            return (
+                f'the object "{each.name}" falls or flies away: it is {gone:.3g} m from where it '
+                f"was, after {answer.time:.3g} s; hold it, put something under it, or end earlier"
+            )
+    return (
+        f"no step goes on from {answer.time:.6g} s, after {answer.back_offs} halvings: contact did "
+        "not settle, or the material cannot carry the load; kept is the last state. Try a shorter "
+        "time_step, smaller voxels, or less friction"
+    )
 
 
 def _triple(values: list[float]) -> tuple[float, float, float]:

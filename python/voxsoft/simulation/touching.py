@@ -24,6 +24,8 @@ from voxsoft.units import format_quantity
 _SAMPLES: Final = 2
 #: How deep an object may be in the unloaded body, in voxels: rounding of a surface that touches.
 _TOUCH: Final = 1e-6
+#: How far behind a surface it is looked for what covers it exactly, in voxels.
+_INSIDE: Final = 1e-3
 #: How far the floor goes, in sizes of all that is above it: farther than anything may go.
 _FLOOR: Final = 20.0
 
@@ -77,7 +79,10 @@ class ContactState:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where an object is: its position [m] and the rotation from its first pose, (3, 3)."""
+    """Where an object is: its position [m], of the middle of its box, and its rotation, (3, 3).
+
+    The box is that of its first pose along the axes, and turns with it.
+    """
 
     position: tuple[float, float, float]
     rotation: tuple[tuple[float, float, float], ...]
@@ -113,6 +118,23 @@ class Surface:
     vertices: NDArray[np.float64]
     triangles: NDArray[np.uint32]
 
+    def just_inside(self, depth: float) -> NDArray[np.float64]:
+        """Its vertices, and the centers of its triangles so deep [m] behind them, (n + t, 3).
+
+        Behind its own surface nothing is in what only touches it, but all of what covers it is.
+        """
+        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = normals / np.where(lengths > 0.0, lengths, 1.0)
+        return np.concatenate([self.vertices, (a + b + c) / 3.0 - depth * normals])
+
+    @property
+    def middle(self) -> NDArray[np.float64]:
+        """Of its box [m], (3,)."""
+        middle: NDArray[np.float64] = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
+        return middle
+
 
 @dataclass(frozen=True)
 class Touching:
@@ -142,27 +164,50 @@ class Touching:
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
         """The surface of each object."""
-        found = []
+        found: list[Surface] = []
         for index, each in enumerate(self.design.objects):
             where = f"objects[{index}]"
             surface = surface_of(each, self.design, where)
-            self._check_apart(surface, where)
+            body = Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+            self._check_apart(surface, body, where, "the body")
+            for other, before in zip(self.design.objects, found, strict=False):
+                if each.is_free or other.is_free:
+                    self._check_apart(surface, before, where, f'"{other.name}"')
+            self._check_above(surface.vertices, where)
             found.append(surface)
+        self._check_above(self.mesh.vertices, "floor")
         return tuple(found)
 
-    def _check_apart(self, surface: Surface, where: str) -> None:
-        body = Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+    def _check_above(self, vertices: NDArray[np.float64], where: str) -> None:
+        if self.design.floor is None:
+            return
+        depth = self.design.floor.z - float(vertices[:, 2].min())
+        if depth > _TOUCH * self.voxel_size:
+            who = "is above the lowest point of the body" if where == "floor" else "is in the floor"
+            what = f"{who} by {1e3 * depth:.3g} mm"
+            raise DesignError(where, what, "move one of them: nothing may be below the floor")
+
+    def _check_apart(self, surface: Surface, body: Surface, where: str, who: str) -> None:
         # Either may be so small or so thin that no vertex of the other is in it.
-        places = np.concatenate([body.vertices, surface.vertices])
-        into_object = distances_to(surface, body.vertices)
-        into_body = distances_to(body, surface.vertices)
+        of_body, of_object = (
+            each.just_inside(_INSIDE * self.voxel_size) for each in (body, surface)
+        )
+        places = np.concatenate([of_body, of_object])
+        into_object = distances_to(surface, of_body)
+        into_body = distances_to(body, of_object)
         distances = np.concatenate([into_object, into_body])
         deepest = int(distances.argmin())
         if -distances[deepest] > _TOUCH * self.voxel_size:
             x, y, z = 1e3 * places[deepest]
             depth = -1e3 * distances[deepest]
-            what = f"is {depth:.3g} mm deep in the body at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
+            what = f"is {depth:.3g} mm deep in {who} at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
             raise DesignError(where, what, f"move it away by {depth:.3g} mm or more")
+
+    @cached_property
+    def solids(self) -> tuple[Solid | None, ...]:
+        """What each free object answers to forces with; None for those that are held."""
+        pairs = zip(self.design.objects, self.surfaces, strict=True)
+        return tuple(Solid.of(surface, each) if each.is_free else None for each, surface in pairs)
 
     @cached_property
     def floor(self) -> Surface | None:
@@ -183,9 +228,10 @@ class Touching:
         """Add it to the parts of a problem."""
         body = self.mesh.triangles.astype(np.uint32)
         parts.touch(body, self.voxel_size, _SAMPLES)
-        for each, surface in zip(self.design.objects, self.surfaces, strict=True):
-            if each.is_free:
-                solid = Solid.of(surface, each)
+        for each, surface, solid in zip(
+            self.design.objects, self.surfaces, self.solids, strict=True
+        ):
+            if solid is not None:
                 parts.free_object(
                     surface.vertices,
                     surface.triangles,
@@ -220,8 +266,14 @@ class Touching:
     def poses(self, found: Sequence[_core.ObjectPose]) -> dict[str, Pose]:
         """Where the objects are, by name."""
         poses = {}
-        for each, pose in zip(self.design.objects, found, strict=False):  # a floor comes last
-            x, y, z = pose.position
+        # A floor comes last among what was found.
+        for each, surface, solid, pose in zip(
+            self.design.objects, self.surfaces, self.solids, found, strict=False
+        ):
+            turn, position = np.array(pose.rotation), np.array(pose.position)
+            if solid is not None:  # the core follows its center of mass
+                position = position + turn @ (surface.middle - np.array(solid.center))
+            x, y, z = position.tolist()
             rotation = tuple((row[0], row[1], row[2]) for row in pose.rotation)
             poses[each.name] = Pose((x, y, z), rotation)
         return poses

@@ -1,7 +1,5 @@
 //! Contact of closed surfaces, each with each other and with itself, with Coulomb friction.
 //!
-//! Long because the laws of gaps and of friction stand with the settings that they share.
-//!
 //! # Gap
 //!
 //! Samples of every surface look for the closest triangle in front of them ([`gap`]). Both sides have samples, and
@@ -23,7 +21,9 @@
 //! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
 //! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
+mod facing;
 mod field;
+mod friction;
 mod gap;
 mod listing;
 mod path;
@@ -35,12 +35,11 @@ mod term;
 
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use voxsoft_solid::matrix::Mat3;
-use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Contact, ProblemError};
 
 pub use field::ContactField;
-use gap::{Closest, closest, normal, unit};
+use gap::normal;
 pub use report::PairReport;
 use state::{Facing, Memory, State};
 use surface::Sample;
@@ -61,8 +60,6 @@ const LOOKS: u32 = 2;
 /// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
 /// coordinates.
 const STRAYED: f64 = 0.5;
-/// How far a sample may be beside an edge and still count as flush with it, in voxels.
-const FLUSH: f64 = 1e-6;
 /// What may be left of the clearance, in voxels: surfaces that touch do not intersect.
 const DEEPEST: f64 = 0.9 * CLEARANCE;
 /// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
@@ -116,19 +113,6 @@ struct Meeting {
     gap: f64,
     /// From the triangle to the sample.
     normal: Vec3,
-}
-
-/// How friction acts on a sample.
-#[derive(Debug, Clone, Copy)]
-struct Friction {
-    /// N.
-    force: Vec3,
-    /// Minus the derivative of the force by the slip, N/m.
-    stiffness: Mat3,
-    /// J.
-    energy: f64,
-    anchor: (u32, [f64; 3]),
-    slips: bool,
 }
 
 impl Touch {
@@ -226,69 +210,6 @@ impl Touch {
         CLEARANCE * self.description.voxel
     }
 
-    /// What a sample at `point` is in front of, or in, among its candidates.
-    fn look(&self, state: &State, index: usize, point: Vec3, points: &[Vec3]) -> Option<Facing> {
-        let mut best: Option<(u32, Closest)> = None;
-        for &triangle in &state.candidates[index] {
-            let found = closest(point, self.corners(triangle, points));
-            if best.is_none_or(|(_, other)| found.distance < other.distance) {
-                best = Some((triangle, found));
-            }
-        }
-        let (triangle, found) = best?;
-        if found.is_inside() {
-            return Some(Facing::Plane(triangle));
-        }
-        if let Some((beside, nearer)) = self.nearer_beside(triangle, found, point, points) {
-            let height = dot(nearer.away, normal(self.corners(beside, points)));
-            if height.abs() > FLUSH * self.description.voxel {
-                // It has gone round the edge; it meets what is behind that if it was in front of it.
-                let before = &state.accepted_points;
-                let met = nearer.is_inside()
-                    && self.is_in_front(beside, state.accepted_samples[index], before);
-                return met.then_some(Facing::Plane(beside));
-            }
-        }
-        let outward = self.normal_beside(triangle, found.weights, points);
-        let normal = if found.distance <= 1e-9 * self.description.voxel {
-            outward
-        } else {
-            let sign = 1.0f64.copysign(dot(found.away, outward));
-            scale(sign / found.distance, found.away)
-        };
-        Some(Facing::Edge(triangle, found.weights, normal))
-    }
-
-    /// A triangle at the edge or corner of another that comes closer to a point than that does.
-    fn nearer_beside(
-        &self,
-        triangle: u32,
-        found: Closest,
-        point: Vec3,
-        points: &[Vec3],
-    ) -> Option<(u32, Closest)> {
-        let corners = self.triangles[triangle as usize];
-        let on = (0..3)
-            .filter(|c| found.weights[*c] > 0.0)
-            .map(|c| corners[c]);
-        let least = found.distance - 1e-9 * self.description.voxel;
-        let mut best: Option<(u32, Closest)> = None;
-        for &other in on.flat_map(|corner| &self.around[corner as usize]) {
-            let beside = closest(point, self.corners(other, points));
-            if beside.distance < best.map_or(least, |(_, best)| best.distance) {
-                best = Some((other, beside));
-            }
-        }
-        best
-    }
-
-    /// Whether a point is in front of a triangle, or not too deep behind it.
-    fn is_in_front(&self, triangle: u32, point: Vec3, points: &[Vec3]) -> bool {
-        let corners = self.corners(triangle, points);
-        let found = closest(point, corners);
-        dot(found.away, normal(corners)) >= -listing::DEPTH * self.description.voxel
-    }
-
     /// How a sample at `point` lies to what it faces.
     fn meeting(&self, sample: u32, facing: Facing, point: Vec3, points: &[Vec3]) -> Meeting {
         let (triangle, weights, normal, inside) = match facing {
@@ -312,86 +233,10 @@ impl Touch {
         }
     }
 
-    /// The mean normal at a point on an edge or corner of a triangle, which tells outside from inside (Baerentzen and
-    /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
-    fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
-        let corners = self.triangles[triangle as usize];
-        let on: Vec<u32> = (0..3)
-            .filter(|c| weights[*c] > 0.0)
-            .map(|c| corners[c])
-            .collect();
-        let mut sum = [0.0; 3];
-        for &other in &self.around[on[0] as usize] {
-            let of_other = self.triangles[other as usize];
-            if !on.iter().all(|point| of_other.contains(point)) {
-                continue;
-            }
-            let n = normal(self.corners(other, points));
-            let weight = match on.as_slice() {
-                [corner] => {
-                    let place = of_other.iter().position(|p| p == corner).unwrap_or(0);
-                    let at = |step: usize| points[of_other[(place + step) % 3] as usize];
-                    let (u, v) = (unit(sub(at(1), at(0))), unit(sub(at(2), at(0))));
-                    dot(u, v).clamp(-1.0, 1.0).acos()
-                }
-                _ => 1.0,
-            };
-            axpy(&mut sum, weight, n);
-        }
-        unit(sum)
-    }
-
     /// The force with which a sample is pushed away, N.
     fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
         let k = self.penalty(meeting.sample);
         (memory.normal - k * (meeting.gap - self.clearance())).max(0.0)
-    }
-
-    /// The friction of a sample that was in contact at the last correction and had an anchor: also where it has lost
-    /// contact since, or its force would jump.
-    fn friction(
-        &self,
-        state: &State,
-        sample: u32,
-        point: Vec3,
-        points: &[Vec3],
-    ) -> Option<Friction> {
-        let memory = &state.now[sample as usize];
-        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
-        let k = state.stick * self.penalty(sample);
-        let n = memory.plane;
-        let along = |v: Vec3| sub(v, scale(dot(v, n), n));
-        let mut slip = point;
-        for (weight, corner) in anchor.1.iter().zip(self.corners(anchor.0, points)) {
-            axpy(&mut slip, -weight, corner);
-        }
-        let trial = sub(along(memory.friction), scale(k, along(slip)));
-        let size = norm(trial);
-        let slips = size > memory.bound;
-        let (force, energy) = if slips {
-            let energy = memory.bound * (size - memory.bound / 2.0) / k;
-            (scale(memory.bound / size, trial), energy)
-        } else {
-            (trial, size * size / (2.0 * k))
-        };
-        let stiffness = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
-                let plane = if i == j { 1.0 } else { 0.0 } - n[i] * n[j];
-                if slips {
-                    let across = plane - trial[i] * trial[j] / (size * size);
-                    k * memory.bound / size * across
-                } else {
-                    k * plane
-                }
-            })
-        });
-        Some(Friction {
-            force,
-            stiffness,
-            energy,
-            anchor,
-            slips,
-        })
     }
 
     /// Hands over every sample that is in contact, with its pressure in N.
@@ -411,25 +256,6 @@ impl Touch {
             let pressure = self.pressure(&state.now[index], &meeting);
             if pressure > 0.0 {
                 take(&meeting, pressure, point, &points);
-            }
-        }
-    }
-
-    /// Hands over the friction of every sample that has some.
-    fn each_friction(
-        &self,
-        state: &State,
-        positions: &[Vec3],
-        mut take: impl FnMut(u32, Friction),
-    ) {
-        if !state.now.iter().any(|memory| memory.bound > 0.0) {
-            return;
-        }
-        let points = self.points_at(positions);
-        for sample in 0..self.samples.len() as u32 {
-            let point = self.samples[sample as usize].point.at(positions);
-            if let Some(friction) = self.friction(state, sample, point, &points) {
-                take(sample, friction);
             }
         }
     }

@@ -203,8 +203,6 @@ impl Run<'_> {
                 _ => {}
             }
             if let Err(failure) = self.take_step(recorded, observer) {
-                let state = &self.state;
-                let far = || Breakdown::farthest(self.problem, &state.positions, state.time);
                 return match failure {
                     Stop::Gone(place) => self.ended(Status::Diverged, residual, Some(place)),
                     Stop::Failed(Failure::Memory(bytes)) => {
@@ -214,7 +212,10 @@ impl Run<'_> {
                         self.ended(Status::Cancelled, residual, None)
                     }
                     Stop::Failed(_) => {
-                        let place = far();
+                        let State {
+                            positions, time, ..
+                        } = &self.state;
+                        let place = Breakdown::farthest(self.problem, positions, *time);
                         self.ended(Status::Diverged, residual, Some(place))
                     }
                 };

@@ -1,0 +1,111 @@
+//! What a sample is in front of.
+
+use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
+
+use super::Touch;
+use super::gap::{Closest, closest, normal, unit};
+use super::listing::DEPTH;
+use super::state::{Facing, State};
+
+/// How far a sample may be beside an edge and still count as flush with it, in voxels.
+const FLUSH: f64 = 1e-6;
+
+impl Touch {
+    /// What a sample at `point` is in front of, or in, among its candidates.
+    pub(super) fn look(
+        &self,
+        state: &State,
+        index: usize,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<Facing> {
+        let mut best: Option<(u32, Closest)> = None;
+        for &triangle in &state.candidates[index] {
+            let found = closest(point, self.corners(triangle, points));
+            if best.is_none_or(|(_, other)| found.distance < other.distance) {
+                best = Some((triangle, found));
+            }
+        }
+        let (triangle, found) = best?;
+        if found.is_inside() {
+            return Some(Facing::Plane(triangle));
+        }
+        if let Some((beside, nearer)) = self.nearer_beside(triangle, found, point, points) {
+            let height = dot(nearer.away, normal(self.corners(beside, points)));
+            if height.abs() > FLUSH * self.description.voxel {
+                // It has gone round the edge; it meets what is behind that if it was in front of it.
+                let before = &state.accepted_points;
+                let met = nearer.is_inside()
+                    && self.is_in_front(beside, state.accepted_samples[index], before);
+                return met.then_some(Facing::Plane(beside));
+            }
+        }
+        let outward = self.normal_beside(triangle, found.weights, points);
+        let normal = if found.distance <= 1e-9 * self.description.voxel {
+            outward
+        } else {
+            let sign = 1.0f64.copysign(dot(found.away, outward));
+            scale(sign / found.distance, found.away)
+        };
+        Some(Facing::Edge(triangle, found.weights, normal))
+    }
+
+    /// A triangle at the edge or corner of another that comes closer to a point than that does.
+    fn nearer_beside(
+        &self,
+        triangle: u32,
+        found: Closest,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<(u32, Closest)> {
+        let corners = self.triangles[triangle as usize];
+        let on = (0..3)
+            .filter(|c| found.weights[*c] > 0.0)
+            .map(|c| corners[c]);
+        let least = found.distance - 1e-9 * self.description.voxel;
+        let mut best: Option<(u32, Closest)> = None;
+        for &other in on.flat_map(|corner| &self.around[corner as usize]) {
+            let beside = closest(point, self.corners(other, points));
+            if beside.distance < best.map_or(least, |(_, best)| best.distance) {
+                best = Some((other, beside));
+            }
+        }
+        best
+    }
+
+    /// Whether a point is in front of a triangle, or not too deep behind it.
+    pub(super) fn is_in_front(&self, triangle: u32, point: Vec3, points: &[Vec3]) -> bool {
+        let corners = self.corners(triangle, points);
+        let found = closest(point, corners);
+        dot(found.away, normal(corners)) >= -DEPTH * self.description.voxel
+    }
+
+    /// The mean normal at a point on an edge or corner of a triangle, which tells outside from inside (Baerentzen and
+    /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
+    fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
+        let corners = self.triangles[triangle as usize];
+        let on: Vec<u32> = (0..3)
+            .filter(|c| weights[*c] > 0.0)
+            .map(|c| corners[c])
+            .collect();
+        let mut sum = [0.0; 3];
+        for &other in &self.around[on[0] as usize] {
+            let of_other = self.triangles[other as usize];
+            if !on.iter().all(|point| of_other.contains(point)) {
+                continue;
+            }
+            let n = normal(self.corners(other, points));
+            let weight = match on.as_slice() {
+                [corner] => {
+                    let place = of_other.iter().position(|p| p == corner).unwrap_or(0);
+                    let at = |step: usize| points[of_other[(place + step) % 3] as usize];
+                    let (u, v) = (unit(sub(at(1), at(0))), unit(sub(at(2), at(0))));
+                    dot(u, v).clamp(-1.0, 1.0).acos()
+                }
+                _ => 1.0,
+            };
+            axpy(&mut sum, weight, n);
+        }
+        unit(sum)
+    }
+}

@@ -1,0 +1,88 @@
+//! Friction under the multipliers, bounds and anchors that samples hold.
+
+use voxsoft_solid::matrix::Mat3;
+use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
+
+use super::Touch;
+use super::state::State;
+
+/// How friction acts on a sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Friction {
+    /// N.
+    pub force: Vec3,
+    /// Minus the derivative of the force by the slip, N/m.
+    pub stiffness: Mat3,
+    /// J.
+    pub energy: f64,
+    pub anchor: (u32, [f64; 3]),
+    pub slips: bool,
+}
+
+impl Touch {
+    /// The friction of a sample that was in contact at the last correction and had an anchor: also where it has lost
+    /// contact since, or its force would jump.
+    pub(super) fn friction(
+        &self,
+        state: &State,
+        sample: u32,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<Friction> {
+        let memory = &state.now[sample as usize];
+        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
+        let k = state.stick * self.penalty(sample);
+        let n = memory.plane;
+        let along = |v: Vec3| sub(v, scale(dot(v, n), n));
+        let mut slip = point;
+        for (weight, corner) in anchor.1.iter().zip(self.corners(anchor.0, points)) {
+            axpy(&mut slip, -weight, corner);
+        }
+        let trial = sub(along(memory.friction), scale(k, along(slip)));
+        let size = norm(trial);
+        let slips = size > memory.bound;
+        let (force, energy) = if slips {
+            let energy = memory.bound * (size - memory.bound / 2.0) / k;
+            (scale(memory.bound / size, trial), energy)
+        } else {
+            (trial, size * size / (2.0 * k))
+        };
+        let stiffness = std::array::from_fn(|i| {
+            std::array::from_fn(|j| {
+                let plane = if i == j { 1.0 } else { 0.0 } - n[i] * n[j];
+                if slips {
+                    let across = plane - trial[i] * trial[j] / (size * size);
+                    k * memory.bound / size * across
+                } else {
+                    k * plane
+                }
+            })
+        });
+        Some(Friction {
+            force,
+            stiffness,
+            energy,
+            anchor,
+            slips,
+        })
+    }
+
+    /// Hands over the friction of every sample that has some.
+    pub(super) fn each_friction(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(u32, Friction),
+    ) {
+        if !state.now.iter().any(|memory| memory.bound > 0.0) {
+            return;
+        }
+        let points = self.points_at(positions);
+        for sample in 0..self.samples.len() as u32 {
+            let point = self.samples[sample as usize].point.at(positions);
+            if let Some(friction) = self.friction(state, sample, point, &points) {
+                take(sample, friction);
+            }
+        }
+    }
+}
