@@ -148,13 +148,13 @@ def test_what_is_pinched_slips_at_its_bound():
 def test_what_slides_out_of_a_grip_falls_freely():
     block = bar(16 * mm)
     # Its upper edge passes the faces of the pads, which bulge out over it.
-    result = simulate(pinched(0.01, objects=[block]), end_time=0.2, time_step=5e-3)
+    result = simulate(pinched(0.01, objects=[block]), end_time=0.24, time_step=5e-3)
     assert result.status == "ok"
     assert result.contacts == ()
     heights = result.recording.objects["block"][0][:, 2]
     rate, before = ((heights[-k] - heights[-k - 1]) / 0.02 for k in (1, 2))
-    # Steps of other lengths, which the edges took, fade from the formula at a third a step.
-    assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-3)
+    # Steps of other lengths, which the edges took until 0.17 s, fade from the formula at a third a step.
+    assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-4)
 
 
 def test_what_falls_for_ever_is_called_by_its_name():

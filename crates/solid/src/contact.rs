@@ -12,8 +12,8 @@ pub trait Contact: Term {
     /// Forgets everything; `positions` (m) become the accepted state.
     fn start(&self, positions: &[Vec3]);
 
-    /// Looks who touches at `positions`; whether the stiffness there joins vertices that it did not before. To be
-    /// called before the stiffness is asked for.
+    /// Looks who touches at `positions`; whether the pattern of the stiffness has changed: it joins vertices that it did
+    /// not before, or no longer many that it did. To be called before the stiffness is asked for.
     fn follow(&self, positions: &[Vec3]) -> bool;
 
     /// Brings the multipliers up to the forces at `positions`, an equilibrium; how far off they are. At most 1 is

@@ -14,7 +14,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem, elastic};
+use voxsoft_solid::{Body, Load, Problem, elastic};
 
 use crate::ordering::nested_dissection;
 use crate::system::{FactorError, Means};
@@ -66,7 +66,7 @@ impl DirectSystem {
         let body = problem.body();
         let count = body.rest().len();
         let neighbors = adjacency(problem, count);
-        let order = nested_dissection(body.rest(), &neighbors);
+        let order = nested_dissection(body.rest(), &neighbors, &of_no_element(body));
         let mut rows = vec![HELD; 3 * count];
         let mut size = 0;
         for &vertex in &order {
@@ -431,6 +431,17 @@ impl DirectSystem {
         }
         vectors
     }
+}
+
+/// The vertices that carry only what is attached to them: objects, springs.
+fn of_no_element(body: &Body) -> Vec<bool> {
+    let mut marks = vec![true; body.rest().len()];
+    let bricks = body.bricks().iter().flat_map(|brick| brick.vertices);
+    let tets = body.tets().iter().flat_map(|tet| tet.vertices);
+    for vertex in bricks.chain(tets) {
+        marks[vertex as usize] = false;
+    }
+    marks
 }
 
 /// For each vertex the vertices that share a piece of stiffness with it, itself included.

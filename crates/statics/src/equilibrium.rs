@@ -42,6 +42,29 @@ impl From<FactorError> for Failure {
     }
 }
 
+/// How Newton's method goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Way {
+    /// With strains that are carried along ([`voxsoft_solid::mixed`]).
+    Quick,
+    /// The same, then, where that goes astray, with a line search.
+    Safe,
+    /// With a line search first: from an equilibrium under multipliers of contact that were corrected since. It is
+    /// near, but friction may let go there, and iterations without a line search overshoot.
+    Again,
+}
+
+impl Way {
+    /// The one for a round of corrections, the first of which has number 0.
+    pub fn of_round(round: usize, problem: &Problem, safe: bool) -> Self {
+        match (problem.contact(), safe) {
+            (Some(_), _) if round > 0 => Self::Again,
+            (_, true) => Self::Safe,
+            (_, false) => Self::Quick,
+        }
+    }
+}
+
 /// An equilibrium.
 pub(crate) struct Found {
     pub iterations: u32,
@@ -87,6 +110,8 @@ pub(crate) struct Equilibrium<'a> {
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
 pub(crate) const PATIENCE: u32 = 8;
+/// The same with contact: what friction lets go sends such iterations astray, and they do not come back.
+const PATIENCE_WITH_CONTACT: u32 = 3;
 /// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
 const LARGEST_SHIFT: f64 = 10.0;
 /// Armijo's condition: the part of the predicted gain that a step must bring.
@@ -126,7 +151,7 @@ impl<'a> Equilibrium<'a> {
         })
     }
 
-    /// Makes room in the tangent for what touches at `positions`.
+    /// Makes room in the tangent for what touches at `positions`, and gives back what is no longer needed.
     pub fn follow_contact(&mut self, positions: &[Vec3]) -> Result<(), FactorError> {
         if self
             .problem
@@ -204,34 +229,41 @@ impl<'a> Equilibrium<'a> {
         jump.iter().flatten().any(|x| *x != 0.0).then_some(jump)
     }
 
-    /// Finds the equilibrium at `point` from `positions`, which it changes: first with strains that
-    /// are carried along ([`voxsoft_solid::mixed`]), which is quick, then, if `safe`, with a line search.
+    /// Finds the equilibrium at `point` from `positions`, which it changes.
     pub fn newton(
         &mut self,
         positions: &mut Vec<Vec3>,
         point: Point,
         settings: &Settings,
-        safe: bool,
+        way: Way,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
-        let mut trial = positions.clone();
-        let mut outcome = self.newton_mixed(&mut trial, point, settings, observer);
+        let start = positions.clone();
+        if way == Way::Again {
+            return match self.newton_searched(positions, point, settings, observer) {
+                Err(Failure::Lost | Failure::Singular) => {
+                    *positions = start;
+                    self.newton_mixed(positions, point, settings, observer)
+                }
+                outcome => outcome,
+            };
+        }
+        let mut outcome = self.newton_mixed(positions, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
             // From here on directly, if that fits in memory.
             self.means.solver = LinearSolver::Direct;
             self.system = System::new(self.problem, &self.held, self.means)?;
-            trial.clone_from(positions);
-            outcome = self.newton_mixed(&mut trial, point, settings, observer);
+            positions.clone_from(&start);
+            outcome = self.newton_mixed(positions, point, settings, observer);
+        }
+        if outcome.is_err() {
+            *positions = start;
         }
         match outcome {
-            Ok(found) => {
-                *positions = trial;
-                Ok(found)
-            }
-            Err(Failure::Lost | Failure::Singular) if safe => {
+            Err(Failure::Lost | Failure::Singular) if way == Way::Safe => {
                 self.newton_searched(positions, point, settings, observer)
             }
-            Err(failure) => Err(failure),
+            outcome => outcome,
         }
     }
 
@@ -246,6 +278,10 @@ impl<'a> Equilibrium<'a> {
         let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
+        let patience = match self.problem.contact() {
+            Some(_) => PATIENCE_WITH_CONTACT,
+            None => PATIENCE,
+        };
         for iteration in 0..=MIXED_ITERATIONS {
             self.follow_contact(positions)?;
             let (mut forces, jump) = self.look(positions, point, observer)?;
@@ -263,7 +299,7 @@ impl<'a> Equilibrium<'a> {
             if relative < 0.5 * lowest {
                 (lowest, since_lowest) = (relative, 0);
             }
-            if since_lowest > PATIENCE {
+            if since_lowest > patience {
                 return Err(Failure::Lost);
             }
             self.iterations += 1;

@@ -10,12 +10,21 @@ use voxsoft_solid::vector::Vec3;
 const SMALL: usize = 24;
 
 /// Vertices in the order of elimination; `neighbors[v]` lists those that share a piece with `v`.
-pub(crate) fn nested_dissection(points: &[Vec3], neighbors: &[Vec<u32>]) -> Vec<u32> {
+///
+/// Vertices that `is_last` marks come last of all. Some join much of the whole, as the four that carry a rigid object
+/// join all that it touches: anywhere else they would bring that into the separators.
+pub(crate) fn nested_dissection(
+    points: &[Vec3],
+    neighbors: &[Vec<u32>],
+    is_last: &[bool],
+) -> Vec<u32> {
+    let all = 0..points.len() as u32;
+    let (last, others): (Vec<u32>, Vec<u32>) = all.partition(|v| is_last[*v as usize]);
     let mut order = Vec::with_capacity(points.len());
     let mut side = vec![0u32; points.len()];
     let mut cuts = 0;
-    let all = (0..points.len() as u32).collect();
-    dissect(all, points, neighbors, &mut side, &mut cuts, &mut order);
+    dissect(others, points, neighbors, &mut side, &mut cuts, &mut order);
+    order.extend(last);
     order
 }
 
@@ -90,7 +99,10 @@ mod tests {
             }
             neighbors.push(list);
         }
-        let mut order = nested_dissection(&points, &neighbors);
+        let mut is_last = vec![false; points.len()];
+        is_last[17] = true;
+        let mut order = nested_dissection(&points, &neighbors, &is_last);
+        assert_eq!(order.last(), Some(&17));
         order.sort_unstable();
         assert!(order.iter().enumerate().all(|(i, &v)| i as u32 == v));
         assert_eq!(order.len(), points.len());
@@ -99,6 +111,7 @@ mod tests {
     #[test]
     fn survives_vertices_on_one_spot() {
         let neighbors = vec![(0..100u32).collect::<Vec<_>>(); 100];
-        assert_eq!(nested_dissection(&[[0.0; 3]; 100], &neighbors).len(), 100);
+        let order = nested_dissection(&[[0.0; 3]; 100], &neighbors, &[false; 100]);
+        assert_eq!(order.len(), 100);
     }
 }

@@ -4,7 +4,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Observer, Problem, Progress, Status};
 
 use crate::control;
-use crate::equilibrium::{Equilibrium, Failure, Found};
+use crate::equilibrium::{Equilibrium, Failure, Found, Way};
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::system::{FactorError, Means, System};
@@ -185,10 +185,11 @@ impl Path<'_, '_> {
         safe: bool,
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            let way = Way::of_round(round, self.equilibrium.problem, safe);
             let found = self
                 .equilibrium
-                .newton(positions, point, settings, safe, self.observer)?;
+                .newton(positions, point, settings, way, self.observer)?;
             iterations += found.iterations;
             let floor_changed = self.equilibrium.update_floor(positions, point)?;
             if !floor_changed && self.equilibrium.is_contact_settled(positions) {

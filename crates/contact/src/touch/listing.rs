@@ -10,6 +10,8 @@ use crate::tree::Tree;
 
 /// How far apart a sample and a triangle may pass each other and be listed, in voxels.
 pub(super) const REACH: f64 = 0.5;
+/// How far points may have moved and still have the candidates that were listed, in voxels: little beside [`REACH`].
+pub(super) const SAME: f64 = 1e-3;
 /// How deep a sample may be in what it touches at an accepted state, in voxels: less than half of the thinnest wall.
 pub(super) const DEPTH: f64 = 0.25;
 /// Faces that can meet look at each other: the product of their normals is below this. A sample on an edge has

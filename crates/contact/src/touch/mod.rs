@@ -290,14 +290,15 @@ mod tests {
     use super::*;
     use voxsoft_solid::conformance::check_term;
 
-    /// Two tetrahedra, the tip of the second a little in a face of the first.
+    /// Two tetrahedra, the tip of the second in a face of the first, by no more than pressures that are believed take:
+    /// beyond them how a pressure turns is not all in the stiffness.
     fn pressed() -> (Touch, Vec<Vec3>) {
         let positions = vec![
             [0.0, 0.0, 0.0],
             [1.0, 0.1, 0.0],
             [0.0, 1.0, 0.05],
             [0.1, 0.1, -1.0],
-            [0.31, 0.33, -0.004],
+            [0.31, 0.33, 0.01455],
             [0.6, 0.1, 1.0],
             [0.1, 0.2, 1.1],
             [0.4, 0.7, 0.9],
@@ -323,7 +324,7 @@ mod tests {
         let (touch, positions) = pressed();
         let pairs = touch.pairs(&positions);
         assert_eq!(pairs.len(), 1);
-        assert!(pairs[0].gap < 0.0 && pairs[0].gap > -0.02, "{pairs:?}");
+        assert!(pairs[0].gap < 0.0 && pairs[0].gap > -0.0005, "{pairs:?}");
         let mut apart = positions.clone();
         for x in &mut apart[4..] {
             x[2] += 0.1;

@@ -1,6 +1,6 @@
 //! Contact along a load path: who faces whom, corrections of multipliers, anchors that come along.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
@@ -10,6 +10,11 @@ use super::state::{Facing, Memory, State};
 use super::{
     APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED, Touch, listing,
 };
+
+/// How many times more pairs there may be room for than have stiffness, where these are many. What slides comes by many
+/// triangles, and an iteration that goes astray by any.
+const WASTE: usize = 2;
+const MANY: usize = 100;
 
 impl Contact for Touch {
     fn start(&self, positions: &[Vec3]) {
@@ -26,32 +31,25 @@ impl Contact for Touch {
             crept: f64::INFINITY,
             ..State::default()
         };
-        self.list(&mut state, points);
-        state.looks = LOOKS;
+        self.list_from_accepted(&mut state, points);
         self.face(&mut state, positions, true);
     }
 
     fn follow(&self, positions: &[Vec3]) -> bool {
         let mut state = self.write();
         let points = self.points_at(positions);
-        let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
-        let farthest = points.iter().zip(&state.listed_points).map(moved);
-        if !(farthest.fold(0.0, f64::max) <= listing::REACH / 2.0 * self.description.voxel) {
+        if !(self.farthest_from_listed(&state, &points) <= listing::REACH / 2.0) {
             self.list(&mut state, points);
+            state.listed_at_rest = false;
         }
         let all = state.looks > 0;
         state.looks = state.looks.saturating_sub(1);
         self.face(&mut state, positions, all);
-        let mut pairs = Vec::new();
-        self.each_contact(&state, positions, |meeting, _, _, _| {
-            pairs.push((meeting.sample, meeting.triangle));
-        });
-        self.each_friction(&state, positions, |sample, friction| {
-            pairs.push((sample, friction.anchor.0));
-        });
         let before = state.pattern.len();
+        let pairs = self.pairs_of_stiffness(&state, positions);
         state.pattern.extend(pairs);
-        state.pattern.len() > before
+        let shrank = std::mem::take(&mut state.pattern_shrank);
+        state.pattern.len() > before || shrank
     }
 
     fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
@@ -128,14 +126,18 @@ impl Contact for Touch {
                 memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
             }
         });
+        let pairs = self.pairs_of_stiffness(&state, positions);
+        if state.pattern.len() > WASTE * pairs.len().max(MANY) {
+            state.pattern = pairs;
+            state.pattern_shrank = true;
+        }
         let points = self.points_at(positions);
         state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         state.accepted_points.clone_from(&points);
         state.accepted.clone_from(&moved);
         state.now = moved;
         (state.crept, state.corrections) = (f64::INFINITY, 0);
-        self.list(&mut state, points);
-        state.looks = LOOKS;
+        self.list_from_accepted(&mut state, points);
     }
 
     fn go_back(&self) {
@@ -143,12 +145,39 @@ impl Contact for Touch {
         state.now = state.accepted.clone();
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
-        self.list(&mut state, points);
-        state.looks = LOOKS;
+        self.list_from_accepted(&mut state, points);
     }
 }
 
 impl Touch {
+    /// Lists what may be met from the accepted state on, unless it is where it was when that was listed.
+    fn list_from_accepted(&self, state: &mut State, points: Vec<Vec3>) {
+        if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
+            self.list(state, points);
+            state.listed_at_rest = true;
+        }
+        state.looks = LOOKS;
+    }
+
+    /// Samples and triangles that have stiffness at `positions`.
+    fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
+        let mut pairs = BTreeSet::new();
+        self.each_contact(state, positions, |meeting, _, _, _| {
+            pairs.insert((meeting.sample, meeting.triangle));
+        });
+        self.each_friction(state, positions, |sample, friction| {
+            pairs.insert((sample, friction.anchor.0));
+        });
+        pairs
+    }
+
+    /// How far any point has moved since candidates were listed, in voxels.
+    fn farthest_from_listed(&self, state: &State, points: &[Vec3]) -> f64 {
+        let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
+        let farthest = points.iter().zip(&state.listed_points).map(moved);
+        farthest.fold(0.0, f64::max) / self.description.voxel
+    }
+
     /// How far the sum of the bounds of friction between two surfaces is off, as a part of what it may.
     fn off_bounds(&self, old: &[Memory], new: &[Memory], negligible: f64) -> f64 {
         let mut sums: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();

@@ -42,6 +42,8 @@ pub(super) struct State {
     pub now: Vec<Memory>,
     /// The points when candidates were listed last.
     pub listed_points: Vec<Vec3>,
+    /// Whether they were those of the accepted state then.
+    pub listed_at_rest: bool,
     /// For each sample the triangles that it may meet on the way from the last accepted state.
     pub candidates: Vec<Vec<u32>>,
     /// What each of them faces now.
@@ -56,4 +58,6 @@ pub(super) struct State {
     pub looks: u32,
     /// Samples and triangles whose stiffness there is room for.
     pub pattern: BTreeSet<(u32, u32)>,
+    /// Whether that has become less, and nobody has been told.
+    pub pattern_shrank: bool,
 }

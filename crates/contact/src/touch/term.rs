@@ -9,6 +9,10 @@ use voxsoft_solid::{ProblemError, Term};
 use super::gap::barycentric_gradients;
 use super::{Meeting, Touch};
 
+/// How far, in units of Young's modulus, a pressure may be above its multiplier and count in how it turns. What a step
+/// has taken deep into each other is under pressures that nothing bears, and that would make the stiffness indefinite.
+const SPURIOUS: f64 = 0.3;
+
 impl Term for Touch {
     fn name(&self) -> &'static str {
         "contact"
@@ -56,6 +60,9 @@ impl Term for Touch {
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
         let state = self.read();
         self.each_contact(&state, positions, |meeting, pressure, _, points| {
+            let sample = meeting.sample as usize;
+            let believed = SPURIOUS * self.description.young * self.samples[sample].area;
+            let pressure = pressure.min(state.now[sample].normal + believed);
             self.visit_gap(meeting, pressure, points, tangent, visit);
         });
         self.each_friction(&state, positions, |sample, friction| {
