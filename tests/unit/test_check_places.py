@@ -34,6 +34,21 @@ def test_a_piece_that_hangs_on_nothing_is_where_the_smaller_one_is():
     assert components.at == pytest.approx((0.155, 0.055, 0.035))
 
 
+@pytest.mark.parametrize("held", ["both", "one"])
+def test_fingers_that_are_clamped_each_hang_on_something(held):
+    fingers = vs.Box(size=(0.02, 0.02, 0.06)) | vs.Box(size=(0.02, 0.02, 0.06), corner=(0.05, 0, 0))
+    region = vs.Region(z=(0, 0)) if held == "both" else vs.Region(x=(0, 0.04), z=(-0.03, -0.03))
+    design = vs.Design(
+        name="fingers",
+        voxel_size=0.01,
+        parts=[vs.Part(shape=fingers, material=vs.NeoHookean(young=1e5, poisson=0.45))],
+        clamps=[vs.Clamp(region=region)],
+        loads=[vs.Gravity()],
+    )
+    warned = [one for one in check(design).findings if "components" in one.what]
+    assert bool(warned) == (held == "one")
+
+
 def test_a_thin_wall_and_a_leak_are_where_they_are():
     filled = np.ones((6, 6, 6), dtype=np.uint8)
     filled[2:4, 2:4, 1:4] = 0  # under it one voxel is left

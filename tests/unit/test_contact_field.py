@@ -52,8 +52,8 @@ def test_pressure_and_friction_over_the_surface_are_the_force(dragged):
     pressed_by = (field.pressure * field.area).sum()
     assert pressed_by == pytest.approx(-contact.force[2], rel=1e-6)
     rubbed = field.area @ field.friction
-    # The normals of body and plate lean from each other by parts of the clearance over a voxel, so that pressure has a
-    # share along the plate, as friction has one across it below.
+    # The normals of body and plate lean from each other by parts of the clearance over a voxel, so
+    # that pressure has a share along the plate, as friction has one across it below.
     assert rubbed[0] == pytest.approx(contact.force[0], abs=1e-6 * pressed_by)
     assert rubbed[0] > 0.05 * pressed_by
     # The plate is flat: what is along it is friction, and what is across it is pressure.

@@ -153,7 +153,8 @@ def test_what_slides_out_of_a_grip_falls_freely():
     assert result.contacts == ()
     heights = result.recording.objects["block"][0][:, 2]
     rate, before = ((heights[-k] - heights[-k - 1]) / 0.02 for k in (1, 2))
-    # Steps of other lengths, which the edges took until 0.17 s, fade from the formula at a third a step.
+    # Steps of other lengths, which the edges took until 0.17 s, fade from the formula at a third a
+    # step.
     assert (rate - before) / 0.02 == pytest.approx(-GRAVITY, rel=1e-4)
 
 

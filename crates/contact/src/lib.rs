@@ -43,6 +43,7 @@ mod overlaps;
 mod predicates;
 mod shells;
 mod tetrahedra;
+mod threads;
 pub mod touch;
 mod tree;
 mod triangles;

@@ -4,6 +4,7 @@
 //! that it is built in the time of a sort and is the same for any number of threads.
 use crate::bounds::Bounds;
 use crate::predicates::Point;
+use crate::threads::both;
 
 /// Things in a leaf.
 const LEAF: usize = 4;
@@ -254,21 +255,6 @@ fn spread(number: u64) -> u64 {
         bits = (bits | bits << shift) & mask;
     }
     bits
-}
-
-/// Both answers, side by side if the work is `large` and there are threads.
-fn both<T: Send>(
-    large: bool,
-    first: impl FnOnce() -> T + Send,
-    second: impl FnOnce() -> T + Send,
-) -> [T; 2] {
-    #[cfg(feature = "threads")]
-    if large {
-        let (first, second) = rayon::join(first, second);
-        return [first, second];
-    }
-    let _ = large;
-    [first(), second()]
 }
 
 #[cfg(test)]

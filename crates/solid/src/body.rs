@@ -83,6 +83,7 @@ pub struct Body {
     colors: Vec<u32>,
     unit_strain_force: f64,
     unit_strain_energy: f64,
+    size: f64,
 }
 
 impl Body {
@@ -209,6 +210,7 @@ impl Body {
         Ok(Self {
             unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
             unit_strain_energy: (edge_energy + brick_energy) / 2.0,
+            size: size_of(mesh),
             rest: mesh.vertices.clone(),
             masses,
             edges: Edges(edges),
@@ -344,17 +346,9 @@ impl Body {
         self.unit_strain_energy
     }
 
-    /// The diagonal of the bounding box at rest in m: the size against which motion is measured.
+    /// The diagonal of the bounding box at rest in m, of what has material: the size against which motion is measured.
     pub fn size(&self) -> f64 {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for p in &self.rest {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(p[axis]);
-                high[axis] = high[axis].max(p[axis]);
-            }
-        }
-        norm(sub(high, low))
+        self.size
     }
 }
 
@@ -510,6 +504,23 @@ fn filling_of(mesh: &Mesh, block: &[usize]) -> Filling {
 }
 
 /// The signed volume of a tetrahedron in m³.
+/// The diagonal of the box around all tetrahedra, around all vertices where there are none.
+fn size_of(mesh: &Mesh) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let mut take = |p: Vec3| {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(p[axis]);
+            high[axis] = high[axis].max(p[axis]);
+        }
+    };
+    if mesh.tets.is_empty() {
+        mesh.vertices.iter().copied().for_each(&mut take);
+    }
+    let used = mesh.tets.iter().flatten();
+    used.for_each(|v| take(mesh.vertices[*v as usize]));
+    norm(sub(high, low))
+}
+
 fn volume(vertices: &[Vec3], tet: [u32; 4]) -> f64 {
     let [a, b, c, d] = tet.map(|v| vertices[v as usize]);
     dot(sub(b, a), cross(sub(c, a), sub(d, a))) / 6.0

@@ -104,6 +104,8 @@ pub(crate) struct Equilibrium<'a> {
     pub inertia: Option<&'a Inertia>,
     /// Forces in N that do not matter.
     pub negligible: f64,
+    /// The farthest that a clamp carries a vertex.
+    pub largest_motion: f64,
 }
 
 /// Iterations with strains carried along: most steps take less than ten.
@@ -112,6 +114,10 @@ pub(crate) const MIXED_ITERATIONS: u32 = 25;
 pub(crate) const PATIENCE: u32 = 8;
 /// The same with contact: what friction lets go sends such iterations astray, and they do not come back.
 const PATIENCE_WITH_CONTACT: u32 = 3;
+/// How far a vertex may move in an iteration, in sizes of the body; beyond it that is lost.
+const FARTHEST: f64 = 20.0;
+/// The same with contact. What may meet on such a way would be listed, and is of no use.
+const FARTHEST_WITH_CONTACT: f64 = 0.5;
 /// The largest shift of the diagonal: beyond it a step is a step of steepest descent.
 const LARGEST_SHIFT: f64 = 10.0;
 /// Armijo's condition: the part of the predicted gain that a step must bring.
@@ -148,6 +154,7 @@ impl<'a> Equilibrium<'a> {
             largest_turn: None,
             inertia: None,
             negligible: 0.0,
+            largest_motion: largest_motion(problem),
         })
     }
 
@@ -278,9 +285,9 @@ impl<'a> Equilibrium<'a> {
         let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
-        let patience = match self.problem.contact() {
-            Some(_) => PATIENCE_WITH_CONTACT,
-            None => PATIENCE,
+        let (patience, farthest) = match self.problem.contact() {
+            Some(_) => (PATIENCE_WITH_CONTACT, FARTHEST_WITH_CONTACT),
+            None => (PATIENCE, FARTHEST),
         };
         for iteration in 0..=MIXED_ITERATIONS {
             self.follow_contact(positions)?;
@@ -311,8 +318,7 @@ impl<'a> Equilibrium<'a> {
                 jump.as_deref(),
                 &mut forces.free,
             );
-            // Far from equilibrium the tangent may be indefinite; this way does not go downhill anyway.
-            let factor = self.system.factor(0.0)?;
+            let factor = self.carried()?;
             let side = &mut forces.free;
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
             self.system
@@ -322,7 +328,7 @@ impl<'a> Equilibrium<'a> {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
             }
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
-            if !(largest < 20.0 * body.size() + largest_motion(self.problem)) {
+            if !(largest < farthest * body.size() + self.largest_motion) {
                 return Err(Failure::Lost);
             }
             if self.stands_still(positions, largest, relative) {
@@ -429,7 +435,7 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let size = self.problem.body().size();
-        let limit = 20.0 * size;
+        let limit = FARTHEST * size;
         let mut shift = 0.0f64;
         for iteration in 0..=settings.max_iterations {
             self.follow_contact(positions)?;
@@ -474,12 +480,24 @@ impl<'a> Equilibrium<'a> {
             let gone = positions
                 .iter()
                 .zip(self.problem.body().rest())
-                .any(|(x, rest)| !(norm(sub(*x, *rest)) < limit + largest_motion(self.problem)));
+                .any(|(x, rest)| !(norm(sub(*x, *rest)) < limit + self.largest_motion));
             if gone {
                 return Err(Failure::Lost);
             }
         }
         Err(Failure::Lost)
+    }
+
+    /// A factor for an iteration with strains carried along. Far from equilibrium the tangent may be indefinite, and
+    /// this way does not go downhill anyway; but with contact it goes astray from there and does not come back.
+    fn carried(&mut self) -> Result<Factor, Failure> {
+        if self.problem.contact().is_none() || !self.problem.is_conservative() {
+            return Ok(self.system.factor(0.0)?);
+        }
+        match self.system.factor_positive(0.0) {
+            Err(FactorError::NotPositive) => Err(Failure::Lost),
+            outcome => Ok(outcome?),
+        }
     }
 
     /// A factor whose step goes downhill: where loads have a potential, the diagonal is lifted until

@@ -180,11 +180,13 @@ def examine(
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
     cavities, leaks = _cavities(voxels, mesh), voxels.leaks
+    is_held = False
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
             cavities, leaks = _closed_by_layers(setup, voxels)
             setup.check()
+            is_held = setup.loose_piece is None
             mass = setup.problem.mass
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error)]
@@ -193,7 +195,7 @@ def examine(
     if isinstance(body, Design) and setup is not None:
         findings += ambiguous_indices(body, setup.mesh)
     findings += implausible_numbers(body, mesh, mass)
-    findings += [*_findings_of_voxels(body, voxels, leaks), *_findings_of_mesh(mesh)]
+    findings += [*_findings_of_voxels(body, voxels, leaks, is_held), *_findings_of_mesh(mesh)]
     constraints = len(mesh.edges) + len(mesh.tets)
     thinnest = _thinnest_wall(voxels)
     cost = None
@@ -293,7 +295,7 @@ def _findings_of_settings(design: Design) -> Iterator[Diagnostic]:
 
 
 def _findings_of_voxels(
-    body: Design | Voxels, voxels: Voxels, leaks: tuple[Leak, ...]
+    body: Design | Voxels, voxels: Voxels, leaks: tuple[Leak, ...], is_held: bool
 ) -> Iterator[Diagnostic]:
     hint = "thicken the body there by a voxel, or make the voxels smaller"
     for hinge in voxels.hinges[:_LISTED]:
@@ -310,7 +312,7 @@ def _findings_of_voxels(
         what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
         yield Diagnostic("warning", "voxels", what, hint)
     components = voxels.components("face")
-    if len(components) > 1:
+    if len(components) > 1 and not is_held:
         sizes = ", ".join(f"{component.count:,}" for component in components[:_LISTED])
         yield Diagnostic(
             "warning",

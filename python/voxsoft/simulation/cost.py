@@ -21,6 +21,7 @@ from voxsoft.simulation.dynamics import DEFAULT_TIME_STEP, Dynamics, DynamicsToE
 from voxsoft.simulation.equilibrium import ArcLengthControl, Statics, VolumeControl
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.rest import QuickestRest
+from voxsoft.simulation.touching import has_contact
 
 #: Seconds of one constraint and step of relaxation or dynamics of a lattice, and of one
 #: tetrahedron of rubber.
@@ -36,6 +37,8 @@ _OF_A_LATTICE: Final = 0.2
 _FEWEST: Final = 4.0
 _MORE: Final = 60.0
 _OF_A_STEP: Final = 6.0
+#: The same of a step over time with contact: a capsule that is held takes 3, fingers that close 15.
+_OF_A_STEP_IN_CONTACT: Final = 7.0
 #: Steps of an arc that is not longer than it must be.
 _STEPS_OF_AN_ARC: Final = 8
 #: Substeps in the time that a wave of compression takes through a voxel.
@@ -118,6 +121,10 @@ def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost
         # A body that is damped well is at rest after about one swing of its lowest mode.
         swing = float(sizes[-1] ** 2 / (0.16 * sizes[0] * slow))
         end = method.end_time if isinstance(method, DynamicsToEnd) else None
+        if has_contact(design):
+            steps = (end or swing) / (method.time_step or DEFAULT_TIME_STEP)
+            seconds = _OF_A_STEP_IN_CONTACT * steps * iteration
+            return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if end else None)
         seconds = step * (end or swing) / _substep(method, size, speed)
         return Cost(seconds, seconds / _SPREAD, seconds * _SPREAD if end else None)
     seconds = step * _steps_to_rest(sizes / size, speed / slow)

@@ -248,6 +248,14 @@ class Setup:
                 )
             self.load(index)
 
+    @cached_property
+    def loose_piece(self) -> NDArray[np.int32] | None:
+        """Vertices of the largest component that no clamp holds; None if each is held."""
+        held = np.zeros(len(self.mesh.vertices), dtype=bool)
+        for vertices in self.clamped:
+            held[vertices] = True
+        return _loose_piece(self.mesh, held)
+
     def _check_support(self) -> None:
         """Every component must be held, unless it may lie on a floor."""
         if self.design.floor is not None:
@@ -258,9 +266,7 @@ class Setup:
                 "nothing holds the body: it would fall or fly for ever",
                 "add a clamp, a floor, or an end_time to watch it fly",
             )
-        held = np.zeros(len(self.mesh.vertices), dtype=bool)
-        held[np.concatenate(self.clamped)] = True
-        loose = _loose_piece(self.mesh, held)
+        loose = self.loose_piece
         if loose is not None:
             center = self.mesh.vertices[loose].mean(axis=0) * 1e3
             raise DisconnectedError(

@@ -6,6 +6,7 @@ use super::Touch;
 use super::gap::normal;
 use super::state::State;
 use crate::bounds::Bounds;
+use crate::threads;
 use crate::tree::Tree;
 
 /// How far apart a sample and a triangle may pass each other and be listed, in voxels.
@@ -30,39 +31,44 @@ impl Touch {
         };
         let boxes: Vec<Bounds> = self.triangles.iter().map(swept).collect();
         let tree = Tree::new(&boxes);
-        // A sample stays within the box of a triangle that it is on.
-        let mut candidates = vec![Vec::new(); self.samples.len()];
-        for (index, sample) in self.samples.iter().enumerate() {
-            let first = sample.triangles[0] as usize;
+        let accepted = &state.accepted_points;
+        let all = 0..self.triangles.len() as u32;
+        let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
+        let meets = |index: usize| {
+            // A sample stays within the box of a triangle that it is on.
+            let first = self.samples[index].triangles[0] as usize;
             let ends = self.triangles[first].map(|p| p as usize);
-            let way = ends.map(|p| sub(points[p], state.accepted_points[p]));
+            let way = ends.map(|p| sub(points[p], accepted[p]));
             let start = state.accepted_samples[index];
             let reached = way.map(|way| std::array::from_fn(|axis| start[axis] + way[axis]));
             let bounds = Bounds::of([start].into_iter().chain(reached));
             let mut found = Vec::new();
             tree.meeting(&bounds, |triangle| {
-                if self.may_meet(index, triangle, state) {
+                if self.may_meet(index, triangle, &normals, state) {
                     found.push(triangle);
                 }
             });
             found.sort_unstable();
-            candidates[index] = found;
-        }
-        state.candidates = candidates;
+            found
+        };
+        state.candidates = threads::map(self.samples.len(), meets);
         // What is faced stays: the forces are still those of the state that it was looked for.
         state.facing.resize(self.samples.len(), None);
         state.looks = state.looks.max(1);
         state.listed_points = points;
     }
 
-    fn may_meet(&self, index: usize, triangle: u32, state: &State) -> bool {
+    /// Whether a sample may meet a triangle; `normals` are those of all triangles at the accepted state.
+    fn may_meet(&self, index: usize, triangle: u32, normals: &[Vec3], state: &State) -> bool {
         let sample = &self.samples[index];
         if self.coefficient(index as u32, triangle).is_nan() {
             return false;
         }
-        let points = &state.accepted_points;
-        let corners = self.corners(triangle, points);
-        let n = normal(corners);
+        let n = normals[triangle as usize];
+        let faces = |own: &u32| dot(normals[*own as usize], n) < FACING;
+        if !sample.triangles.iter().any(faces) {
+            return false;
+        }
         let itself = sample.surface == self.surface_of[triangle as usize];
         if itself {
             let of = self.triangles[triangle as usize];
@@ -71,11 +77,11 @@ impl Touch {
                 return false;
             }
         }
-        let faces = |own: &u32| dot(normal(self.corners(*own, points)), n) < FACING;
-        if !sample.triangles.iter().any(faces) {
-            return false;
-        }
-        self.is_in_front(triangle, state.accepted_samples[index], points)
+        self.is_in_front(
+            triangle,
+            state.accepted_samples[index],
+            &state.accepted_points,
+        )
     }
 }
 

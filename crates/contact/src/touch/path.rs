@@ -10,6 +10,7 @@ use super::state::{Facing, Memory, State};
 use super::{
     APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED, Touch, listing,
 };
+use crate::threads;
 
 /// How many times more pairs there may be room for than have stiffness, where these are many. What slides comes by many
 /// triangles, and an iteration that goes astray by any.
@@ -237,10 +238,9 @@ impl Touch {
     /// Lets samples look for what they face: all of them, or those that have strayed from it.
     fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
-        for index in 0..self.samples.len() {
+        let facing = |index: usize| {
             if state.candidates[index].is_empty() {
-                state.facing[index] = None;
-                continue;
+                return None;
             }
             let point = self.samples[index].point.at(positions);
             let strayed = match state.facing[index] {
@@ -251,10 +251,12 @@ impl Touch {
                 Some(Facing::Edge(..)) => false,
                 None => true,
             };
-            if !all && !strayed {
-                continue;
+            if all || strayed {
+                self.look(state, index, point, &points)
+            } else {
+                state.facing[index]
             }
-            state.facing[index] = self.look(state, index, point, &points);
-        }
+        };
+        state.facing = threads::map(self.samples.len(), facing);
     }
 }
