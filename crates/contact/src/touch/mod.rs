@@ -24,13 +24,13 @@
 mod facing;
 mod field;
 mod friction;
-mod gap;
+pub(crate) mod gap;
 mod listing;
 mod path;
 mod report;
 pub mod rigid;
 mod state;
-mod surface;
+pub(crate) mod surface;
 mod term;
 
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
