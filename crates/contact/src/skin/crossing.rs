@@ -11,6 +11,9 @@ const STRETCHES: [[f64; 2]; 2] = [[-0.5, 0.5], [-1.0, -0.5]];
 /// How far inward of a face a crossing may be, in voxels. Those of all faces of a voxel that is full to just beyond its
 /// center would be at one place, and triangles between them without area.
 const DEEPEST: f64 = -0.49;
+/// How far inside a place counts as on the surface, in voxels: where sides of shapes go through the centers of voxels,
+/// those are left empty, whatever rounding says.
+const TIE: f64 = 1e-9;
 /// Halvings of a bracket. What is left of it, a hundred-thousandth of a voxel, is interpolated, which is exact for
 /// flat faces.
 const HALVINGS: usize = 16;
@@ -35,8 +38,13 @@ pub(super) struct Field<'a, E> {
 }
 
 impl<E> Field<'_, E> {
+    /// The values at some places; what is on the surface is outside.
     pub(super) fn at(&mut self, places: &[Vec3]) -> Result<Vec<f64>, E> {
-        (self.values)(places)
+        let mut values = (self.values)(places)?;
+        for value in &mut values {
+            *value += TIE * self.voxel;
+        }
+        Ok(values)
     }
 
     /// The gradients of the function.
@@ -148,7 +156,6 @@ struct Bracket {
 
 impl Bracket {
     fn of(line: usize, ends: [f64; 2], values: [f64; 2]) -> Option<Self> {
-        // What lies on the surface is outside, as it is where voxels are filled.
         let crosses = values[0] < 0.0 && values[1] >= 0.0;
         crosses.then_some(Self { line, ends, values })
     }

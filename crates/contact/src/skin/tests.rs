@@ -28,7 +28,7 @@ impl Filled {
         let all = move || -size..size;
         let cells = all().flat_map(|x| all().flat_map(move |y| all().map(move |z| [x, y, z])));
         for cell in cells {
-            if shape(cell.map(|i| f64::from(i) + 0.5)) >= 0.0 {
+            if shape(cell.map(|i| f64::from(i) + 0.5)) >= -1e-9 {
                 continue;
             }
             filled.voxels.push(std::array::from_fn(|c| {
@@ -139,7 +139,7 @@ fn points_of_a_ball_are_on_it() {
         // A chord of half a voxel is 1 / (8 · 4 · radius) inside; few points are left on one, of at most a voxel.
         let off: Vec<f64> = skin.points.iter().map(|p| shape(*p).abs()).collect();
         assert!(farthest(&skin, &shape) < 1.0 / (8.0 * radius));
-        let exact = off.iter().filter(|off| **off < 1e-9).count();
+        let exact = off.iter().filter(|off| **off < 1e-8).count();
         assert!(
             exact as f64 > 0.98 * off.len() as f64,
             "{exact} of {}",
@@ -161,23 +161,24 @@ fn points_of_a_ball_are_on_it() {
 
 #[test]
 fn boxes_are_exact() {
-    // Along the faces of voxels, off them, and through the centers of voxels but for rounding.
+    // Along the faces of voxels, off them, and through centers of voxels, which those are empty at, or all but.
     for (center, half) in [
         ([0.0; 3], [2.0, 1.0, 3.0]),
         ([0.21, -0.13, 0.37], [2.1, 1.3, 2.8]),
-        ([0.0; 3], [1.5 + 1e-9, 2.5 + 1e-9, 2.0]),
+        ([0.0; 3], [1.5 + 1e-10, 2.5 - 1e-16, 2.0]),
+        ([0.0; 3], [1.5 + 1e-8, 2.5 + 1e-8, 2.0]),
     ] {
         let shape = block(center, half, ALONG);
         let skin = skin_of(6, &shape);
         sound(&skin);
         // Where the surface passes all but through a center, triangles around it are kept apart.
-        let through_centers = half[0] == 1.5 + 1e-9;
+        let through_centers = half[0] == 1.5 + 1e-8;
         let off = farthest(&skin, &shape);
-        assert!(off < if through_centers { 1e-2 } else { 1e-9 }, "{off}");
+        assert!(off < if through_centers { 1e-2 } else { 1e-8 }, "{off}");
         let ideal = 8.0 * half[0] * half[1] * half[2];
         let ratio = volume(&skin) / ideal;
         // A hundredth of a voxel on all sides of 3 by 5 by 4.
-        let most = if through_centers { 0.02 } else { 1e-9 };
+        let most = if through_centers { 0.02 } else { 1e-8 };
         assert!((ratio - 1.0).abs() < most, "{ratio}");
         for corner in 0..8 {
             let side = |i: usize| {
@@ -217,7 +218,7 @@ fn thin_walls_and_slits_keep_both_sides() {
     let skin = skin_of(6, &apart);
     sound(&skin);
     assert!(has_point(&skin, [2.0, 2.0, 0.3]) && has_point(&skin, [2.0, 2.0, 0.7]));
-    assert!((volume(&skin) - 128.0).abs() < 1e-9);
+    assert!((volume(&skin) - 128.0).abs() < 1e-6);
 }
 
 #[test]
