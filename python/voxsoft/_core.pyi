@@ -237,7 +237,13 @@ class ProblemParts:
     ) -> None: ...
     def floor(self, z: float) -> None: ...
     def attach(self, kind: str, elements: str) -> None: ...
-    def touch(self, surface: NDArray[np.uint32], voxel_size: float, refine: int) -> None: ...
+    def touch(
+        self,
+        surface: NDArray[np.uint32],
+        voxel_size: float,
+        refine: int,
+        skin: Skin | None = None,
+    ) -> None: ...
     def object(
         self,
         points: NDArray[np.float64],
@@ -342,6 +348,21 @@ class TouchHistory:
     def contacts(self) -> list[list[Contact]]: ...
     @property
     def objects(self) -> list[list[ObjectPose]]: ...
+
+@final
+class Skin:
+    """The smooth surface of voxels that were filled where any of the shapes is, carried by them."""
+
+    def __new__(
+        cls,
+        shapes: Sequence[Shape],
+        vertices: NDArray[np.float64],
+        voxels: NDArray[np.uint32],
+    ) -> Skin: ...
+    @property
+    def points(self) -> NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> NDArray[np.uint32]: ...
 
 @final
 class ContactField:

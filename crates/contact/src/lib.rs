@@ -42,6 +42,7 @@ mod material;
 mod overlaps;
 mod predicates;
 mod shells;
+pub mod skin;
 mod tetrahedra;
 mod threads;
 pub mod touch;

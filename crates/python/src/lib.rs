@@ -16,6 +16,7 @@ mod mesh;
 mod player;
 mod shapes;
 mod simulate;
+mod skin;
 mod touch;
 mod transient;
 mod voxels;
@@ -35,6 +36,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<materials::PyFiber>()?;
     module.add_class::<touch::PyContact>()?;
     module.add_class::<contact_field::PyContactField>()?;
+    module.add_class::<skin::PySkin>()?;
     module.add_class::<touch::PyObjectPose>()?;
     module.add_class::<touch::PyTouchHistory>()?;
     module.add_class::<simulate::PyProblem>()?;

@@ -18,7 +18,7 @@ type Corner = (f64, f64, f64);
 
 /// An immutable implicit shape, or a scalar field used to grade another one.
 #[pyclass(frozen, name = "Shape", module = "voxsoft._core")]
-pub struct PyShape(Shape);
+pub struct PyShape(pub(crate) Shape);
 
 /// A number, or a number for every place.
 #[derive(FromPyObject)]
@@ -60,7 +60,7 @@ fn build_error(py: Python<'_>, error: &BuildError) -> PyErr {
     exception(py, "ShapeError", place, &what, "")
 }
 
-fn sample_error(py: Python<'_>, error: &SampleError) -> PyErr {
+pub(crate) fn sample_error(py: Python<'_>, error: &SampleError) -> PyErr {
     let (place, hint) = match error {
         SampleError::TooLarge { .. } => ("voxel_size", "use larger voxels or smaller bounds"),
         SampleError::BadLattice { name, .. } => (*name, ""),

@@ -19,6 +19,7 @@ use crate::answer::PyAnswer;
 use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
+use crate::skin::PySkin;
 use crate::touch::{ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
@@ -172,17 +173,20 @@ impl PyProblemParts {
     }
 
     /// The body touches itself and objects: its boundary, voxel size in m, and into how many parts the edge of a
-    /// voxel is divided by the points that are looked at.
+    /// voxel is divided by the points that are looked at; its smooth surface takes the place of the voxels'.
+    #[pyo3(signature = (surface, voxel_size, refine, skin=None))]
     fn touch(
         &mut self,
         surface: PyReadonlyArray2<'_, u32>,
         voxel_size: f64,
         refine: u32,
+        skin: Option<PyRef<'_, PySkin>>,
     ) -> PyResult<()> {
         self.touch = Some(TouchParts {
             surface: rows("surface", &surface)?,
             voxel: voxel_size,
             refine,
+            skin: skin.map(|skin| Arc::clone(&skin.0)),
             ..TouchParts::default()
         });
         Ok(())

@@ -2,6 +2,7 @@
 use std::sync::Arc;
 
 use pyo3::prelude::*;
+use voxsoft_contact::skin::Skin;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Description, PairReport, Surface, Touch};
 use voxsoft_solid::vector::Vec3;
@@ -38,6 +39,8 @@ pub(crate) struct TouchParts {
     pub surface: Vec<[u32; 3]>,
     pub voxel: f64,
     pub refine: u32,
+    /// The smooth surface of a body of voxels, where it has one.
+    pub skin: Option<Arc<Skin>>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
 }
@@ -88,12 +91,12 @@ impl TouchParts {
 
     /// The contact of a body whose objects have their vertices from `first` on.
     pub(crate) fn contact(&self, body: &Body, first: usize) -> Result<Touch, ProblemError> {
-        let skin = if body.voxels().is_empty() {
-            Surface::of_triangles(&self.surface)
-        } else {
-            Surface::of_voxels(body.voxels(), self.refine)
+        let own = match &self.skin {
+            Some(skin) => skin.surface.clone(),
+            None if body.voxels().is_empty() => Surface::of_triangles(&self.surface),
+            None => Surface::of_voxels(body.voxels(), self.refine),
         };
-        let mut surfaces = vec![skin];
+        let mut surfaces = vec![own];
         for (number, object) in self.objects.iter().enumerate() {
             let at = first + 4 * number;
             let carried = |point: &Vec3| object.frame.carry(*point, at as u32);
@@ -108,7 +111,11 @@ impl TouchParts {
             voxel: self.voxel,
             young: mean_modulus(body),
         };
-        Touch::new(description, body.rest())
+        let touch = Touch::new(description, body.rest())?;
+        Ok(match &self.skin {
+            Some(skin) => touch.with_shares(skin.shares.clone()),
+            None => touch,
+        })
     }
 }
 

@@ -50,9 +50,14 @@ class Contact(Record):
         Coulomb's coefficient of all pairs; default 0.
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
+    surface
+        What of the body touches: ``"smooth"`` (default) is the surface of its shapes, carried by
+        the voxels, ``"voxels"`` their faces.
 
     Notes
     -----
+    Voxels that are cut into smaller ones (``refine``) touch with their faces.
+
     A design has contact where it has this table or objects. It is found in equilibrium, with
     ``method = "statics"`` and ``control = "load"``, and over time, with ``method = "dynamics"``.
     Its floor is one of the objects then, with the friction of all.
@@ -66,6 +71,7 @@ class Contact(Record):
 
     friction: float = Field(0.0, ge=0.0)
     pairs: tuple[ContactPair, ...] = ()
+    surface: Literal["smooth", "voxels"] = "smooth"
 
     def table(self, objects: Sequence[Object], floor: bool = False) -> list[list[float]]:
         """The friction of the body, the objects and a floor with each other.

@@ -18,6 +18,7 @@ from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
 from voxsoft.shapes.tracing import trace
+from voxsoft.simulation.skin import skin_of
 from voxsoft.units import format_quantity
 
 #: Into how many parts the edge of a voxel is divided by the points where contact is looked for.
@@ -162,20 +163,32 @@ class Touching:
         return self.mesh.voxel_size or self.design.voxel_size
 
     @cached_property
+    def skin(self) -> _core.Skin | None:
+        """The smooth surface of the body; None where its voxels touch."""
+        contact = self.design.contact or Contact()
+        return skin_of(self.design, self.mesh) if contact.surface == "smooth" else None
+
+    @cached_property
+    def body(self) -> Surface:
+        """The surface of the body."""
+        if self.skin is not None:
+            return Surface(self.skin.points, self.skin.triangles)
+        return Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+
+    @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
         """The surface of each object."""
         found: list[Surface] = []
         for index, each in enumerate(self.design.objects):
             where = f"objects[{index}]"
             surface = surface_of(each, self.design, where)
-            body = Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
-            self._check_apart(surface, body, where, "the body")
+            self._check_apart(surface, self.body, where, "the body")
             for other, before in zip(self.design.objects, found, strict=False):
                 if each.is_free or other.is_free:
                     self._check_apart(surface, before, where, f'"{other.name}"')
             self._check_above(surface.vertices, where)
             found.append(surface)
-        self._check_above(self.mesh.vertices, "floor")
+        self._check_above(self.body.vertices, "floor")
         return tuple(found)
 
     def _check_above(self, vertices: NDArray[np.float64], where: str) -> None:
@@ -227,7 +240,7 @@ class Touching:
     def give_to(self, parts: _core.ProblemParts) -> None:
         """Add it to the parts of a problem."""
         body = self.mesh.triangles.astype(np.uint32)
-        parts.touch(body, self.voxel_size, _SAMPLES)
+        parts.touch(body, self.voxel_size, _SAMPLES, self.skin)
         for each, surface, solid in zip(
             self.design.objects, self.surfaces, self.solids, strict=True
         ):

@@ -7,7 +7,7 @@
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
 
 use super::gap::{area, normal, unit};
-use super::{Meeting, Touch};
+use super::{Carried, Meeting, Touch};
 
 /// The body among the surfaces.
 const BODY: u32 = 0;
@@ -59,7 +59,7 @@ impl Touch {
         for (index, sample) in self.samples.iter().enumerate() {
             if let (BODY, [vertex], Some(facing)) = (
                 sample.surface,
-                sample.point.vertices.as_slice(),
+                self.share(index as u32).vertices.as_slice(),
                 state.facing[index],
             ) {
                 let point = sample.point.at(positions);
@@ -85,17 +85,18 @@ impl Touch {
     ) {
         let own = self.samples[sample as usize].surface;
         let other = self.surface_of[triangle as usize];
-        let parts = self.relative(sample, triangle, weights);
-        for (number, (factor, point)) in parts.into_iter().enumerate() {
-            let (surface, sign) = if number == 0 {
-                (own, 1.0)
-            } else {
-                (other, -1.0)
-            };
-            if surface == BODY {
-                for (vertex, weight) in point.vertices.iter().zip(&point.weights) {
-                    take(*vertex as usize, sign, sign * factor * weight);
-                }
+        let mut share = |point: u32, sign: f64, part: f64| {
+            let Carried { vertices, weights } = self.share(point);
+            for (vertex, weight) in vertices.iter().zip(weights) {
+                take(*vertex as usize, sign, part * weight);
+            }
+        };
+        if own == BODY {
+            share(sample, 1.0, 1.0); // Samples are numbered as their points are.
+        }
+        if other == BODY {
+            for (corner, weight) in self.triangles[triangle as usize].into_iter().zip(weights) {
+                share(corner, -1.0, weight);
             }
         }
     }
@@ -111,7 +112,7 @@ impl Touch {
             let corners = self.corners(triangle as u32, points);
             let (third, outward) = (area(corners) / 3.0, normal(corners));
             for point in self.triangles[triangle] {
-                let carried = &self.points[point as usize];
+                let carried = self.share(point);
                 for (vertex, weight) in carried.vertices.iter().zip(&carried.weights) {
                     let vertex = *vertex as usize;
                     whole[vertex] += weight * third;
@@ -129,7 +130,7 @@ impl Touch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::touch::{Carried, Description, Surface};
+    use crate::touch::{Description, Surface};
     use voxsoft_solid::Contact;
 
     const CUBE: [u32; 8] = [0, 1, 2, 3, 4, 5, 6, 7];

@@ -32,7 +32,7 @@ pub(super) fn area(corners: [Vec3; 3]) -> f64 {
 }
 
 /// Twice the area along the outward normal.
-pub(super) fn doubled([a, b, c]: [Vec3; 3]) -> Vec3 {
+pub(crate) fn doubled([a, b, c]: [Vec3; 3]) -> Vec3 {
     cross(sub(b, a), sub(c, a))
 }
 
@@ -41,7 +41,7 @@ pub(super) fn normal(corners: [Vec3; 3]) -> Vec3 {
     unit(doubled(corners))
 }
 
-pub(super) fn unit(a: Vec3) -> Vec3 {
+pub(crate) fn unit(a: Vec3) -> Vec3 {
     let length = norm(a);
     if length > 0.0 {
         scale(1.0 / length, a)

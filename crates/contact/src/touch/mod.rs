@@ -24,13 +24,13 @@
 mod facing;
 mod field;
 mod friction;
-mod gap;
+pub(crate) mod gap;
 mod listing;
 mod path;
 mod report;
 pub mod rigid;
 mod state;
-mod surface;
+pub(crate) mod surface;
 mod term;
 
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
@@ -92,6 +92,8 @@ pub struct Touch {
     samples: Vec<Sample>,
     /// The points of all surfaces.
     points: Vec<Carried>,
+    /// For each point of the first surface the vertices that stand for it, where those are not what carries it.
+    shares: Vec<Carried>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// The surface of each.
@@ -165,6 +167,7 @@ impl Touch {
             description,
             samples,
             points,
+            shares: Vec::new(),
             triangles,
             surface_of,
             around,
@@ -172,6 +175,20 @@ impl Touch {
         };
         Contact::start(&touch, rest);
         Ok(touch)
+    }
+
+    /// Gives the points of the first surface vertices that stand for them in fields over vertices, with positive
+    /// weights: what carries a smooth surface lies partly inside, and has weights of both signs.
+    #[must_use]
+    pub fn with_shares(mut self, shares: Vec<Carried>) -> Self {
+        self.shares = shares;
+        self
+    }
+
+    /// The vertices that stand for a point, as points are numbered over all surfaces.
+    fn share(&self, point: u32) -> &Carried {
+        let point = point as usize;
+        self.shares.get(point).unwrap_or(&self.points[point])
     }
 
     fn read(&self) -> RwLockReadGuard<'_, State> {

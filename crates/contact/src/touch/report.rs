@@ -1,14 +1,18 @@
 //! What a state of contact comes to, pair by pair.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale};
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
-use super::Touch;
 use super::gap::normal;
+use super::state::State;
+use super::{Meeting, Touch};
 
 /// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
 const NEARLY: f64 = 0.95;
+/// How near what is not pressed itself must be to count as touching between points that are, in voxels: facets of a
+/// ball of four voxels radius are a thirtieth of a voxel apart from it.
+const NEAR: f64 = 0.05;
 
 /// The contact of two surfaces, or of one with itself.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,10 +36,11 @@ impl Touch {
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
         let state = self.read();
         let mut found: BTreeMap<[u32; 2], (PairReport, f64, [f64; 2])> = BTreeMap::new();
+        let mut pressed_samples = vec![false; self.samples.len()];
         self.each_contact(&state, positions, |meeting, pressure, point, points| {
+            pressed_samples[meeting.sample as usize] = true;
             let sample = &self.samples[meeting.sample as usize];
-            let other = self.surface_of[meeting.triangle as usize];
-            let of = [sample.surface.min(other), sample.surface.max(other)];
+            let of = self.surfaces_of(meeting);
             let memory = &state.now[meeting.sample as usize];
             let friction = self.friction(&state, meeting.sample, point, points);
             let mut force = scale(pressure, meeting.normal);
@@ -65,16 +70,15 @@ impl Touch {
                 axpy(&mut report.force, sign, force);
             }
             report.pressed += pressed;
-            let facing = |t: &&u32| {
-                let own = normal(self.corners(**t, points));
-                dot(own, meeting.normal) < -0.5
-            };
-            let part = sample.triangles.iter().filter(facing).count();
-            let side = usize::from(sample.surface != of[0] || of[0] == of[1]);
-            areas[side] += sample.area * part as f64 / sample.triangles.len() as f64;
+            areas[self.side(meeting)] += self.area_toward(meeting, points);
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
             *total += pressure;
+        });
+        self.each_between(&state, positions, &pressed_samples, |meeting, points| {
+            if let Some((_, _, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
+                areas[self.side(meeting)] += self.area_toward(meeting, points);
+            }
         });
         let each = found.into_values().map(|(mut report, total, areas)| {
             report.slipping /= total;
@@ -86,5 +90,70 @@ impl Touch {
             report
         });
         each.collect()
+    }
+
+    /// The surfaces that meet, the one with the smaller number first.
+    fn surfaces_of(&self, meeting: &Meeting) -> [u32; 2] {
+        let own = self.samples[meeting.sample as usize].surface;
+        let other = self.surface_of[meeting.triangle as usize];
+        [own.min(other), own.max(other)]
+    }
+
+    /// On which of them the sample is; of one surface with itself, on the second.
+    fn side(&self, meeting: &Meeting) -> usize {
+        let [first, second] = self.surfaces_of(meeting);
+        usize::from(self.samples[meeting.sample as usize].surface != first || first == second)
+    }
+
+    /// The area of a sample in the unloaded body, as far as it lies toward what it meets.
+    fn area_toward(&self, meeting: &Meeting, points: &[Vec3]) -> f64 {
+        let sample = &self.samples[meeting.sample as usize];
+        let facing = |t: &&u32| {
+            let own = normal(self.corners(**t, points));
+            dot(own, meeting.normal) < -0.5
+        };
+        let part = sample.triangles.iter().filter(facing).count();
+        sample.area * part as f64 / sample.triangles.len() as f64
+    }
+
+    /// Hands over every sample that is not pressed, and lies near what it meets and between some that are.
+    ///
+    /// Facets of surfaces that do not fit each other meet at points: the vertices of a voxel move fewer ways than it
+    /// has points, and the others are left a little apart.
+    fn each_between(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        pressed: &[bool],
+        mut take: impl FnMut(&Meeting, &[Vec3]),
+    ) {
+        let points = self.points_at(positions);
+        for (index, facing) in state.facing.iter().enumerate() {
+            let Some(facing) = facing.filter(|_| !pressed[index]) else {
+                continue;
+            };
+            let point = points[index];
+            let meeting = self.meeting(index as u32, facing, point, &points);
+            if meeting.gap < NEAR * self.description.voxel
+                && self.is_between(index as u32, pressed, &points)
+            {
+                take(&meeting, &points);
+            }
+        }
+    }
+
+    /// Whether pressed samples lie on opposite sides of a point, among those around the points around it.
+    fn is_between(&self, point: u32, pressed: &[bool], points: &[Vec3]) -> bool {
+        let ring = |point: u32| {
+            let triangles = self.around[point as usize].iter();
+            triangles.flat_map(|t| self.triangles[*t as usize])
+        };
+        let near: BTreeSet<u32> = ring(point).flat_map(ring).collect();
+        let near = near.into_iter().filter(|other| pressed[*other as usize]);
+        let ways: Vec<Vec3> = near
+            .map(|other| sub(points[other as usize], points[point as usize]))
+            .collect();
+        let opposite = |(i, a): (usize, &Vec3)| ways[..i].iter().any(|b| dot(*a, *b) < 0.0);
+        ways.iter().enumerate().any(opposite)
     }
 }

@@ -59,6 +59,32 @@ const FACES: [[usize; 4]; 6] = [
     [1, 5, 7, 3],
 ];
 
+/// A face of a voxel that has no neighbor there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Face {
+    /// Its corners, outward.
+    pub corners: [u32; 4],
+    /// The voxel that it is of.
+    pub voxel: u32,
+}
+
+/// The faces of voxels that have no neighbor, in an order that depends on their corners alone.
+pub(crate) fn outer_faces(voxels: &[[u32; 8]]) -> Vec<Face> {
+    let mut open: BTreeMap<[u32; 4], Option<Face>> = BTreeMap::new();
+    for (number, voxel) in voxels.iter().enumerate() {
+        for face in FACES {
+            let corners = face.map(|corner| voxel[corner]);
+            let mut key = corners;
+            key.sort_unstable();
+            let voxel = number as u32;
+            open.entry(key)
+                .and_modify(|f| *f = None)
+                .or_insert(Some(Face { corners, voxel }));
+        }
+    }
+    open.into_values().flatten().collect()
+}
+
 impl Surface {
     /// Triangles of vertices of the problem.
     pub fn of_triangles(triangles: &[[u32; 3]]) -> Self {
@@ -80,24 +106,18 @@ impl Surface {
     ///
     /// Corner `c` of a voxel is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
     pub fn of_voxels(voxels: &[[u32; 8]], refine: u32) -> Self {
-        let mut open: BTreeMap<[u32; 4], Option<[u32; 4]>> = BTreeMap::new();
-        for voxel in voxels {
-            for face in FACES {
-                let face = face.map(|corner| voxel[corner]);
-                let mut key = face;
-                key.sort_unstable();
-                open.entry(key)
-                    .and_modify(|f| *f = None)
-                    .or_insert(Some(face));
-            }
-        }
+        Self::of_faces(&outer_faces(voxels), refine)
+    }
+
+    /// Faces divided as [`Self::of_voxels`] says, their triangles in the order of the faces.
+    pub(crate) fn of_faces(faces: &[Face], refine: u32) -> Self {
         let n = refine.max(1);
         let mut surface = Self::default();
         let mut place: BTreeMap<Vec<(u32, u32)>, u32> = BTreeMap::new();
-        for face in open.into_values().flatten() {
+        for Face { corners, .. } in faces {
             let mut point = |i: u32, j: u32| {
                 let parts = [(n - i) * (n - j), i * (n - j), i * j, (n - i) * j];
-                let all = face.into_iter().zip(parts);
+                let all = corners.iter().copied().zip(parts);
                 let mut key: Vec<(u32, u32)> = all.filter(|(_, part)| *part > 0).collect();
                 key.sort_unstable();
                 *place.entry(key).or_insert_with_key(|key| {

@@ -1,0 +1,104 @@
+//! Which voxel carries a point, and by how much of each of its corners.
+
+use std::collections::BTreeMap;
+
+use voxsoft_solid::vector::Vec3;
+
+use crate::touch::Carried;
+
+/// How near the face of a voxel or its middle a point counts as on it, in voxels: far less than the clearance of
+/// contact, and fewer vertices carry it then.
+const ON: f64 = 1e-6;
+
+/// The voxels, ready to carry points.
+pub(super) struct Carriers<'a> {
+    voxels: &'a [[u32; 8]],
+    vertices: &'a [Vec3],
+    /// The voxels around each vertex.
+    around: Vec<Vec<u32>>,
+}
+
+impl<'a> Carriers<'a> {
+    pub(super) fn new(voxels: &'a [[u32; 8]], vertices: &'a [Vec3]) -> Self {
+        let mut around = vec![Vec::new(); vertices.len()];
+        for (number, voxel) in voxels.iter().enumerate() {
+            for vertex in voxel {
+                around[*vertex as usize].push(number as u32);
+            }
+        }
+        Self {
+            voxels,
+            vertices,
+            around,
+        }
+    }
+
+    /// Carries a point by the voxel that it is in or nearest to, of those at all vertices of `share`; by the mean of
+    /// several that are as near.
+    pub(super) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
+        let (first, others) = share.vertices.split_first().expect("a point has vertices");
+        let at_all = |voxel: &&u32| {
+            let corners = &self.voxels[**voxel as usize];
+            others.iter().all(|vertex| corners.contains(vertex))
+        };
+        let candidates = self.around[*first as usize].iter().filter(at_all);
+        let placed: Vec<(u32, Vec3)> = candidates
+            .map(|voxel| (*voxel, self.local(*voxel, point)))
+            .collect();
+        let least = placed
+            .iter()
+            .map(|(_, place)| off(*place))
+            .fold(f64::INFINITY, f64::min);
+        let nearest: Vec<(u32, Vec3)> = placed
+            .into_iter()
+            .filter(|(_, place)| off(*place) <= least + ON)
+            .collect();
+        let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
+        for (voxel, place) in &nearest {
+            for (c, vertex) in self.voxels[*voxel as usize].into_iter().enumerate() {
+                let of_corner = corner_weight(c, *place);
+                if of_corner != 0.0 {
+                    *weights.entry(vertex).or_default() += of_corner;
+                }
+            }
+        }
+        let count = nearest.len() as f64;
+        let (vertices, weights) = weights.into_iter().map(|(v, w)| (v, w / count)).unzip();
+        Carried { vertices, weights }
+    }
+
+    /// Where a point is in a voxel, whose corners are at 0 and 1.
+    fn local(&self, voxel: u32, point: Vec3) -> Vec3 {
+        let corner = |c: usize| self.vertices[self.voxels[voxel as usize][c] as usize];
+        let (low, high) = (corner(0), corner(7));
+        std::array::from_fn(|i| {
+            let place = (point[i] - low[i]) / (high[i] - low[i]);
+            let nearest = (2.0 * place).round() / 2.0;
+            if (place - nearest).abs() < ON {
+                nearest
+            } else {
+                place
+            }
+        })
+    }
+}
+
+/// How far outside a voxel a place in it is.
+fn off(place: Vec3) -> f64 {
+    place
+        .into_iter()
+        .map(|x| (-x).max(x - 1.0))
+        .fold(0.0, f64::max)
+}
+
+/// The trilinear function of a corner.
+fn corner_weight(corner: usize, place: Vec3) -> f64 {
+    let along = |i: usize| {
+        if corner >> (2 - i) & 1 == 1 {
+            place[i]
+        } else {
+            1.0 - place[i]
+        }
+    };
+    along(0) * along(1) * along(2)
+}

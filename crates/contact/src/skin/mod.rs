@@ -1,0 +1,200 @@
+//! The smooth surface of a body of voxels, carried by its voxels.
+//!
+//! The outer faces of the voxels are divided into four squares each, as [`Surface::of_voxels`] divides them, and their
+//! points are moved onto the surface of the shape that the voxels were filled from. This is dual contouring on the
+//! grid of the centers of voxels: the center of a face moves along the line between the centers of two voxels to
+//! where the surface passes ([`crossing`]), the middle of an edge within the square of the four centers around it,
+//! and a corner within the cube of eight, to the place that fits the planes at these crossings best ([`feature`]).
+//! Each triangle has one point of each kind, so it stays in the cube of its corner, and triangles of two cubes do not
+//! pass through each other (Ju and Udeshi 2006, "Intersection-free contouring on an octree grid"). The surface stays
+//! as closed as the faces of the voxels are, and walls keep both sides.
+//!
+//! A point moves with the corners of one voxel as if the displacement between them, which is trilinear, went on up to
+//! half a voxel beyond its faces.
+
+mod carrier;
+mod crossing;
+mod feature;
+mod folds;
+#[cfg(test)]
+mod tests;
+
+use std::array;
+
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
+
+use crate::touch::gap::{doubled, unit};
+use crate::touch::surface::{Face, outer_faces};
+use crate::touch::{Carried, Surface};
+use carrier::Carriers;
+use crossing::{Crossing, Field};
+use folds::Folds;
+
+/// Into how many parts the edge of a face is divided.
+const PARTS: u32 = 2;
+/// The triangles of a face.
+const TRIANGLES: usize = 2 * (PARTS * PARTS) as usize;
+/// How far a point that fits some planes may be off a curved surface and be brought onto it, in voxels.
+const OFF: f64 = 0.25;
+/// Steps by which it is brought there. Each squares what is left, which at first is a fiftieth of a voxel on a ball of
+/// eight voxels radius.
+const APPROACHES: usize = 3;
+
+/// A smooth surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Skin {
+    /// Its points, carried by vertices of voxels, also inner ones, with weights of both signs; its triangles.
+    pub surface: Surface,
+    /// For each point the vertices on the outer faces that stand for it, with positive weights.
+    pub shares: Vec<Carried>,
+    /// Where the points are, m.
+    pub points: Vec<Vec3>,
+}
+
+impl Skin {
+    /// The skin of voxels with the corners `voxels`, among `vertices` (m), that were filled from a shape, whose
+    /// function is negative inside. Corner `c` of a voxel is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`; voxels are equal
+    /// cubes along the axes.
+    ///
+    /// # Errors
+    ///
+    /// Those of the function.
+    pub fn of<E>(
+        voxels: &[[u32; 8]],
+        vertices: &[Vec3],
+        mut function: impl FnMut(&[Vec3]) -> Result<Vec<f64>, E>,
+    ) -> Result<Self, E> {
+        let faces = outer_faces(voxels);
+        let flat = Surface::of_faces(&faces, PARTS);
+        let Some(first) = voxels.first() else {
+            let (surface, shares, points) = (flat, Vec::new(), Vec::new());
+            return Ok(Self {
+                surface,
+                shares,
+                points,
+            });
+        };
+        let voxel = norm(sub(
+            vertices[first[4] as usize],
+            vertices[first[0] as usize],
+        ));
+        let mut field = Field {
+            values: &mut function,
+            voxel,
+        };
+        let middles = middles(&faces, vertices);
+        let found = field.crossings(&middles)?;
+        let mut moved = Moved::new(&flat, vertices, &found);
+        // Where the surface does not pass a face, that stays.
+        let either = |(found, middle): (Option<Crossing>, Crossing)| found.unwrap_or(middle);
+        let crossings: Vec<Crossing> = found.into_iter().zip(middles).map(either).collect();
+        let mut targets = moved.targets(&crossings, voxel);
+        moved.approach(&mut targets, &mut field)?;
+        let folds = Folds {
+            triangles: &flat.triangles,
+            crossings: &crossings,
+            voxel,
+        };
+        let points = folds.unfolded([&targets, &moved.means, &moved.starts]);
+        let carriers = Carriers::new(voxels, vertices);
+        let carried = flat.points.iter().zip(&points);
+        let carried = carried
+            .map(|(share, point)| carriers.carry(share, *point))
+            .collect();
+        Ok(Self {
+            surface: Surface {
+                points: carried,
+                triangles: flat.triangles,
+            },
+            shares: flat.points,
+            points,
+        })
+    }
+}
+
+/// The middles of faces, and their normals.
+fn middles(faces: &[Face], vertices: &[Vec3]) -> Vec<Crossing> {
+    let middle = |face: &Face| {
+        let [a, b, c, d] = face.corners.map(|v| vertices[v as usize]);
+        Crossing {
+            point: scale(0.25, add(add(a, b), add(c, d))),
+            normal: unit(doubled([a, b, c])),
+        }
+    };
+    faces.iter().map(middle).collect()
+}
+
+/// The points of the divided faces on their way to the surface.
+struct Moved {
+    starts: Vec<Vec3>,
+    /// The faces around each.
+    around: Vec<Vec<u32>>,
+    /// The axes along which it may move.
+    free: Vec<[bool; 3]>,
+    /// Whether the surface passes all faces around it.
+    known: Vec<bool>,
+    /// The mean of the crossings around it.
+    means: Vec<Vec3>,
+}
+
+impl Moved {
+    fn new(flat: &Surface, vertices: &[Vec3], found: &[Option<Crossing>]) -> Self {
+        let starts: Vec<Vec3> = flat.points.iter().map(|point| point.at(vertices)).collect();
+        let mut around = vec![Vec::new(); starts.len()];
+        for (face, triangles) in flat.triangles.chunks_exact(TRIANGLES).enumerate() {
+            for point in triangles.as_flattened() {
+                let faces: &mut Vec<u32> = &mut around[*point as usize];
+                if faces.last() != Some(&(face as u32)) {
+                    faces.push(face as u32);
+                }
+            }
+        }
+        // The middle of an edge moves across it, and the center of a face is where the surface passes that.
+        let free = |point: &Carried| {
+            let at = |v: &u32| vertices[*v as usize];
+            let first = at(&point.vertices[0]);
+            let is_of_face = point.vertices.len() == 4;
+            array::from_fn(|i| !is_of_face && point.vertices.iter().all(|v| at(v)[i] == first[i]))
+        };
+        let all_found = |faces: &Vec<u32>| faces.iter().all(|face| found[*face as usize].is_some());
+        Self {
+            free: flat.points.iter().map(free).collect(),
+            known: around.iter().map(all_found).collect(),
+            starts,
+            around,
+            means: Vec::new(),
+        }
+    }
+
+    /// Where the points belong.
+    fn targets(&mut self, crossings: &[Crossing], voxel: f64) -> Vec<Vec3> {
+        let mut targets = Vec::with_capacity(self.starts.len());
+        for (point, faces) in self.around.iter().enumerate() {
+            let near: Vec<Crossing> = faces.iter().map(|f| crossings[*f as usize]).collect();
+            self.means.push(feature::mean(&near));
+            targets.push(feature::feature(&near, self.free[point]));
+        }
+        self.keep_in_cells(&mut targets, voxel);
+        targets
+    }
+
+    /// Brings what fits some planes onto the surface.
+    fn approach<E>(&self, targets: &mut [Vec3], field: &mut Field<'_, E>) -> Result<(), E> {
+        let ways = self.free.iter().zip(&self.known);
+        let ways: Vec<[bool; 3]> = ways
+            .map(|(free, known)| free.map(|free| free && *known))
+            .collect();
+        for _ in 0..APPROACHES {
+            field.approach(targets, &ways, OFF * field.voxel)?;
+            self.keep_in_cells(targets, field.voxel);
+        }
+        Ok(())
+    }
+
+    fn keep_in_cells(&self, targets: &mut [Vec3], voxel: f64) {
+        let half = voxel / 2.0;
+        for (target, start) in targets.iter_mut().zip(&self.starts) {
+            *target = array::from_fn(|i| target[i].clamp(start[i] - half, start[i] + half));
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! `_core.Skin`: the smooth surface of a body, for contact.
+use std::sync::Arc;
+
+use numpy::{PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use voxsoft_contact::skin::Skin;
+use voxsoft_shape::{FieldError, Shape};
+use voxsoft_solid::vector::Vec3;
+
+use crate::gate;
+use crate::shapes::{PyShape, sample_error};
+use crate::simulate::{from_rows, rows};
+
+/// The smooth surface of a body of voxels, carried by them.
+#[pyclass(frozen, name = "Skin", module = "voxsoft._core")]
+pub struct PySkin(pub(crate) Arc<Skin>);
+
+#[pymethods]
+impl PySkin {
+    /// Of voxels with these corners among vertices (m), that were filled where any of the shapes is.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        shapes: Vec<PyRef<'_, PyShape>>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        voxels: PyReadonlyArray2<'_, u32>,
+    ) -> PyResult<Self> {
+        let shapes: Vec<Shape> = shapes.iter().map(|shape| shape.0.clone()).collect();
+        let vertices: Vec<Vec3> = rows("vertices", &vertices)?;
+        let voxels: Vec<[u32; 8]> = rows("voxels", &voxels)?;
+        let skin = gate::run(py, |_| {
+            Skin::of(&voxels, &vertices, |places| union(&shapes, places))
+        })?;
+        let skin = skin.map_err(|error| sample_error(py, &error.into()))?;
+        Ok(Self(Arc::new(skin)))
+    }
+
+    /// Where its points are, m.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
+        from_rows(py, &self.0.points)
+    }
+
+    /// Triangles of points, outward.
+    #[getter]
+    fn triangles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<u32>> {
+        from_rows(py, &self.0.surface.triangles)
+    }
+}
+
+/// The smallest function of several shapes; infinite where it is not a number.
+fn union(shapes: &[Shape], places: &[Vec3]) -> Result<Vec<f64>, FieldError> {
+    let mut least = vec![f64::INFINITY; places.len()];
+    for shape in shapes {
+        for (least, value) in least.iter_mut().zip(shape.evaluate(places)?) {
+            *least = least.min(value);
+        }
+    }
+    Ok(least)
+}
