@@ -138,3 +138,47 @@ def test_the_surface_is_saved_and_read_back(tmp_path):
         assert load(path).contact.surface == surface
     with pytest.raises(DesignError, match=r"surface: \"round\" came"):
         pressed_ball("round")
+
+
+def two_balls(**changes):
+    """Balls of 5.4 mm, 3.2 mm apart, whose voxels are 2 mm apart: they stick out of the poles."""
+    balls = [vs.Sphere(radius=5.4 * mm, center=(0, 0, z * mm)) for z in (-7, 7)]
+    ends = [vs.Region(z=(z * mm, (z + 5) * mm)) for z in (-12, 7)]
+    down = vs.Motion(displacement=(0, 0, -4.2 * mm))
+    whole = {
+        "name": "two-balls",
+        "voxel_size": 2 * mm,
+        "parts": [vs.Part(shape=balls[0] | balls[1], material=RUBBER)],
+        "clamps": [vs.Clamp(region=ends[0]), vs.Clamp(region=ends[1], motion=down)],
+        "contact": Contact(),
+    }
+    return vs.Design(**(whole | changes))
+
+
+def test_voxels_that_stick_out_of_skins_that_touch_do_not_overlap():
+    result = simulate(two_balls())
+    (contact,) = result.contacts
+    assert contact.of == ("body", "body")
+    assert contact.pressed > 0.0
+    assert not result.penetration.overlaps
+    # Through each other they do.
+    apart = Contact(pairs=(ContactPair(of=("body", "body"), kind="none"),))
+    through = simulate(two_balls(contact=apart))
+    assert through.penetration.depth == pytest.approx(1 * mm, abs=0.2 * mm)
+
+
+def test_voxels_that_stick_out_of_a_skin_are_not_below_the_floor():
+    ball = vs.Sphere(radius=5.4 * mm, center=(0, 0, 7 * mm))
+    design = two_balls(
+        parts=[vs.Part(shape=ball, material=RUBBER)],
+        clamps=[
+            vs.Clamp(
+                region=vs.Region(z=(7 * mm, 13 * mm)),
+                motion=vs.Motion(displacement=(0, 0, -1 * mm)),
+            )
+        ],
+        floor=vs.Floor(z=1.6 * mm),
+    )
+    result = simulate(design)
+    assert [contact.of for contact in result.contacts] == [("body", "floor")]
+    assert not result.penetration.overlaps

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design import Design
+from voxsoft.design import Contact, Design
+from voxsoft.design.cut_cells import built_parts
 from voxsoft.mesh import Mesh
 
 
@@ -35,15 +36,44 @@ def skin_of(design: Design, mesh: Mesh) -> _core.Skin | None:
     >>> skin_of(ball, mesh_of(ball, refine=2)) is None
     True
     """
-    size = mesh.voxel_size
-    filled = size is not None and (design.fill == "fraction" or size == design.voxel_size)
-    if not filled or mesh.tet_voxel is None:
+    if not has_skin(design, mesh):
         return None
-    shapes = [
-        design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
-        for part in design.parts
-    ]
-    return _core.Skin([each.build(design.shapes) for each in shapes], mesh.vertices, corners(mesh))
+    return _core.Skin(built_parts(design), mesh.vertices, corners(mesh))
+
+
+def has_skin(design: Design, mesh: Mesh) -> bool:
+    """Whether the voxels of a mesh are those that the shapes of a design filled.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> from voxsoft.design.discretize import mesh_of
+    >>> ball = families.sphere()
+    >>> has_skin(ball, mesh_of(ball)), has_skin(ball, mesh_of(ball, refine=2))
+    (True, False)
+    """
+    size = mesh.voxel_size
+    if size is None or mesh.tet_voxel is None:
+        return False
+    return design.fill == "fraction" or size == design.voxel_size
+
+
+def touches_with_skin(design: Design, mesh: Mesh) -> bool:
+    """Whether a body touches with its smooth surface.
+
+    Examples
+    --------
+    >>> from voxsoft.design import Contact, families
+    >>> from voxsoft.design.discretize import mesh_of
+    >>> ball = families.sphere()
+    >>> touching = ball.model_copy(update={"contact": Contact()})
+    >>> touches_with_skin(ball, mesh_of(ball)), touches_with_skin(touching, mesh_of(ball))
+    (False, True)
+    """
+    if design.contact is None and not design.objects:
+        return False
+    contact = design.contact or Contact()
+    return contact.surface == "smooth" and has_skin(design, mesh)
 
 
 def corners(mesh: Mesh) -> NDArray[np.uint32]:

@@ -18,7 +18,7 @@ from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
 from voxsoft.shapes.tracing import trace
-from voxsoft.simulation.skin import skin_of
+from voxsoft.simulation.skin import skin_of, touches_with_skin
 from voxsoft.units import format_quantity
 
 #: Into how many parts the edge of a voxel is divided by the points where contact is looked for.
@@ -165,8 +165,9 @@ class Touching:
     @cached_property
     def skin(self) -> _core.Skin | None:
         """The smooth surface of the body; None where its voxels touch."""
-        contact = self.design.contact or Contact()
-        return skin_of(self.design, self.mesh) if contact.surface == "smooth" else None
+        return (
+            skin_of(self.design, self.mesh) if touches_with_skin(self.design, self.mesh) else None
+        )
 
     @cached_property
     def body(self) -> Surface:
