@@ -26,10 +26,13 @@ from voxsoft.simulation.penetration import (
 )
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.skin import touches_with_skin
+from voxsoft.simulation.touching import keeps_apart
 
-#: How far in each other shapes that touch may seem to be, in voxels. Their distances from the faces
-#: of the voxels are those of the unloaded body, up to 0.9 voxels, which strains of a quarter change
-#: by as much; what goes through a wall is deeper.
+#: How far in each other what contact keeps apart may seem to be, in voxels. Contact meets the faces
+#: as they warp, and overlaps are looked for with two triangles of each, which bulging faces are off
+#: by some hundredths. Distances of shapes from the faces of the voxels are those of the unloaded
+#: body, up to 0.9 voxels, which strains of a quarter change by as much. What goes through a wall is
+#: deeper.
 TOUCHING: Final = 0.25
 
 Floats = NDArray[np.float64]
@@ -44,8 +47,9 @@ def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration
     """Find where the body of a design overlaps itself, its films or its floor.
 
     As :func:`find_penetration`. Where voxels are cut, and where a body touches with its smooth
-    surface, the surface that counts is that of the shapes, carried along by the voxels. Positions
-    that are not finite overlap nothing: the status of a result tells of them.
+    surface, the surface that counts is that of the shapes, carried along by the voxels. What
+    contact keeps apart overlaps if it is more than :data:`TOUCHING` deep. Positions that are not
+    finite overlap nothing: the status of a result tells of them.
 
     Parameters
     ----------
@@ -70,8 +74,8 @@ def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration
     smooth = touches_with_skin(design, mesh)
     if mesh.fractions is not None or smooth:
         found = _of_shapes(design, mesh, positions, found)
-    if smooth:
-        found = _beyond_contact(design, mesh, found)
+    if keeps_apart(design):
+        found = _beyond_contact(design, mesh, found, smooth)
     _latest[:] = [(weakref.ref(design), weakref.ref(mesh), digest, found)]
     return found
 
@@ -98,7 +102,10 @@ def overlap_warnings(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
         if len(reported) > 1:
             what += f" and at {len(reported) - 1} more place{'s' if len(reported) > 2 else ''}"
         hint = "lower the load"
-        if not inverted:
+        if not inverted and keeps_apart(design):
+            what += "; contact has not kept them apart"
+            hint += ", or take smaller voxels or shorter steps"
+        elif not inverted:
             what += "; contact is not simulated"
             hint += ", or leave more room there"
         yield Diagnostic("warning", where, what, hint, deepest.at_rest)
@@ -131,12 +138,12 @@ def part_name(design: Design, part: int) -> str:
     return found.shape if isinstance(found.shape, str) else f"parts[{part - 1}]"
 
 
-def _beyond_contact(design: Design, mesh: Mesh, found: Penetration) -> Penetration:
-    """What smooth surfaces that touch do not explain: their voxels are in each other."""
+def _beyond_contact(design: Design, mesh: Mesh, found: Penetration, smooth: bool) -> Penetration:
+    """What surfaces that touch, `smooth` or not, do not explain: walls are in each other."""
     most = TOUCHING * voxel_size(mesh)
     kept = []
     for index, overlap in enumerate(found.overlaps):
-        if overlap.parts[1] == FLOOR:
+        if smooth and overlap.parts[1] == FLOOR:
             # Its lowest vertex may be that far outside of the shapes, which the floor meets.
             outside = float(_distances(design, mesh, np.array([overlap.at_rest]))[0])
             beyond = overlap.depth - max(outside, 0.0)
@@ -175,10 +182,7 @@ def _of_shapes(design: Design, mesh: Mesh, positions: Floats, found: Penetration
     depths = -_distances(design, mesh, first) - _distances(design, mesh, second)
     kept: list[tuple[int, Overlap]] = []
     for index, overlap in enumerate(found.overlaps):
-        if overlap.inverted:
-            kept.append((index, overlap))
-            continue
-        if overlap.parts[1] == FLOOR:
+        if overlap.inverted or overlap.parts[1] == FLOOR:
             kept.append((index, overlap))
             continue
         mine = np.flatnonzero(owner == index)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -96,6 +97,13 @@ class Pose:
 def has_contact(design: Design) -> bool:
     """Whether anything of a design may touch."""
     return design.contact is not None or bool(design.objects)
+
+
+def keeps_apart(design: Design) -> bool:
+    """Whether contact keeps the body out of itself."""
+    contact = design.contact or Contact()
+    itself = contact.table(design.objects, design.floor is not None)[0][0]
+    return has_contact(design) and not math.isnan(itself)
 
 
 def refuse_contact(design: Design, who: str) -> None:
