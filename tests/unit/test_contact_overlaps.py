@@ -64,8 +64,8 @@ def test_what_nothing_keeps_apart_is_told_at_any_depth(contact):
 
 @pytest.mark.parametrize("surface", ["smooth", "voxels"])
 def test_triangles_that_a_warped_face_is_not_are_no_overlap(surface):
-    # The face warps down where the upper block is above it, by nothing at its corner, over the middle
-    # of the face. The diagonal along which the face is two triangles passes that above it.
+    # The face warps down where the upper block is above it, by nothing at its corner, over the
+    # middle of the face. The diagonal along which the face is two triangles passes that above it.
     design = blocks(Contact(surface=surface))
     mesh, positions = placed(design, depth=-0.02 * mm, warp=-0.4 * mm)
     assert penetration_of(blocks(None), mesh, positions).depth > 0.3 * mm
