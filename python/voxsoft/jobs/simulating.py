@@ -52,7 +52,9 @@ def _reporting(nearness: Nearness, notify: Listener) -> Callable[[int, float, fl
         if now - last < _REPORT_EVERY:
             return
         last = now
-        left = f"residual {format_percent(residual)} of the load"
+        left = "searching for equilibrium"
+        if residual <= 1.0:
+            left = f"residual {format_percent(residual)} of the load"
         notify(Progress(min(99, int(100 * share)), 100, "percent", left))
 
     return report
