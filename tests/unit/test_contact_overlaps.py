@@ -38,15 +38,15 @@ def placed(design, depth, warp=0.0):
     return mesh, positions
 
 
-def told(design, mesh, positions):
+def warnings_of(design, mesh, positions):
     return [str(each) for each in overlap_warnings(design, mesh, positions)]
 
 
 @pytest.mark.parametrize("surface", ["smooth", "voxels"])
-def test_what_contact_has_not_kept_apart_is_told(surface):
+def test_what_contact_has_not_kept_apart_is_reported(surface):
     design = blocks(Contact(surface=surface))
     mesh, positions = placed(design, depth=3 * mm)
-    (warning,) = told(design, mesh, positions)
+    (warning,) = warnings_of(design, mesh, positions)
     assert "overlap by 3 mm" in warning
     assert "contact has not kept them apart" in warning
 
@@ -54,10 +54,10 @@ def test_what_contact_has_not_kept_apart_is_told(surface):
 @pytest.mark.parametrize(
     "contact", [None, Contact(pairs=[{"of": ["body", "body"], "kind": "none"}])]
 )
-def test_what_nothing_keeps_apart_is_told_at_any_depth(contact):
+def test_what_nothing_keeps_apart_is_reported_at_any_depth(contact):
     design = blocks(contact)
     mesh, positions = placed(design, depth=0.1 * mm)
-    (warning,) = told(design, mesh, positions)
+    (warning,) = warnings_of(design, mesh, positions)
     assert "overlap by 0.1 mm" in warning
     assert "contact is not simulated" in warning
 

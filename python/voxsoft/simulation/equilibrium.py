@@ -141,9 +141,18 @@ def too_large_a_tangent(vertices: int, needed: int) -> str:
 
 
 def sentence(
-    way: str, status: Status, steps: int, residual_left: float, path: _core.LoadPath
+    way: str,
+    status: Status,
+    steps: int,
+    residual_left: float,
+    path: _core.LoadPath,
+    *,
+    touches: bool = False,
 ) -> str:
-    """Say how statics ended: its control, how it ended, its iterations, its residual, its path."""
+    """Say how statics ended: its control, how it ended, its iterations, its residual, its path.
+
+    What `touches` has no other ways than load control and motion over time.
+    """
     iterations = f"{steps} Newton iterations"
     residual = f"residual {format_percent(residual_left)} of the load"
     limit = "" if path.limit is None else f"{100 * path.limit:.4g} % of the load"
@@ -185,7 +194,10 @@ def sentence(
                 words += f"; the path has a limit at {limit}"
             return words
         case _:
+            ways = f'{_OTHER_WAYS[way]}, smaller voxels, or method = "xpbd"'
+            if touches:
+                ways = 'a smaller load, smaller voxels, or motion over time (method = "dynamics")'
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
-                f'Try {_OTHER_WAYS[way]}, smaller voxels, or method = "xpbd"'
+                f"Try {ways}"
             )

@@ -239,7 +239,9 @@ def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
 def _sentence(setup: Setup, report: Report, way: str) -> str:
     answer = report.answer
     if answer.path is not None:
-        return sentence(way, report.status, report.steps, answer.residual, answer.path)
+        touches = setup.touching is not None
+        ended = (report.status, report.steps, answer.residual, answer.path)
+        return sentence(way, *ended, touches=touches)
     residual = f"residual {format_percent(answer.residual)} of the load"
     steps = f"{report.steps} steps"
     match report.status:

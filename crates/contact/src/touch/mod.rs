@@ -48,6 +48,9 @@ pub use surface::{Carried, Surface};
 /// The penalty in units of Young's modulus over the voxel size. What multipliers still have to learn shrinks by it
 /// with every correction; at 100, blocks of rubber that is held against bulging take ten times as many.
 const PENALTY: f64 = 1000.0;
+/// The least area for which a sample has a penalty, of the mean one of its surface. Slivers of a skin would take theirs
+/// on for ever, a little with each correction.
+const LEAST_AREA: f64 = 0.5;
 /// The penalty of slip, relative to that of gaps: what sticks gives way by more, and lets go less suddenly. Where
 /// corrections take it on too slowly, because what they hold is stiffer than that, it grows.
 const STICK: [f64; 2] = [0.01, 1.0];
@@ -90,6 +93,8 @@ pub struct Description {
 pub struct Touch {
     description: Description,
     samples: Vec<Sample>,
+    /// The least area for which a sample of each surface has a penalty, m².
+    least_area: Vec<f64>,
     /// The points of all surfaces.
     points: Vec<Carried>,
     /// For each point of the first surface the vertices that stand for it, where those are not what carries it.
@@ -142,16 +147,14 @@ impl Touch {
             }
         }
         let (mut samples, mut points, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
-        let mut surface_of = Vec::new();
+        let (mut surface_of, mut least_area) = (Vec::new(), Vec::new());
         for (number, surface) in description.surfaces.iter().enumerate() {
             surface.check(rest.len())?;
             let number = number as u32;
-            samples.extend(surface::samples(
-                surface,
-                number,
-                triangles.len() as u32,
-                rest,
-            ));
+            let own = surface::samples(surface, number, triangles.len() as u32, rest);
+            let area: f64 = own.iter().map(|sample| sample.area).sum();
+            least_area.push(LEAST_AREA * area / own.len().max(1) as f64);
+            samples.extend(own);
             let first = points.len() as u32;
             points.extend(surface.points.iter().cloned());
             triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
@@ -166,6 +169,7 @@ impl Touch {
         let touch = Self {
             description,
             samples,
+            least_area,
             points,
             shares: Vec::new(),
             triangles,
@@ -219,8 +223,9 @@ impl Touch {
 
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
+        let sample = &self.samples[sample as usize];
         let per_area = PENALTY * self.description.young / self.description.voxel;
-        per_area * self.samples[sample as usize].area / 2.0
+        per_area * sample.area.max(self.least_area[sample.surface as usize]) / 2.0
     }
 
     fn clearance(&self) -> f64 {

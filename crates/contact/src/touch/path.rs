@@ -104,7 +104,7 @@ impl Contact for Touch {
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
         if largest > 1.0 {
             state.now = now;
-            state.looks = 1;
+            state.looks = u32::from(patient);
         }
         largest
     }
