@@ -201,3 +201,12 @@ def test_a_side_of_an_object_that_goes_through_samples_is_there():
     surface = surface_of(found.design.objects[0], found.design, "objects[0]")
     ends = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert (np.unique(ends, axis=0, return_counts=True)[1] == 2).all()  # closed
+
+
+def test_a_path_that_ends_early_proposes_what_knows_contact():
+    # The plate ends 0.3 mm below the ground that the block stands on.
+    result = simulate(pressed(way=-SIDE - 0.8 * mm))
+    assert result.status == "not-at-rest"
+    assert "arc-length" not in result.message
+    assert "xpbd" not in result.message
+    assert 'method = "dynamics"' in result.message
