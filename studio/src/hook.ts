@@ -17,6 +17,7 @@ declare global {
       readonly state: string;
       readonly rev: number;
       vertexPosition(vertex: number): [number, number, number] | null;
+      objectPosition(name: string): [number, number, number] | null;
       screenOf(vertex: number): [number, number] | null;
     };
   }
@@ -54,6 +55,7 @@ export function provideHook(): void {
         return useStudio.getState().document?.rev ?? 0;
       },
       vertexPosition: (vertex: number) => viewport().vertexPosition(vertex),
+      objectPosition: (name: string) => viewport().objectPosition(name),
       screenOf: (vertex: number) => viewport().screenOf(vertex),
     }),
   });

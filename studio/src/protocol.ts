@@ -666,10 +666,23 @@ export interface BodyAttachment {
 }
 
 /**
+ * A rigid object where it is at first: `middle` is that of its box, which poses move and turn.
+ *
+ * `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64.
+ */
+export interface BodyObject {
+  name: string;
+  motion: "fixed" | "free" | "moved";
+  middle: Triple;
+  vertices: string;
+  triangles: string;
+}
+
+/**
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
- * shapes follows as well (kind 3).
+ * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text.
  */
 export interface BodyEvent {
   t: "body";
@@ -693,6 +706,8 @@ export interface BodyEvent {
   parts: BodyPart[];
   layers: BodyLayer[];
   attachments: BodyAttachment[];
+  objects: BodyObject[];
+  not_live: string;
   seconds: number;
   memory: number;
   smooth: boolean;
@@ -795,6 +810,40 @@ export interface OverlapEvent {
   depth: number;
   sentence: string;
   places: OverlapPlace[];
+}
+
+/** Where an object is: the middle of its box in m, and its rotation, nine numbers by rows. */
+export interface ObjectPose {
+  position: Triple;
+  rotation: number[];
+}
+
+/**
+ * What touches what: the force on the first in N, the area in m² and the smallest gap in m.
+ *
+ * `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
+ */
+export interface Touch {
+  of: [string, string];
+  force: Triple;
+  pressed: number;
+  area: number;
+  gap: number;
+  slipping: number;
+}
+
+/** A frame of a solution: the pose of each object of the body, and what touches. */
+export interface Moment {
+  frame: number;
+  poses: ObjectPose[];
+  contacts: Touch[];
+}
+
+/** What is known of stored frames beside their pictures; replaces what was known before. */
+export interface MomentsEvent {
+  t: "moments";
+  topology: number;
+  moments: Moment[];
 }
 
 /**
@@ -1110,6 +1159,7 @@ export type AnyEvent =
   | StatEvent
   | EquilibriumEvent
   | OverlapEvent
+  | MomentsEvent
   | PlotEvent
   | PickedEvent
   | JobEvent

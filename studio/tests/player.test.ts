@@ -19,6 +19,8 @@ const BODY: BodyEvent = {
     clamps: [],
     layers: [],
     attachments: [],
+    objects: [],
+    not_live: "",
     parts: [],
     seconds: 0,
     memory: 0,

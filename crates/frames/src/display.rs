@@ -70,6 +70,7 @@ impl Display {
         let State {
             positions, time, ..
         } = state;
-        self.outline.frame(head, *time, positions, field, &values)
+        self.outline
+            .frame(head, *time, positions, field as u16, &values)
     }
 }

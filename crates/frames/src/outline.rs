@@ -117,13 +117,13 @@ impl Outline {
     }
 
     /// The message of one picture: where all vertices of the mesh are (m), and a value for each of
-    /// [`Outline::vertices`].
+    /// [`Outline::vertices`]. The number of the field is that of a [`Field`], or of one that its sender knows.
     pub fn frame(
         &self,
         head: FrameHead,
         time: f64,
         positions: &[Vec3],
-        field: Field,
+        field: u16,
         values: &[f64],
     ) -> Vec<u8> {
         let points = self.place(positions);

@@ -1,4 +1,3 @@
-use voxsoft_solid::fields::Field;
 use voxsoft_solid::vector::Vec3;
 
 /// Bytes before the payload.
@@ -124,7 +123,7 @@ pub fn pack_smooth(
 
 pub(crate) fn pack_frame(
     head: FrameHead,
-    field: Field,
+    field: u16,
     time: f64,
     points: &[Vec3],
     values: &[f64],
@@ -133,7 +132,7 @@ pub(crate) fn pack_frame(
     bytes.start(
         MessageKind::Frame,
         head.flags,
-        field as u16,
+        field,
         head.topology,
         head.frame,
     );

@@ -172,6 +172,19 @@ impl Player {
         self.stepper.seek(positions, 0.0)
     }
 
+    /// Takes a motion that a solver found, as frames to go back to: times (s) with positions (m) of all vertices.
+    pub fn take_motion(&mut self, motion: Vec<(f64, Vec<Vec3>)>) -> Result<(), ProblemError> {
+        self.held.clear();
+        self.shown = None;
+        self.numbers = Numbers::default();
+        for (time, positions) in motion {
+            self.stepper.seek(positions, time)?;
+            self.solved = true;
+            self.record();
+        }
+        Ok(())
+    }
+
     /// Takes the state that a solver found, at the present time; hands let go, as no solver knows of them.
     pub fn go_to_rest(&mut self, rest: Rest) -> Result<Vec<Event>, ProblemError> {
         let time = self.stepper.state().time;

@@ -91,6 +91,7 @@ impl PyOutline {
     }
 
     /// A frame of positions (m) of all vertices, with values of the shown ones; without, they are zero.
+    /// Any field has values here, also one that is none of the core's.
     #[pyo3(signature = (positions, *, topology, field, values=None, frame=0, seq=0, flags=0, time=0.0))]
     #[expect(
         clippy::too_many_arguments,
@@ -116,7 +117,6 @@ impl PyOutline {
             let message = format!("values: {got}, expected {shown}");
             return Err(PyValueError::new_err(message));
         }
-        let field = self::field(field)?;
         let head = FrameHead {
             topology,
             frame,

@@ -3,7 +3,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Instant;
 
-use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
@@ -18,6 +19,7 @@ use voxsoft_player::{
     Rest, STIFFNESS,
 };
 use voxsoft_scene::Scene;
+use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Material, Mesh, Problem, ProblemError};
 use voxsoft_xpbd::{Damping, Dynamics};
 
@@ -254,6 +256,26 @@ impl PyPlayer {
         };
         let events = self.with(py, |player| player.go_to_rest(rest))?;
         Ok(json(py, &events.map_err(to_python)?))
+    }
+
+    /// Takes a motion that a solver found, (f, n, 3) positions (m) at f times (s), as frames to go back to.
+    fn take_motion(
+        &self,
+        py: Python<'_>,
+        times: PyReadonlyArray1<'_, f64>,
+        positions: PyReadonlyArray3<'_, f64>,
+    ) -> PyResult<()> {
+        let (times, frames) = (times.as_array(), positions.as_array());
+        if frames.shape()[0] != times.len() || frames.shape()[2] != 3 {
+            let message = format!("positions: {:?} at {} times", frames.shape(), times.len());
+            return Err(PyValueError::new_err(message));
+        }
+        let row = |row: ArrayView1<'_, f64>| [row[0], row[1], row[2]];
+        let of_frame = |frame: ArrayView2<'_, f64>| frame.outer_iter().map(row).collect();
+        let pairs = times.iter().copied().zip(frames.outer_iter().map(of_frame));
+        let motion: Vec<(f64, Vec<Vec3>)> = pairs.collect();
+        let taken = self.with(py, |player| player.take_motion(motion))?;
+        taken.map_err(to_python)
     }
 
     /// Stops time for now, and says why: a load or a pull lets it run again if it was asked to.

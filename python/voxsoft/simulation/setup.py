@@ -139,6 +139,14 @@ class Setup:
         """The problem of the Rust core, with the design's own materials."""
         return core_problem(self.mesh, core_materials(self.design, self.materials), self._parts())
 
+    @cached_property
+    def problem_alone(self) -> _core.Problem:
+        """The problem without what the body touches: of what is drawn, and of fields of strain."""
+        if self.touching is None:
+            return self.problem
+        parts = self._parts(touching=False)
+        return core_problem(self.mesh, core_materials(self.design, self.materials), parts)
+
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
         return self.problem.with_materials(core_materials(self.design, materials))
@@ -148,7 +156,7 @@ class Setup:
         """The material of each part, with something stiff in place of what is rigid."""
         return solid_materials(self.design)
 
-    def _parts(self) -> _core.ProblemParts:
+    def _parts(self, *, touching: bool = True) -> _core.ProblemParts:
         parts = _core.ProblemParts()
         for layer, found in zip(self.design.layers, self.layers, strict=True):
             parts.membrane(
@@ -167,7 +175,7 @@ class Setup:
                 action.give_to(receiver)
         for term, elements in self.attached.items():
             parts.attach(term, json.dumps(elements, allow_nan=False))
-        if self.touching is not None:
+        if self.touching is not None and touching:
             self.touching.give_to(parts)
         elif self.design.floor is not None:
             parts.floor(self.design.floor.z)

@@ -185,12 +185,19 @@ class Touching:
         return Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
 
     @cached_property
+    def traced(self) -> tuple[Surface, ...]:
+        """The surface of each object, wherever it is."""
+        return tuple(
+            surface_of(each, self.design, f"objects[{index}]")
+            for index, each in enumerate(self.design.objects)
+        )
+
+    @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surface of each object."""
+        """The surface of each object, apart from the body and what else it may touch."""
         found: list[Surface] = []
-        for index, each in enumerate(self.design.objects):
+        for index, (each, surface) in enumerate(zip(self.design.objects, self.traced, strict=True)):
             where = f"objects[{index}]"
-            surface = surface_of(each, self.design, where)
             self._check_apart(surface, self.body, where, "the body")
             for other, before in zip(self.design.objects, found, strict=False):
                 if each.is_free or other.is_free:

@@ -23,11 +23,13 @@ from voxsoft.mesh import Mesh
 from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
+from voxsoft.simulation.choice import method_of
+from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.loads import read
-from voxsoft.simulation.touching import refuse_contact
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
+from voxsoft.studio.objects import not_live, objects_of
 from voxsoft.studio.surface import Surface
 from voxsoft.units import Point, format_quantity, parse
 from voxsoft.voxels import Voxels
@@ -91,9 +93,9 @@ class StudioBody:
         surface = Surface.of(setup.mesh)
         refusal: VoxSoftError | None = None
         try:
-            setup.check()
-            refuse_contact(design, "the studio")
-            _ = setup.problem
+            method = method_of(design, design.solver)
+            setup.check(allow_loose=not method.to_rest or may_lie(design, method))
+            _ = setup.problem, setup.problem_alone
         except VoxSoftError as error:
             refusal = error
         seconds = time.perf_counter() - started
@@ -113,6 +115,16 @@ class StudioBody:
     def load_values(self) -> list[float]:
         """Size of each load in the end, SI."""
         return [load.value for load in self.loads]
+
+    @cached_property
+    def objects(self) -> list[events.BodyObject]:
+        """The rigid objects beside it."""
+        return objects_of(self.setup)
+
+    @property
+    def not_live(self) -> str:
+        """Why time does not run, or an empty text."""
+        return not_live(self.setup)
 
     def under(self, factors: Sequence[float]) -> Setup:
         """The same body with each load so many times as large."""
@@ -170,6 +182,8 @@ class StudioBody:
             parts=_parts(setup.design),
             layers=_layers(setup, self.surface),
             attachments=_attachments(setup, self.surface),
+            objects=self.objects,
+            not_live=self.not_live,
             seconds=self.seconds,
             memory=float(self.voxels.count * BYTES_PER_VOXEL),
         )

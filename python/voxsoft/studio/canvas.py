@@ -71,7 +71,7 @@ class Canvas:
     def _surface(self) -> _core.Display:
         body = self._body
         triangles, size = body.mesh.triangles.astype(np.uint32), body.mesh.voxel_size or 0.0
-        return _core.Display.surface(body.setup.problem, triangles, body.surface.tags, size)
+        return _core.Display.surface(body.setup.problem_alone, triangles, body.surface.tags, size)
 
     @cached_property
     def _outline_of_tets(self) -> _core.Outline:
@@ -83,4 +83,4 @@ class Canvas:
     def _tets(self) -> _core.Display:
         body = self._body
         tets, tags = tets_to_draw(body.mesh, body.surface)
-        return _core.Display.tets(body.setup.problem, tets, tags, body.mesh.voxel_size or 0.0)
+        return _core.Display.tets(body.setup.problem_alone, tets, tags, body.mesh.voxel_size or 0.0)

@@ -242,6 +242,19 @@ class BodyProbe(Entry):
     vertices: list[int]
 
 
+class BodyObject(Entry):
+    """A rigid object where it is at first: `middle` is that of its box, which poses move and turn.
+
+    `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64.
+    """
+
+    name: str
+    motion: Literal["fixed", "moved", "free"]
+    middle: Triple
+    vertices: str
+    triangles: str
+
+
 class BodyPart(Entry):
     """A part; `color` is a CSS color."""
 
@@ -254,7 +267,7 @@ class Body(Event):
     """A new body: its topology follows as a binary message with the same id.
 
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
-    shapes follows as well (kind 3).
+    shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text.
     """
 
     topology: int
@@ -277,6 +290,8 @@ class Body(Event):
     parts: list[BodyPart]
     layers: list[BodyLayer]
     attachments: list[BodyAttachment]
+    objects: list[BodyObject]
+    not_live: str
     seconds: float
     memory: float
     smooth: bool = False
@@ -365,6 +380,42 @@ class Equilibrium(Event):
     chambers: list[Chamber]
     largest_strain: float
     warnings: list[Finding]
+
+
+class ObjectPose(Entry):
+    """Where an object is: the middle of its box in m, and its rotation, nine numbers by rows."""
+
+    position: Triple
+    rotation: list[float]
+
+
+class Touch(Entry):
+    """What touches what: the force on the first in N, the area in m² and the smallest gap in m.
+
+    `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
+    """
+
+    of: tuple[str, str]
+    force: Triple
+    pressed: float
+    area: float
+    gap: float
+    slipping: float
+
+
+class Moment(Entry):
+    """A frame of a solution: the pose of each object of the body, and what touches."""
+
+    frame: int
+    poses: list[ObjectPose]
+    contacts: list[Touch]
+
+
+class Moments(Event):
+    """What is known of stored frames beside their pictures; replaces what was known before."""
+
+    topology: int
+    moments: list[Moment]
 
 
 class OverlapPlace(Entry):
@@ -663,6 +714,7 @@ AnyEvent = (
     | Stat
     | Equilibrium
     | Overlap
+    | Moments
     | Plot
     | Picked
     | Job

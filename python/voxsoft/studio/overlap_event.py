@@ -11,6 +11,7 @@ from voxsoft.design import Design
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.overlaps import NEGLIGIBLE, overlapping, penetration_of
 from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.touching import keeps_apart
 from voxsoft.studio import events
 
 #: Places that are marked in the picture.
@@ -41,11 +42,13 @@ def overlap_of(
         return events.Overlap(topology=topology, depth=0.0, sentence="", places=[])
     where, what = overlapping(design, overlaps[0])
     others = len(overlaps) - 1
+    apart = keeps_apart(design)
+    cause = "contact has not kept them apart" if apart else "contact is not simulated"
     more = f" and at {others} more place{'s' if others > 1 else ''}" if others else ""
     return events.Overlap(
         topology=topology,
         depth=overlaps[0].depth,
-        sentence=f"{where}: {what}{more}: contact is not simulated",
+        sentence=f"{where}: {what}{more}: {cause}",
         places=[
             events.OverlapPlace(depth=overlap.depth, rest=overlap.at_rest, now=overlap.at_now)
             for overlap in overlaps[:_MARKED]

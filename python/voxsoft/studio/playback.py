@@ -15,6 +15,7 @@ from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas
 from voxsoft.studio.exports import Shown
 from voxsoft.studio.hands import Hands
+from voxsoft.studio.objects import film_of, moments_of
 from voxsoft.studio.player import Command, Event, Player
 from voxsoft.studio.probes import Probe, moved_probes, placed_probes
 from voxsoft.studio.sentences import time_text
@@ -44,6 +45,8 @@ class Playback:
         The solver of the search for rest.
     result
         The state at rest that a solver found, while the body is in it.
+    moments
+        Poses of objects and contacts, for each stored frame of a solution with contact.
     """
 
     body: StudioBody | None = None
@@ -54,6 +57,7 @@ class Playback:
     progress: float | None = None
     method: str = "auto"
     result: Result | None = None
+    moments: list[events.Moment] = field(default_factory=list)
     _pace: float | None = None
     _probes: list[Probe] = field(default_factory=list)
     _hands: Hands | None = None
@@ -73,12 +77,15 @@ class Playback:
         self.body, self.canvas, self.player = body, Canvas(body), None
         self._probes = [*placed_probes(body), *moved]
         self.result = self.doing = self.progress = None
+        self.moments = []
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
         if body.refusal is None and self._hands is not None:
-            if not self._hands.idle:
-                self._hands.lay_on(body, self.require_player())
+            # Nothing answers to pulls where time does not run.
+            hands = Hands(self._hands.loads) if body.not_live else self._hands
+            if not hands.idle:
+                hands.lay_on(body, self.require_player())
             self._hands = None
-        return player is not None and player.wants_play
+        return player is not None and player.wants_play and not body.not_live
 
     def let_go(self) -> None:
         """Stop time and forget what hands did, as another document is opened."""
@@ -94,20 +101,29 @@ class Playback:
         VoxSoftError
             There is no body, it cannot be solved, or it cannot be done.
         """
+        self._refuse_live(command)
         return self.require_player().do(command)
+
+    def _refuse_live(self, command: Command) -> None:
+        """Refuse what needs time to run where it cannot: objects would be passed through."""
+        live = isinstance(command, commands.Play | commands.Step | commands.Grab)
+        if live and self.body is not None and self.body.not_live:
+            what = "is not known to live motion, which would go through what the body touches"
+            raise SimulationError("contact", what, "press Solve")
 
     def advance(self, seconds: float, budget: float) -> list[Event]:
         """Let time go on by some seconds, or as far as a budget of the clock allows [s]."""
         return self.require_player().advance(seconds, budget)
 
-    def reset(self) -> list[Event]:
+    def reset(self) -> list[events.Event]:
         """Go back to the unloaded shape at time zero."""
         self.result = None
+        self.moments = []
         self.stop_doing()
         if self.player is None:
             self.sentence = ""
             return [self.plot(), self.stat()]
-        return self.do(commands.Reset(seq=0))
+        return [*self.do(commands.Reset(seq=0)), *self.moments_event()]
 
     def choose_pace(self, factor: float | None) -> None:
         """Take the user's pace for this body and all that come, or None for the automatic one."""
@@ -162,19 +178,31 @@ class Playback:
         else:
             self.player.hold(sentence)
 
-    def go_to_rest(self, result: Result) -> list[Event]:
+    def go_to_rest(self, result: Result) -> list[events.Event]:
         """Take the state at rest that a solver found, and give what there is to tell."""
         player = self.require_player()
         self.stop_doing()
         self.result = result
         sentence = f"{result.message[:1].upper()}{result.message[1:]}"
-        return player.go_to_rest(
+        times, frames = film_of(result)
+        if len(times) > 0:
+            player.take_motion(times, frames)
+        reported = player.go_to_rest(
             result.positions,
             _STATES.get(result.status, "paused"),
             f"{sentence}, in {time_text(result.seconds)}.",
             residual=result.residual,
             elastic=result.elastic_energy,
         )
+        self.moments += moments_of(result, player.frame)
+        return [*reported, *self.moments_event()]
+
+    def moments_event(self) -> list[events.Event]:
+        """What is known of stored frames beside their pictures; nothing for most bodies."""
+        body = self.body
+        if body is None or not body.not_live:
+            return []
+        return [events.Moments(topology=body.topology, moments=self.moments)]
 
     @property
     def moving(self) -> bool:

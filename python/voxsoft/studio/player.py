@@ -101,6 +101,10 @@ class Player:
         reported = self._core.go_to_rest(positions, state, sentence, residual, elastic)
         return _EVENTS.decode(reported)
 
+    def take_motion(self, times: NDArray[np.float64], positions: NDArray[np.float64]) -> None:
+        """Take a motion that a solver found, (f, n, 3) positions [m], as frames to go back to."""
+        self._core.take_motion(times, positions)
+
     def hold(self, sentence: str = "") -> None:
         """Stop time for now: a load or a pull lets it run again if it was asked to."""
         self._core.hold(sentence)

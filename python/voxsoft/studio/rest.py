@@ -5,14 +5,20 @@ from __future__ import annotations
 import math
 import threading
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import Any, Final, Protocol
 
 from voxsoft.errors import VoxSoftError
 from voxsoft.jobs.nearness import digits_lost
-from voxsoft.simulation import Result, simulate
-from voxsoft.simulation.choice import settings_at_rest
+from voxsoft.simulation import Result, Setup, simulate
+from voxsoft.simulation.choice import DYNAMICS, kind_of, settings_at_rest
+from voxsoft.simulation.dynamics import DEFAULT_MAX_TIME, DEFAULT_RECORD_INTERVAL
+from voxsoft.simulation.touching import has_contact
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.sentences import time_text
 from voxsoft.units import format_percent
+
+#: What the frames of a film may take while it is solved for [bytes].
+ROOM: Final = 256 * 1024 * 1024
 
 
 class Listener(Protocol):
@@ -58,6 +64,7 @@ class RestSearch(threading.Thread):
         self._listener = listener
         self._stopped = threading.Event()
         self._largest = 0.0
+        self._end: float | None = None
 
     def stop(self) -> None:
         """Give the search up; its listener hears no more of it."""
@@ -68,8 +75,7 @@ class RestSearch(threading.Thread):
         say: Callable[[], None]
         try:
             setup = self._body.under(self._factors)
-            settings = {**settings_at_rest(), "method": self._method}
-            result = simulate(setup, progress=self._tell, **settings)
+            result = simulate(setup, progress=self._tell, **self._settings(setup))
             say = lambda: self._listener.found(self, result)  # noqa: E731
         except _StoppedError:
             return
@@ -82,9 +88,28 @@ class RestSearch(threading.Thread):
         if not self._stopped.is_set():
             say()
 
-    def _tell(self, steps: int, _: float, residual: float) -> None:
+    def _settings(self, setup: Setup) -> dict[str, Any]:
+        """What is solved for: rest, or with contact what the design asks for, as a film."""
+        design = setup.design
+        if not has_contact(design):
+            return {**settings_at_rest(), "method": self._method}
+        chosen = {} if self._method == "auto" else {"method": self._method}
+        solver = design.solver.replace(**chosen)
+        if kind_of(design, solver) not in DYNAMICS:
+            return chosen
+        self._end = solver.end_time
+        lasts = solver.end_time or solver.max_time or DEFAULT_MAX_TIME
+        most = max(1, ROOM // (8 * setup.mesh.vertices.size))
+        interval = max(DEFAULT_RECORD_INTERVAL, solver.time_step or 0.0, lasts / most)
+        return {**chosen, "frames": True, "record_interval": interval}
+
+    def _tell(self, steps: int, when: float, residual: float) -> None:
         if self._stopped.is_set():
             raise _StoppedError
+        if self._end is not None:
+            sentence = f"Solving for the motion: {time_text(when)} of {time_text(self._end)}"
+            self._listener.searching(self, sentence, min(1.0, when / self._end))
+            return
         if math.isfinite(residual):
             self._largest = max(self._largest, residual)
         left = f"residual {format_percent(residual)} of the load"

@@ -33,7 +33,7 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
     solver = body.setup.design.solver
     probes = placed_probes(body) if probes is None else probes
     return _core.Scene(
-        body.setup.problem,
+        body.setup.problem_alone,
         body.mesh.triangles.astype(np.uint32),
         body.surface.tags,
         body.mesh.voxel_size or 0.0,

@@ -84,6 +84,8 @@ class Stage:
         self.pictures.send_snapshot(tab)
         self.bus.send_to(tab, self.playback.complete(self.playback.stat()))
         self.overlaps.send_snapshot(tab)
+        for event in self.playback.moments_event():
+            self.bus.send_to(tab, event)
         if self._equilibrium is not None:
             self.bus.send_to(tab, self._equilibrium)
 

@@ -78,7 +78,8 @@ class Still:
         messages = [surface.outline.pack_topology(_TOPOLOGY)]
         try:
             triangles, size = mesh.triangles.astype(np.uint32), mesh.voxel_size or 0.0
-            display = _core.Display.surface(self.setup.problem, triangles, surface.tags, size)
+            problem = self.setup.problem_alone
+            display = _core.Display.surface(problem, triangles, surface.tags, size)
         except VoxSoftError:  # no problem to solve, such as a card that is gone: only the shape
             moved = np.linalg.norm(self.positions - mesh.vertices, axis=1)
             shape = surface.outline.pack_frame(

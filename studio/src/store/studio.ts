@@ -13,6 +13,7 @@ import type {
   JobEvent,
   LogEvent,
   MeasuredEvent,
+  Moment,
   OverlapEvent,
   OverlayEvent,
   PickedEvent,
@@ -48,6 +49,8 @@ export interface Studio {
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
+  /** What is known of frames of a solution with contact, by their numbers. */
+  moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
   jobs: Readonly<Record<string, JobEvent>>;
   trials: Readonly<Record<string, TrialsEvent>>;
@@ -80,6 +83,7 @@ export const useStudio = create<Studio>(() => ({
   stat: null,
   overlap: null,
   equilibrium: null,
+  moments: new Map(),
   picked: null,
   jobs: {},
   trials: {},
@@ -138,7 +142,11 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       set({ document: event });
       break;
     case "body":
-      set({ body: event, picked: null });
+      set(({ body, moments }) => ({
+        body: event,
+        picked: null,
+        moments: body?.topology === event.topology ? moments : new Map(),
+      }));
       break;
     case "stat":
       set({ stat: event });
@@ -148,6 +156,10 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "overlap":
       set({ overlap: event });
+      break;
+    case "moments":
+      if (useStudio.getState().body?.topology === event.topology)
+        set({ moments: new Map(event.moments.map((moment) => [moment.frame, moment])) });
       break;
     case "plot":
       set((state) => {

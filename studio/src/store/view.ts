@@ -39,6 +39,8 @@ export interface View {
   tape: boolean;
   /** Which buttons of the mouse steer the camera. */
   scheme: Scheme;
+  /** The rigid object that is chosen in the form or the picture. */
+  chosen: string | null;
   /** Spring by which the mouse pulls, N/m. */
   stiffness: number;
 }
@@ -79,6 +81,7 @@ export const useView = create<View>(() => ({
   sectionNormal: [0, 0, 1],
   tape: false,
   scheme: "voxsoft",
+  chosen: null,
   stiffness: 50,
   ...kept<View>(KEY),
 }));

@@ -24,6 +24,7 @@ import { Grabs } from "./grab";
 import { roundLength } from "./ground";
 import type { Rect } from "./labelLayout";
 import { type Label, Labels } from "./labels";
+import { RigidObjects } from "./objects";
 import { drawnAt, overlapLabels, overlapOf } from "./overlap";
 import { Painter } from "./painter";
 import { listen } from "./pointer";
@@ -67,6 +68,7 @@ export class Viewport {
   private readonly sectionHandle = new SectionHandle(this.section, this.rig);
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
+  private readonly objects = new RigidObjects(this.section);
   private readonly labels = new Labels();
   private legend: Rect | null = null;
   private ink = themeColor("--ink");
@@ -98,6 +100,8 @@ export class Viewport {
   private extremes: { low: number; high: number } | null = null;
   private colors: ColorRange | null = null;
   private fitNext = true;
+  /** The body to which the picture was fitted before its objects came; 0 for none. */
+  private fitted = 0;
   private pullsDue = true;
   private documentName = nameOf(useStudio.getState().document);
   private drawnListeners = new Set<() => void>();
@@ -114,6 +118,7 @@ export class Viewport {
     this.scene.add(
       this.section.group,
       this.symbols.group,
+      this.objects.group,
       this.attachments.group,
       this.grabs.group,
       this.tape.group,
@@ -132,7 +137,7 @@ export class Viewport {
         // While time runs the next frame is on its way and will show what else is new.
         if (now.stat?.state !== "playing" || before.stat?.state !== "playing") this.request();
       }
-      if (now.overlap !== before.overlap) this.request();
+      if (now.overlap !== before.overlap || now.moments !== before.moments) this.request();
       const name = nameOf(now.document);
       if (name !== null && name !== this.documentName) {
         this.documentName = name;
@@ -159,7 +164,7 @@ export class Viewport {
     // A change from tetrahedra back to the surface sends again what is known already.
     if (!fresh && !topology.tets && this.surface) return;
     const mesh = new BodyMesh(topology, { plane: this.section.plane, section: this.section.on });
-    if (fresh) this.clearBody(mesh.box(1));
+    if (fresh) this.clearBody(mesh.box(1), topology.id);
     if (topology.tets) {
       this.drop(this.tets);
       this.tets = mesh;
@@ -171,7 +176,7 @@ export class Viewport {
   }
 
   // Another body: what hung on the old one goes, the camera stays where it is.
-  private clearBody(box: Box3): void {
+  private clearBody(box: Box3, id: number): void {
     this.drop(this.surface);
     this.drop(this.tets);
     this.surface = this.tets = null;
@@ -188,6 +193,7 @@ export class Viewport {
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
     if (this.fitNext) this.rig.fit(box, true);
+    this.fitted = this.fitNext ? id : 0;
     this.fitNext = false;
   }
 
@@ -221,8 +227,23 @@ export class Viewport {
     if (body) this.symbols.build(body);
     else this.symbols.clear();
     this.attachments.build(body?.attachments ?? []);
+    this.objects.build(body?.objects ?? []);
+    this.takeIn();
     this.coverSurface();
     this.request();
+  }
+
+  // Objects come after the body: the picture, where it was fitted to that alone, takes them in.
+  private takeIn(): void {
+    const { body } = useStudio.getState();
+    const mesh = this.shownMesh();
+    if (!mesh || body?.topology !== mesh.topology.id || body.objects.length === 0) return;
+    const box = this.objects.around(mesh.box(1).clone());
+    this.painter.backdrop.ground.lay(box);
+    this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
+    if (this.fitted !== mesh.topology.id || this.rig.steered) return;
+    this.rig.fit(box, true);
+    this.fitted = 0;
   }
 
   // The body's layers, whichever of its surface and what is told of it comes first.
@@ -430,6 +451,9 @@ export class Viewport {
       view.appearance !== "wireframe" && !view.cavities && !mesh?.topology.tets,
     );
     this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
+    const { body, moments } = useStudio.getState();
+    this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
+    this.objects.place(moments.get(this.latest?.number ?? 0), view.exaggeration, view.chosen);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
   }
@@ -460,6 +484,7 @@ export class Viewport {
     if (body?.topology === mesh.topology.id && view.symbols) {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
       labels.push(...this.attachments.update(mesh, view.exaggeration));
+      labels.push(...this.objects.labels());
     }
     // Where all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
@@ -613,7 +638,8 @@ export class Viewport {
 
   fit(): void {
     const mesh = this.shownMesh();
-    if (mesh) this.rig.fit(mesh.box(useView.getState().exaggeration).clone());
+    const box = mesh?.box(useView.getState().exaggeration).clone();
+    if (box) this.rig.fit(this.objects.around(box));
     this.request();
   }
 
@@ -679,6 +705,11 @@ export class Viewport {
   vertexPosition(vertex: number): [number, number, number] | null {
     const frame = this.surface?.frame;
     return frame && 4 * vertex < frame.packed.length ? positionIn(frame, vertex) : null;
+  }
+
+  /** Where the middle of a rigid object is drawn, m. */
+  objectPosition(name: string): [number, number, number] | null {
+    return this.objects.middleOf(name);
   }
 
   /** Where a vertex is on the page, in CSS pixels. */

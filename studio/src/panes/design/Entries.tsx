@@ -4,6 +4,7 @@ import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { textNow } from "../../store/typing";
+import { setView, useView } from "../../store/view";
 import { edit, problemsAt, replaceText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
@@ -20,13 +21,16 @@ interface EntryProps {
   wrong: boolean;
   testId?: string;
   depth?: number;
+  /** Whether it is open, where another place decides that too. */
+  open?: { readonly is: boolean; set(open: boolean): void };
   actions: readonly { readonly glyph: "up" | "down" | "trash"; label: string; run(): void }[];
   children: ReactNode;
 }
 
 /** A line that opens to the fields behind it. */
 export function Entry(props: EntryProps) {
-  const [open, setOpen] = useState(false);
+  const own = useState(false);
+  const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
   return (
     <div
       className={`entry${open ? " is-open" : ""}`}
@@ -146,8 +150,14 @@ export function EntryList(props: {
   const { root, source, diagnostics } = useForm();
   const { section } = props;
   const schema = root.properties?.[section]?.items;
+  const chosen = useView((view) => view.chosen);
   if (!schema) return null;
   const values = (source[section] as Table[] | undefined) ?? [];
+  // The object whose fields are open is the one that the picture marks.
+  const choosing = (name: string) => ({
+    is: chosen === name,
+    set: (open: boolean) => setView({ chosen: open ? name : null }),
+  });
   return (
     <Section
       title={props.title}
@@ -172,6 +182,7 @@ export function EntryList(props: {
             about={aboutEntry(section, value)}
             wrong={problemsAt(diagnostics, [section, i]).length > 0}
             testId={`${section}-${i}`}
+            {...(section === "objects" ? { open: choosing(title) } : {})}
             actions={[
               ...(i > 0
                 ? [

@@ -1,0 +1,107 @@
+"""Rigid objects as the page draws them, and what a solution knows of each of its frames."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import VoxSoftError
+from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.touching import ContactState, Pose, has_contact
+from voxsoft.studio import events
+from voxsoft.studio.message import Triple
+
+#: Why time does not run for a body that may touch something.
+NOT_LIVE: Final = "Live motion knows no contact: press Solve."
+
+
+def objects_of(setup: Setup) -> list[events.BodyObject]:
+    """The objects of a design where they are at first, as far as they have a surface."""
+    touching = setup.touching
+    if touching is None:
+        return []
+    try:
+        traced = touching.traced
+    except VoxSoftError:  # a finding of the check
+        return []
+    return [
+        events.BodyObject(
+            name=each.name,
+            motion="free" if each.is_free else "fixed" if each.way is None else "moved",
+            middle=_triple(surface.middle),
+            vertices=_packed(surface.vertices.astype("<f4")),
+            triangles=_packed(surface.triangles.astype("<u4")),
+        )
+        for each, surface in zip(setup.design.objects, traced, strict=True)
+    ]
+
+
+def not_live(setup: Setup) -> str:
+    """Why time does not run for a body, in a sentence; empty where it does."""
+    return NOT_LIVE if has_contact(setup.design) else ""
+
+
+def film_of(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Times and positions of what was recorded before the state that a result ends in."""
+    times, frames = result.recording.times, result.recording.frames
+    before = len(frames) - int(len(frames) > 0 and times[-1] >= result.time)
+    return times[:before], frames[:before]
+
+
+def moments_of(result: Result, last: int) -> list[events.Moment]:
+    """Poses and contacts in each frame of a solution whose last frame has the number `last`."""
+    if not has_contact(result.design):
+        return []
+    names = [each.name for each in result.design.objects]
+    recording, count = result.recording, len(film_of(result)[0])
+    found = []
+    for index in range(count):
+        poses = {
+            name: Pose(_triple(positions[index]), tuple(map(_triple, rotations[index])))
+            for name, (positions, rotations) in recording.objects.items()
+        }
+        number = last - count + index
+        found.append(_moment(number, names, poses, recording.contacts[index]))
+    return [*found, _moment(last, names, result.objects, result.contacts)]
+
+
+def _moment(
+    frame: int,
+    names: Sequence[str],
+    poses: Mapping[str, Pose],
+    contacts: Sequence[ContactState],
+) -> events.Moment:
+    return events.Moment(
+        frame=frame,
+        poses=[
+            events.ObjectPose(
+                position=poses[name].position,
+                rotation=[part for row in poses[name].rotation for part in row],
+            )
+            for name in names
+        ],
+        contacts=[
+            events.Touch(
+                of=each.of,
+                force=each.force,
+                pressed=each.pressed,
+                area=each.area,
+                gap=each.gap,
+                slipping=each.slipping,
+            )
+            for each in contacts
+        ],
+    )
+
+
+def _triple(values: NDArray[np.float64]) -> Triple:
+    x, y, z = (float(value) for value in values)
+    return (x, y, z)
+
+
+def _packed(values: NDArray[Any]) -> str:
+    return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")

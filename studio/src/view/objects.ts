@@ -1,0 +1,193 @@
+// Rigid objects beside the body: gray, and so that what is behind them shows through. They stand
+// where the frame that is drawn has them.
+import {
+  type Box3,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  GLSL3,
+  Group,
+  type IUniform,
+  Matrix4,
+  Mesh,
+  ShaderMaterial,
+  Vector3,
+  type Vector4,
+} from "three";
+import { bytesOf } from "../engine/base64";
+import type { BodyObject, Moment, ObjectPose } from "../protocol";
+import { showPane } from "../shell/actions";
+import { setView } from "../store/view";
+import type { Label } from "./labels";
+import { CUT } from "./shaders";
+
+const COLOR = "#8d959e";
+const CHOSEN_COLOR = "#f0b429";
+/** How much of a picture an object takes: what it presses must be seen through it. */
+const OPACITY = 0.42;
+const CHOSEN_OPACITY = 0.5;
+/** How far around a body its objects are brought into the picture, in lengths of its longest side. */
+const AROUND = 1;
+
+const VERTEX = /* glsl */ `
+out vec3 vNormal;
+out vec3 vWorld;
+void main() {
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  vWorld = world.xyz;
+  vNormal = normalMatrix * normal;
+  gl_Position = projectionMatrix * viewMatrix * world;
+}
+`;
+
+const FRAGMENT = /* glsl */ `
+precision highp float;
+${CUT}
+in vec3 vNormal;
+in vec3 vWorld;
+uniform vec3 uOwn;
+uniform float uAlpha;
+out vec4 color;
+void main() {
+  if (cutAway(vWorld)) discard;
+  vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  float key = max(0.0, dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
+  // Its outline shows the shape where light alone would not.
+  float rim = pow(1.0 - max(0.0, normal.z), 2.0);
+  color = vec4(uOwn * (0.55 + 0.5 * key), min(1.0, uAlpha + 0.4 * rim));
+}
+`;
+
+/**
+ * From where an object is at first to where a pose has it, the way drawn so many times as long: with
+ * the rotation R about the middle m, which is brought to p, x becomes x + e (p + R (x − m) − x).
+ */
+export function placedBy(
+  pose: ObjectPose | undefined,
+  middle: readonly [number, number, number],
+  exaggeration: number,
+  out = new Matrix4(),
+): Matrix4 {
+  out.identity();
+  if (!pose) return out;
+  const e = exaggeration;
+  const entries = out.elements; // column by column
+  for (let row = 0; row < 3; row++) {
+    let along = pose.position[row] as number;
+    for (let column = 0; column < 3; column++) {
+      const turn = pose.rotation[3 * row + column] as number;
+      entries[4 * column + row] = e * turn + (row === column ? 1 - e : 0);
+      along -= turn * (middle[column] as number);
+    }
+    entries[12 + row] = e * along;
+  }
+  return out;
+}
+
+interface Drawn {
+  readonly object: BodyObject;
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  readonly middle: Vector3;
+}
+
+export class RigidObjects {
+  readonly group = new Group();
+  private drawn: Drawn[] = [];
+  private built: readonly BodyObject[] = [];
+
+  constructor(private readonly section: { plane: IUniform<Vector4>; on: IUniform<number> }) {}
+
+  build(objects: readonly BodyObject[]): void {
+    // What the check reports of a body comes with the same objects again.
+    const key = (all: readonly BodyObject[]) => all.map((one) => `${one.name} ${one.vertices}`);
+    if (key(objects).join() === key(this.built).join()) return;
+    this.clear();
+    this.built = objects;
+    this.drawn = objects.map((object) => {
+      const geometry = new BufferGeometry();
+      const vertices = new Float32Array(bytesOf(object.vertices));
+      geometry.setAttribute("position", new BufferAttribute(vertices, 3));
+      geometry.setIndex(new BufferAttribute(new Uint32Array(bytesOf(object.triangles)), 1));
+      geometry.computeVertexNormals();
+      geometry.computeBoundingBox();
+      const material = new ShaderMaterial({
+        glslVersion: GLSL3,
+        vertexShader: VERTEX,
+        fragmentShader: FRAGMENT,
+        side: DoubleSide,
+        transparent: true,
+        uniforms: {
+          uPlane: this.section.plane,
+          uSection: this.section.on,
+          uOwn: { value: new Color(COLOR) },
+          uAlpha: { value: OPACITY },
+        },
+      });
+      material.forceSinglePass = false; // its far side first
+      const mesh = new Mesh(geometry, material);
+      mesh.renderOrder = 7;
+      mesh.frustumCulled = false;
+      mesh.matrixAutoUpdate = false;
+      this.group.add(mesh);
+      return { object, mesh, middle: new Vector3() };
+    });
+    this.place(undefined, 1, null);
+  }
+
+  /** Put all where they are in a frame, and mark the one that is chosen. */
+  place(moment: Moment | undefined, exaggeration: number, chosen: string | null): void {
+    for (const [i, { object, mesh, middle }] of this.drawn.entries()) {
+      placedBy(moment?.poses[i], object.middle, exaggeration, mesh.matrix);
+      mesh.matrixWorldNeedsUpdate = true;
+      middle.set(...object.middle).applyMatrix4(mesh.matrix);
+      const { uniforms } = mesh.material;
+      const marked = object.name === chosen;
+      (uniforms.uOwn!.value as Color).set(marked ? CHOSEN_COLOR : COLOR);
+      uniforms.uAlpha!.value = marked ? CHOSEN_OPACITY : OPACITY;
+    }
+  }
+
+  /** A box with all of them, as far as they do not dwarf the body in `box`. */
+  around(box: Box3): Box3 {
+    const size = box.getSize(new Vector3());
+    const reach = AROUND * Math.max(size.x, size.y, size.z);
+    const limits = box.clone().expandByScalar(reach);
+    const all = box.clone();
+    for (const { mesh } of this.drawn) {
+      const own = mesh.geometry.boundingBox?.clone().applyMatrix4(mesh.matrix);
+      if (own?.intersectsBox(limits)) all.union(own.intersect(limits));
+    }
+    return all;
+  }
+
+  labels(): Label[] {
+    return this.drawn.map(({ object, middle }) => ({
+      key: `object-${object.name}`,
+      kind: "object",
+      text: object.name,
+      title: `A rigid object, ${object.motion}`,
+      color: COLOR,
+      at: (out) => out.copy(middle),
+      onClick: () => {
+        setView({ chosen: object.name });
+        showPane("design");
+      },
+    }));
+  }
+
+  /** Where the middle of an object is drawn, m. */
+  middleOf(name: string): [number, number, number] | null {
+    return this.drawn.find((one) => one.object.name === name)?.middle.toArray() ?? null;
+  }
+
+  private clear(): void {
+    this.group.clear();
+    for (const { mesh } of this.drawn) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+    this.drawn = [];
+    this.built = [];
+  }
+}

@@ -1,0 +1,180 @@
+"""Rigid objects in the studio: shown at rest, found by Solve, never passed through live."""
+
+import base64
+from pathlib import Path
+
+import numpy as np
+import pytest
+from own_loop import run
+
+import voxsoft as vs
+from voxsoft.design import Object, families
+from voxsoft.errors import SimulationError
+from voxsoft.files.designs import load
+from voxsoft.simulation import simulate
+from voxsoft.simulation.posed import posed_surface
+from voxsoft.studio import commands
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.objects import moments_of
+from voxsoft.studio.playback import Playback
+from voxsoft.studio.rest import RestSearch
+from voxsoft.units import mm
+
+PINCH = Path(__file__).parents[2] / "examples" / "pinch.toml"
+
+PRESSED = """
+schema = "voxsoft/1"
+name = "pressed"
+voxel_size = "4 mm"
+
+[shapes]
+block = { kind = "box", size = ["12 mm", "12 mm", "12 mm"] }
+plate = { kind = "box", size = ["20 mm", "20 mm", "4 mm"], corner = ["-4 mm", "-4 mm", "12.5 mm"] }
+
+[materials]
+rubber = { model = "neo-hookean", young = "100 kPa", poisson = 0.45 }
+
+[[parts]]
+shape = "block"
+material = "rubber"
+
+[[clamps]]
+region = { z = [0, 0] }
+
+[[objects]]
+name = "plate"
+shape = "plate"
+motion = { displacement = [0, 0, "-1.5 mm"] }
+
+[contact]
+friction = 0.4
+"""
+
+
+@pytest.fixture
+def pressed(tmp_path):
+    file = tmp_path / "pressed.toml"
+    file.write_text(PRESSED)
+    return file
+
+
+def playing(design):
+    playback = Playback()
+    playback.begin(StudioBody.of(design, 1, 1))
+    return playback
+
+
+def numbers(text, kind):
+    return np.frombuffer(base64.b64decode(text), kind).reshape(-1, 3)
+
+
+def test_an_object_comes_as_it_is_drawn_in_figures(pressed):
+    design = load(pressed)
+    [sent] = StudioBody.of(design, 1, 1).event().objects
+    surface = posed_surface(design, "plate", None)
+    assert (sent.name, sent.motion) == ("plate", "moved")
+    # Single precision: 1e-7 of some centimeters.
+    assert numbers(sent.vertices, "<f4") == pytest.approx(surface.vertices, abs=1e-8)
+    assert (numbers(sent.triangles, "<u4") == surface.triangles).all()
+    assert sent.middle == pytest.approx((6 * mm, 6 * mm, 14.5 * mm), abs=1e-9)
+
+
+def test_an_object_within_the_body_is_drawn_and_keeps_it_from_being_solved():
+    bead = Object(name="bead", shape=vs.Sphere(radius="2 mm", center=("6 mm", "6 mm", "6 mm")))
+    block = vs.Part(shape=vs.Box(size=("12 mm", "12 mm", "12 mm")), material="ecoflex-00-30")
+    held = vs.Clamp(region=vs.Region(z=(0, 0)))
+    design = vs.Design(name="b", voxel_size=4 * mm, parts=[block], clamps=[held], objects=[bead])
+    body = StudioBody.of(design, 1, 1)
+    assert [each.name for each in body.event().objects] == ["bead"]
+    assert "deep in the body" in str(body.refusal)
+
+
+def test_time_does_not_run_through_an_object(pressed):
+    playback = playing(load(pressed))
+    grab = commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.0))
+    for command in (commands.Play(seq=1), commands.Step(seq=1), grab):
+        with pytest.raises(SimulationError, match="press Solve"):
+            playback.do(command)
+    assert not playback.moving
+    assert playback.body.event().not_live
+
+
+def test_what_was_pulled_or_played_stops_where_an_object_comes(pressed):
+    design = load(pressed)
+    playback = playing(design.replace(objects=(), contact=None))
+    playback.do(commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.1)))
+    playback.do(commands.Play(seq=1))
+    assert not playback.begin(StudioBody.of(design, 2, 2))
+    assert playback.stat().grabs == []
+
+
+def test_solve_finds_contact_and_reports_where_the_plate_went(make_studio, pressed):
+    studio = make_studio(pressed)
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda stat: stat.state == "paused")
+            await page.send("rest")
+            moments = await page.until("moments", lambda event: event.moments, seconds=60.0)
+            async with studio.page() as other:
+                again = await other.until("moments")
+            await page.send("reset")
+            cleared = await page.until("moments")
+            await page.send("play")
+            refused = await page.until("error")
+        [moment] = moments.moments
+        [touch] = moment["contacts"]
+        assert touch["of"] == ["body", "plate"]
+        # A block of 100 kPa that is pressed by a twelfth: 1.2 N where its ends spread freely; with
+        # the foot held and rubber of 0.45 no more than 2 N.
+        assert 1.2 < -touch["force"][2] < 2.0
+        assert moment["poses"][0]["position"][2] == pytest.approx(13.0 * mm, abs=1e-6)
+        assert again.moments == moments.moments
+        assert cleared.moments == []
+        assert "live motion" in refused.what
+
+    run(scenario())
+
+
+class Heard:
+    """Who listens to a search."""
+
+    def __init__(self):
+        self.sentences, self.result, self.failure = [], None, None
+
+    def searching(self, search, sentence, progress):
+        self.sentences.append((sentence, progress))
+
+    def found(self, search, result):
+        self.result = result
+
+    def not_found(self, search, sentence):
+        self.failure = sentence
+
+
+def test_a_free_object_is_solved_over_time_as_a_film_of_poses():
+    design = load(PINCH)
+    design = design.replace(solver=design.solver.replace(end_time=0.1))
+    playback, heard = playing(design), Heard()
+    search = RestSearch(playback.body, playback.factors, "auto", heard)
+    search.run()
+    assert heard.failure is None
+    result = heard.result
+    assert result.solver["way"] == "dynamics"
+    assert any(sentence.endswith("of 0.1 s") for sentence, _ in heard.sentences)
+    playback.go_to_rest(result)
+    frames = [moment.frame for moment in playback.moments]
+    assert frames == list(range(1, playback.frame + 1))
+    assert len(frames) == len(result.recording.times)
+    # Gravity comes on after the pads have closed: the plate goes down.
+    heights = [moment.poses[0].position[2] for moment in playback.moments]
+    assert heights[-1] < heights[0]
+    playback.do(commands.Seek(seq=1, frame=2))
+    recorded = result.recording.frames[1]
+    # The core keeps frames in single precision.
+    assert playback.player.positions() == pytest.approx(recorded, abs=1e-8)
+    assert playback.stat().time == pytest.approx(result.recording.times[1])
+
+
+def test_moments_of_a_design_without_contact_are_none():
+    assert moments_of(simulate(families.beam()), 1) == []
