@@ -154,7 +154,8 @@ class _Pages:
             return Response(status_code=499)
         except VoxSoftError as error:
             return _problem(422, error.where, error.what, error.hint)
-        return JSONResponse({"name": stored, "size": len(content)})
+        answer = {"name": stored.name, "path": str(stored), "size": len(content)}
+        return JSONResponse(answer)
 
     async def export(self, request: Request) -> Response:
         try:

@@ -446,17 +446,17 @@ class Session:
 
     # Files
 
-    def store_upload(self, name: str, content: bytes) -> str:
-        """Keep a file that was dropped on the page; returns the name it has here.
+    def store_upload(self, name: str, content: bytes) -> Path:
+        """Keep a file that was dropped on the page, under a safe name; returns where it is.
 
         Raises
         ------
         FileError
             It cannot be written.
         """
-        folder = make_folder(self.own / "uploads")
-        write_atomically(folder / safe_name(name), content)
-        return safe_name(name)
+        stored = make_folder(self.own / "uploads") / safe_name(name)
+        write_atomically(stored, content)
+        return stored
 
     def download(self, key: str) -> Path | None:
         """The file that an export left for a download."""

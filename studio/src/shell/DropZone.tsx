@@ -16,13 +16,19 @@ export async function upload(file: File): Promise<void> {
     });
     return;
   }
+  const sent = await sendFile(file);
+  if (sent) openDocument({ t: "open", what: "upload", name: sent.name });
+}
+
+/** Send a file to the server; gives what it is called there and where it is, or null where it was not taken. */
+export async function sendFile(file: File): Promise<{ name: string; path: string } | null> {
   if (file.size > LARGEST_UPLOAD) {
     toast({
       level: "error",
       what: `${file.name} has ${Math.round(file.size / 1e6)} MB; at most ${Math.round(LARGEST_UPLOAD / 2 ** 20)} MB can be sent`,
       hint: "Start the studio with it instead: voxsoft studio FILE.",
     });
-    return;
+    return null;
   }
   try {
     const reply = await fetch(`/upload?name=${encodeURIComponent(file.name)}`, {
@@ -30,15 +36,13 @@ export async function upload(file: File): Promise<void> {
       body: file,
     });
     const body: unknown = await reply.json().catch(() => null);
-    const said = body as { name?: string; what?: string; hint?: string } | null;
-    if (reply.ok) openDocument({ t: "open", what: "upload", name: said?.name ?? file.name });
-    else {
-      toast({
-        level: "error",
-        what: said?.what ?? `${file.name} was not taken (${reply.status})`,
-        hint: said?.hint ?? "",
-      });
-    }
+    if (reply.ok) return body as { name: string; path: string };
+    const refused = body as { what?: string; hint?: string } | null;
+    toast({
+      level: "error",
+      what: refused?.what ?? `${file.name} was not taken (${reply.status})`,
+      hint: refused?.hint ?? "",
+    });
   } catch {
     toast({
       level: "error",
@@ -46,6 +50,7 @@ export async function upload(file: File): Promise<void> {
       hint: "VoxSoft does not answer; drop the file again when it does.",
     });
   }
+  return null;
 }
 
 export function DropZone() {

@@ -233,7 +233,7 @@ export class Viewport {
     this.request();
   }
 
-  // Objects come after the body: the picture, where it was fitted to that alone, takes them in.
+  // Objects come after the body, or later: a picture that no hand has turned takes them in.
   private takeIn(): void {
     const { body } = useStudio.getState();
     const mesh = this.shownMesh();
@@ -241,8 +241,9 @@ export class Viewport {
     const box = this.objects.around(mesh.box(1).clone());
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
-    if (this.fitted !== mesh.topology.id || this.rig.steered) return;
-    this.rig.fit(box, true);
+    const alone = this.fitted === mesh.topology.id;
+    if (this.rig.steered || (!alone && this.rig.holds(box))) return;
+    this.rig.fit(box, alone);
     this.fitted = 0;
   }
 

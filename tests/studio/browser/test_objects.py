@@ -63,3 +63,73 @@ def test_an_object_of_the_form_is_marked_in_the_picture(dented, open_tab):
     tab.find("label-object-ball").wait_for()
     tab.shot("objects_chosen")
     assert tab.errors == []
+
+
+STL = """solid wedge
+facet normal 0 0 0
+outer loop
+vertex 100 0 0
+vertex 100 10 0
+vertex 110 0 0
+endloop
+endfacet
+facet normal 0 0 0
+outer loop
+vertex 100 0 0
+vertex 110 0 0
+vertex 100 0 10
+endloop
+endfacet
+facet normal 0 0 0
+outer loop
+vertex 100 0 0
+vertex 100 0 10
+vertex 100 10 0
+endloop
+endfacet
+facet normal 0 0 0
+outer loop
+vertex 110 0 0
+vertex 100 10 0
+vertex 100 0 10
+endloop
+endfacet
+endsolid wedge
+"""
+
+
+def test_objects_to_grip_are_added_beside_the_body_and_taken_back(served, open_tab, tmp_path):
+    tab = open_tab(served.address, mode="design")
+    page = tab.page
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    for kind, name in (("sphere", "ball"), ("box", "box"), ("cylinder", "cylinder")):
+        tab.find("add-object").select_option(kind)
+        tab.until(f"voxsoft.objectPosition('{name}') !== null")
+    file = tmp_path / "wedge.stl"
+    file.write_text(STL)
+    tab.find("object-file").set_input_files(file)
+    tab.until("voxsoft.objectPosition('wedge') !== null")
+    # The finger is held at its left end and 10 mm wide: all stand in a row to the right of it.
+    places = page.evaluate(
+        "['ball', 'box', 'cylinder', 'wedge'].map((name) => voxsoft.objectPosition(name))"
+    )
+    along = [place[0] for place in places]
+    assert along == sorted(along)
+    assert along[0] > 0.04
+    # Tips of the wedge are rounded by a third of a voxel of 5 mm: its box is smaller by some.
+    assert [place[1] for place in places] == pytest.approx([0.005] * 4, abs=1.7e-3)
+    assert page.get_by_text("deep in").count() == 0
+    tab.shot("objects_added")
+    entry = tab.find("objects-3")
+    entry.get_by_label("Motion", exact=True).select_option("free")
+    entry.get_by_label("Mass", exact=True).wait_for()
+    tab.shot("objects_free")
+    for index, name in ((3, "wedge"), (2, "cylinder"), (1, "box"), (0, "ball")):
+        # One step each; the motion of the last is one of its own unless it came within a second.
+        while tab.find(f"objects-{index}").count() > 0:
+            rev = page.evaluate("voxsoft.rev")
+            page.get_by_role("button", name="Undo").click()
+            tab.until(f"voxsoft.rev > {rev}")
+        tab.until(f"voxsoft.objectPosition('{name}') === null")
+        assert tab.find(f"objects-{index - 1}").count() == int(index > 0)
+    assert tab.errors == []

@@ -7,6 +7,7 @@ import { type Form, FormContext } from "./form";
 import { Gallery } from "./Gallery";
 import { Glyph } from "./Glyph";
 import { Goals } from "./Goals";
+import { ContactSection, Objects } from "./Objects";
 import { Parameters } from "./Parameters";
 import { SchemaField, TableFields } from "./SchemaField";
 import { Shapes } from "./Shapes";
@@ -56,6 +57,8 @@ export default function DesignPane() {
             empty="None. A layer is a thin sheet that resists stretch, such as fabric."
           />
           <OtherLists root={form.root} />
+          <Objects />
+          <ContactSection />
           <EntryList
             section="clamps"
             title="Clamps"
@@ -113,7 +116,7 @@ function Faults() {
 }
 
 /** Lists that have their own place and words in the form. */
-const PLACED = ["parts", "layers", "clamps", "loads"];
+const PLACED = ["parts", "layers", "objects", "clamps", "loads"];
 
 /** All other lists of the schema, in its words. */
 function OtherLists(props: { root: Schema }) {

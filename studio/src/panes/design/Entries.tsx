@@ -1,5 +1,5 @@
 // Sections of a design that hold several things: parts, loads, clamps, probes, materials, layers.
-import { type ReactNode, useState } from "react";
+import { type ReactNode, useEffect, useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
@@ -150,14 +150,8 @@ export function EntryList(props: {
   const { root, source, diagnostics } = useForm();
   const { section } = props;
   const schema = root.properties?.[section]?.items;
-  const chosen = useView((view) => view.chosen);
   if (!schema) return null;
   const values = (source[section] as Table[] | undefined) ?? [];
-  // The object whose fields are open is the one that the picture marks.
-  const choosing = (name: string) => ({
-    is: chosen === name,
-    set: (open: boolean) => setView({ chosen: open ? name : null }),
-  });
   return (
     <Section
       title={props.title}
@@ -182,7 +176,6 @@ export function EntryList(props: {
             about={aboutEntry(section, value)}
             wrong={problemsAt(diagnostics, [section, i]).length > 0}
             testId={`${section}-${i}`}
-            {...(section === "objects" ? { open: choosing(title) } : {})}
             actions={[
               ...(i > 0
                 ? [
@@ -201,6 +194,43 @@ export function EntryList(props: {
         );
       })}
     </Section>
+  );
+}
+
+/** An object in the list of them: the one whose fields are open is marked in the picture. */
+export function ObjectEntry(props: {
+  index: number;
+  value: Table;
+  about: string;
+  children: ReactNode;
+}) {
+  const { diagnostics } = useForm();
+  const name = String(props.value.name ?? `Object ${props.index + 1}`);
+  const chosen = useView((view) => view.chosen === name);
+  const box = useRef<HTMLDivElement>(null);
+  // It may have been added, or chosen in the picture.
+  useEffect(() => {
+    if (chosen) box.current?.scrollIntoView({ block: "nearest" });
+  }, [chosen]);
+  return (
+    <div ref={box}>
+      <Entry
+        title={name}
+        about={props.about}
+        wrong={problemsAt(diagnostics, ["objects", props.index]).length > 0}
+        testId={`objects-${props.index}`}
+        open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
+        actions={[
+          {
+            glyph: "trash",
+            label: `Remove ${name}`,
+            run: () => edit(["objects", props.index], null),
+          },
+        ]}
+      >
+        {props.children}
+      </Entry>
+    </div>
   );
 }
 

@@ -1,0 +1,109 @@
+// Objects to grip: what is written of a new one, of another motion, and of its friction.
+import type { BodyEvent, Triple } from "../../protocol";
+import { type Surroundings, sideFor, spotFor, wayInto, written, writtenPlace } from "./placing";
+
+export type Table = Readonly<Record<string, unknown>>;
+export type Motion = "fixed" | "moved" | "free";
+export const PRIMITIVES = ["sphere", "box", "cylinder"] as const;
+export type Primitive = (typeof PRIMITIVES)[number];
+
+/** The shape of a new object beside the body. */
+export function newShape(kind: Primitive, around: Surroundings | null): Table {
+  const side = sideFor(around);
+  const [x, y, z] = spotFor([side, side, side], around);
+  switch (kind) {
+    case "sphere":
+      return { kind, radius: written(side / 2), center: writtenPlace([x, y, z]) };
+    case "box":
+      return {
+        kind,
+        size: [written(side), written(side), written(side)],
+        center: writtenPlace([x, y, z]),
+      };
+    case "cylinder":
+      return {
+        ...{ kind, radius: written(side / 2), height: written(side) },
+        base: writtenPlace([x, y, z - side / 2]),
+      };
+  }
+}
+
+/** A mesh from a file whose box goes from `low` to `high`, in mm, moved beside the body. */
+export function meshShape(
+  path: string,
+  low: Triple,
+  high: Triple,
+  around: Surroundings | null,
+): Table {
+  const size = low.map((x, axis) => 1e-3 * ((high[axis] as number) - x)) as Triple;
+  const spot = spotFor(size, around);
+  const by = spot.map((x, axis) => x - 5e-4 * ((low[axis] as number) + (high[axis] as number)));
+  return {
+    kind: "translate",
+    of: { kind: "mesh", path, unit: "mm" },
+    by: writtenPlace(by as Triple),
+  };
+}
+
+/** How an object moves as it is written. */
+export function motionOf(object: Table): Motion {
+  if (object.motion === "free") return "free";
+  return typeof object.motion === "object" && object.motion !== null ? "moved" : "fixed";
+}
+
+/** The same object with another motion, and with the mass that it then needs or not. */
+export function withMotion(object: Table, motion: Motion, body: BodyEvent | null): Table {
+  const { mass, density, motion: _, ...rest } = object;
+  switch (motion) {
+    case "fixed":
+      return { ...rest, motion };
+    case "moved": {
+      const way = wayInto(String(object.name), body);
+      return { ...rest, motion: { displacement: writtenPlace(way) } };
+    }
+    case "free":
+      if (mass !== undefined) return { ...rest, motion, mass };
+      return density !== undefined
+        ? { ...rest, motion, density }
+        : { ...rest, motion, mass: "50 g" };
+  }
+}
+
+interface Pair {
+  readonly of: readonly string[];
+  readonly friction?: number;
+}
+
+const pairsOf = (contact: unknown): readonly Pair[] =>
+  ((contact as { pairs?: readonly Pair[] } | undefined)?.pairs ?? []) as readonly Pair[];
+
+const isPair = (pair: Pair, name: string) =>
+  pair.of.length === 2 && pair.of.includes(name) && pair.of.includes("body");
+
+/** The friction of an object with the body: that of their pair, or of all. */
+export function frictionOf(contact: unknown, name: string): unknown {
+  const own = pairsOf(contact).findLast((pair) => isPair(pair, name))?.friction;
+  return own ?? (contact as { friction?: unknown } | undefined)?.friction ?? 0;
+}
+
+/** Where the friction of an object with the body is written, and as what. */
+export function frictionEdit(
+  contact: unknown,
+  name: string,
+  objects: number,
+  friction: number,
+): { path: (string | number)[]; value: unknown } {
+  const pairs = pairsOf(contact);
+  const own = pairs.findLastIndex((pair) => isPair(pair, name));
+  if (own >= 0) return { path: ["contact", "pairs", own, "friction"], value: friction };
+  // All that touches has it while there is one object; of several each has its own.
+  if (objects < 2) {
+    const path = contact === undefined ? ["contact"] : ["contact", "friction"];
+    return { path, value: contact === undefined ? { friction } : friction };
+  }
+  const pair = { of: ["body", name], friction };
+  if (contact === undefined) return { path: ["contact"], value: { pairs: [pair] } };
+  return pairs.length === 0
+    ? { path: ["contact", "pairs"], value: [pair] }
+    : { path: ["contact", "pairs", pairs.length], value: pair };
+}
