@@ -792,6 +792,7 @@ class Player:
         sentence: str,
         residual: float,
         elastic: float,
+        time: float | None = None,
     ) -> bytes: ...
     def take_motion(self, times: NDArray[np.float64], positions: NDArray[np.float64]) -> None:
         """Take a motion that a solver found, (f, n, 3) in m at f times in s, to go back to."""

@@ -495,13 +495,18 @@ export interface Metric {
   needs_object: boolean;
 }
 
-/** A quantity that colors the body; `signed` ones have zero in the middle of their range. */
+/**
+ * A quantity that colors the body; `signed` ones have zero in the middle of their range.
+ *
+ * Those of `contact` are known where a solution with contact ends.
+ */
 export interface Field {
   id: number;
   name: string;
   title: string;
   unit: string;
   signed: boolean;
+  contact: boolean;
 }
 
 /**
@@ -832,11 +837,17 @@ export interface Touch {
   slipping: number;
 }
 
-/** A frame of a solution: the pose of each object of the body, and what touches. */
+/**
+ * A frame of a solution: its time in s, the pose of each object of the body, what touches.
+ *
+ * `fields` tells whether the fields of contact are known of it.
+ */
 export interface Moment {
   frame: number;
+  time: number;
   poses: ObjectPose[];
   contacts: Touch[];
+  fields: boolean;
 }
 
 /** What is known of stored frames beside their pictures; replaces what was known before. */

@@ -44,7 +44,16 @@ const NOTES: Notes = {
   name: "beam",
   text: "",
   sentence: "made for a test",
-  fields: [{ id: 0, name: "displacement", title: "Displacement", unit: "m", signed: false }],
+  fields: [
+    {
+      id: 0,
+      name: "displacement",
+      title: "Displacement",
+      unit: "m",
+      signed: false,
+      contact: false,
+    },
+  ],
   body: BODY,
 };
 

@@ -1,6 +1,8 @@
 """Rigid objects in the studio: shown at rest, found by Solve, never passed through live."""
 
 import base64
+import json
+import struct
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +14,14 @@ from voxsoft.design import Object, families
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
 from voxsoft.simulation import simulate
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.posed import posed_surface
 from voxsoft.studio import commands
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS, contact_values
 from voxsoft.studio.objects import moments_of
 from voxsoft.studio.playback import Playback
+from voxsoft.studio.protocol import decode
 from voxsoft.studio.rest import RestSearch
 from voxsoft.units import mm
 
@@ -169,6 +174,7 @@ def test_a_free_object_is_solved_over_time_as_a_film_of_poses():
     # Gravity comes on after the pads have closed: the plate goes down.
     heights = [moment.poses[0].position[2] for moment in playback.moments]
     assert heights[-1] < heights[0]
+    assert playback.stat().time == pytest.approx(0.1)
     playback.do(commands.Seek(seq=1, frame=2))
     recorded = result.recording.frames[1]
     # The core keeps frames in single precision.
@@ -178,3 +184,67 @@ def test_a_free_object_is_solved_over_time_as_a_film_of_poses():
 
 def test_moments_of_a_design_without_contact_are_none():
     assert moments_of(simulate(families.beam()), 1) == []
+
+
+def values_of(message):
+    """The field's number and its values at the drawn vertices, as the page reads them."""
+    (number,) = struct.unpack_from("<H", message, 6)
+    low, high = struct.unpack_from("<2f", message, 56)
+    packed = np.frombuffer(message, "<u2", offset=64).reshape(-1, 4)[:, 3]
+    return number, low + (high - low) * packed / 65535.0
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    file = tmp_path_factory.mktemp("solved") / "pressed.toml"
+    file.write_text(PRESSED)
+    playback = playing(load(file))
+    playback.go_to_rest(simulate(playback.body.setup))
+    return playback
+
+
+@pytest.mark.parametrize("mode", ["surface", "tets"])
+@pytest.mark.parametrize("field", CONTACT_FIELDS, ids=lambda field: field.name)
+def test_fields_of_contact_are_packed_as_the_result_has_them(solved, field, mode):
+    found = solved.contact_fields[solved.frame]
+    message = solved.canvas.frame(solved.player, field.id, mode, 0, found)
+    number, values = values_of(message)
+    assert number == field.id
+    expected = {
+        "contact_pressure": found.pressure,
+        "contact_friction": np.linalg.norm(found.friction, axis=1),
+        "contact_gap": np.where(np.isfinite(found.gap), found.gap, 0.0),
+    }[field.name]
+    # Half a step of sixteen bits over the range.
+    step = np.ptp(expected) / 65535
+    assert values.max() == pytest.approx(expected.max(), abs=step + 1e-6 * expected.max())
+    if mode == "surface" and field.name != "contact_gap":
+        drawn = solved.body.surface.vertices
+        assert values == pytest.approx(expected[drawn], abs=step + 1e-6 * expected.max())
+
+
+def test_what_nothing_is_near_has_the_largest_gap():
+    nothing = np.zeros(3)
+    found = ContactField(nothing, np.zeros((3, 3)), np.array([0.1, np.inf, 0.3]), nothing)
+    gap = next(field.id for field in CONTACT_FIELDS if field.name == "contact_gap")
+    assert contact_values(gap, found).tolist() == [0.1, 0.3, 0.3]
+
+
+def test_fields_of_contact_are_zero_where_none_is_known(solved):
+    for field in CONTACT_FIELDS:
+        number, values = values_of(solved.canvas.frame(solved.player, field.id, "surface"))
+        assert (number, values.max()) == (field.id, 0.0)
+
+
+def test_every_field_can_be_asked_for():
+    numbers = [field.id for field in (*FIELDS, *CONTACT_FIELDS)]
+    assert numbers == list(range(len(numbers)))
+    for number in numbers:
+        sent = json.dumps({"t": "view", "seq": 1, "field": number})
+        assert decode(sent).field == number
+
+
+def test_only_the_end_of_a_solution_knows_its_fields(solved):
+    assert [moment.fields for moment in solved.moments] == [True]
+    solved.reset()
+    assert (solved.moments, solved.contact_fields) == ([], {})

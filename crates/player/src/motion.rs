@@ -35,6 +35,8 @@ pub struct Rest {
     pub residual: f64,
     /// The elastic energy in J.
     pub elastic: f64,
+    /// When that was, in s; `None` is the present.
+    pub time: Option<f64>,
 }
 
 impl Player {
@@ -185,9 +187,9 @@ impl Player {
         Ok(())
     }
 
-    /// Takes the state that a solver found, at the present time; hands let go, as no solver knows of them.
+    /// Takes the state that a solver found; hands let go, as no solver knows of them.
     pub fn go_to_rest(&mut self, rest: Rest) -> Result<Vec<Event>, ProblemError> {
-        let time = self.stepper.state().time;
+        let time = rest.time.unwrap_or(self.stepper.state().time);
         self.stepper.seek(rest.positions, time)?;
         self.held.clear();
         self.shown = None;

@@ -233,7 +233,12 @@ impl PyPlayer {
         Ok(json(py, &events))
     }
 
-    /// Takes positions (m) where a solver ended; gives the events.
+    /// Takes positions (m) where a solver ended, at a time (s) or now; gives the events.
+    #[pyo3(signature = (positions, state, sentence, residual, elastic, time=None))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
     fn go_to_rest<'py>(
         &self,
         py: Python<'py>,
@@ -242,6 +247,7 @@ impl PyPlayer {
         sentence: String,
         residual: f64,
         elastic: f64,
+        time: Option<f64>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let rest = Rest {
             positions: rows("positions", &positions)?,
@@ -253,6 +259,7 @@ impl PyPlayer {
             sentence,
             residual,
             elastic,
+            time,
         };
         let events = self.with(py, |player| player.go_to_rest(rest))?;
         Ok(json(py, &events.map_err(to_python)?))

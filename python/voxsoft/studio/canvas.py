@@ -9,15 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.fields import DISPLACEMENT, FIELDS
+from voxsoft.studio.fields import DISPLACEMENT, FIELDS, contact_values
 from voxsoft.studio.message import Triple
 from voxsoft.studio.player import Player
 from voxsoft.studio.surface import tets_to_draw
 from voxsoft.studio.wire import FrameFlag
 
 _STILL: Final = FrameFlag.PAUSED
+#: As the core flags its own frames; a body with contact is never in motion.
+_FLAGS: Final = {
+    "at-rest": FrameFlag.PAUSED | FrameFlag.AT_REST,
+    "diverged": FrameFlag.PAUSED | FrameFlag.DIVERGED,
+}
 
 
 class Canvas:
@@ -37,9 +43,22 @@ class Canvas:
         outline = self._body.surface.outline if mode == "surface" else self._outline_of_tets
         return outline.pack_topology(self._body.topology)
 
-    def frame(self, player: Player | None, field: int, mode: str, seq: int = 0) -> bytes:
-        """What a player looks at as the page reads it; without one, the body as it was made."""
+    def frame(
+        self,
+        player: Player | None,
+        field: int,
+        mode: str,
+        seq: int = 0,
+        contact: ContactField | None = None,
+    ) -> bytes:
+        """What a player looks at as the page reads it; without one, the body as it was made.
+
+        Fields of contact are those of `contact`, and zero without one.
+        """
         body, tets = self._body, mode == "tets"
+        values = contact_values(field, contact)
+        if values is not None:
+            return self._touched(player, field, values, tets=tets, seq=seq & 0xFFFF_FFFF)
         if player is not None:
             return player.packed(field, seq, self._tets if tets else None)
         rest, topology, seq = body.mesh.vertices, body.topology, seq & 0xFFFF_FFFF
@@ -51,6 +70,32 @@ class Canvas:
         display = self._tets if tets else self._surface
         return display.pack_frame(
             rest, topology=topology, frame=0, field=field, seq=seq, flags=_STILL
+        )
+
+    def _touched(
+        self,
+        player: Player | None,
+        field: int,
+        values: NDArray[np.float64],
+        *,
+        tets: bool,
+        seq: int,
+    ) -> bytes:
+        """A frame with values of the mesh that the core does not know; none are zero."""
+        outline = self._outline_of_tets if tets else self._body.surface.outline
+        flags, frame, time = _STILL, 0, 0.0
+        if player is not None:
+            shown = player.shown()
+            flags, frame, time = _FLAGS.get(player.state, _STILL), shown.frame, shown.time
+        return outline.pack_frame(
+            self.positions(player),
+            topology=self._body.topology,
+            field=field,
+            values=values[outline.vertices] if len(values) else None,
+            frame=frame,
+            seq=seq,
+            flags=flags,
+            time=time,
         )
 
     def positions(self, player: Player | None) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ from voxsoft.metrics import METRICS
 from voxsoft.search.samplers import SAMPLERS, SINGLE_OBJECTIVE
 from voxsoft.studio import events
 from voxsoft.studio.commands import RestMethod
-from voxsoft.studio.fields import FIELDS
+from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS
 from voxsoft.studio.wire import PROTOCOL
 from voxsoft.units import UnitOf
 
@@ -50,7 +50,7 @@ def hello(runs_folder: Path) -> events.Hello:
             )
             for name, metric in METRICS.items()
         ],
-        fields=list(FIELDS),
+        fields=[*FIELDS, *CONTACT_FIELDS],
         runs_folder=str(runs_folder),
         cores=os.cpu_count() or 1,
     )

@@ -146,7 +146,7 @@ class Live(Command):
 class View(Command):
     """What this tab shows: the field, the surface or the tetrahedra, and whether it is visible."""
 
-    field: Annotated[int, Meta(ge=0, le=8)] = 0
+    field: Annotated[int, Meta(ge=0, le=11)] = 0
     mode: Literal["surface", "tets"] = "surface"
     visible: bool = True
 

@@ -52,13 +52,17 @@ class Sampler(Entry):
 
 
 class Field(Entry):
-    """A quantity that colors the body; `signed` ones have zero in the middle of their range."""
+    """A quantity that colors the body; `signed` ones have zero in the middle of their range.
+
+    Those of `contact` are known where a solution with contact ends.
+    """
 
     id: int
     name: str
     title: str
     unit: str
     signed: bool
+    contact: bool = False
 
 
 class Metric(Entry):
@@ -404,11 +408,16 @@ class Touch(Entry):
 
 
 class Moment(Entry):
-    """A frame of a solution: the pose of each object of the body, and what touches."""
+    """A frame of a solution: its time in s, the pose of each object of the body, what touches.
+
+    `fields` tells whether the fields of contact are known of it.
+    """
 
     frame: int
+    time: float
     poses: list[ObjectPose]
     contacts: list[Touch]
+    fields: bool = False
 
 
 class Moments(Event):

@@ -65,18 +65,23 @@ def moments_of(result: Result, last: int) -> list[events.Moment]:
             for name, (positions, rotations) in recording.objects.items()
         }
         number = last - count + index
-        found.append(_moment(number, names, poses, recording.contacts[index]))
-    return [*found, _moment(last, names, result.objects, result.contacts)]
+        when = float(recording.times[index])
+        found.append(_moment(number, when, names, poses, recording.contacts[index]))
+    end = _moment(last, result.time, names, result.objects, result.contacts)
+    end.fields = result.contact_field is not None
+    return [*found, end]
 
 
 def _moment(
     frame: int,
+    time: float,
     names: Sequence[str],
     poses: Mapping[str, Pose],
     contacts: Sequence[ContactState],
 ) -> events.Moment:
     return events.Moment(
         frame=frame,
+        time=time,
         poses=[
             events.ObjectPose(
                 position=poses[name].position,

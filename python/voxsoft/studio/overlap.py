@@ -37,7 +37,11 @@ class OverlapWatch:
         """Look over what is shown now, unless that was done, or time runs and it was just done."""
         playback, started = self._playback, time.perf_counter()
         body = playback.body
-        if body is None or body.refusal is not None or (playback.moving and started < self._next):
+        if body is None or body.refusal is not None:
+            return
+        # The frames of a film come as fast as those of a body that moves.
+        film = body.not_live != "" and playback.state == "past"
+        if (playback.moving or film) and started < self._next:
             return
         key = (body.topology, playback.frame, playback.state == "past")
         if key == self._seen:

@@ -90,7 +90,9 @@ class Pictures:
         key = (body.topology, playback.frame, view.field, view.mode, playback.state)
         if tab.painted != key:
             tab.painted = key
-            self._bus.frame(tab, canvas.frame(playback.player, view.field, view.mode, tab.seq))
+            contact = playback.contact_fields.get(playback.frame)
+            packed = canvas.frame(playback.player, view.field, view.mode, tab.seq, contact)
+            self._bus.frame(tab, packed)
 
     def _event(self, body: StudioBody) -> events.Body:
         event = body.event(self._report)

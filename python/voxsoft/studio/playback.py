@@ -9,6 +9,7 @@ from typing import Final, Literal
 from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
+from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.result import Status
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
@@ -45,8 +46,9 @@ class Playback:
         The solver of the search for rest.
     result
         The state at rest that a solver found, while the body is in it.
-    moments
-        Poses of objects and contacts, for each stored frame of a solution with contact.
+    moments, contact_fields
+        Poses of objects and contacts, for each stored frame of a solution with contact; and what
+        touches each vertex, for the last frame of one.
     """
 
     body: StudioBody | None = None
@@ -58,6 +60,7 @@ class Playback:
     method: str = "auto"
     result: Result | None = None
     moments: list[events.Moment] = field(default_factory=list)
+    contact_fields: dict[int, ContactField] = field(default_factory=dict)
     _pace: float | None = None
     _probes: list[Probe] = field(default_factory=list)
     _hands: Hands | None = None
@@ -77,7 +80,7 @@ class Playback:
         self.body, self.canvas, self.player = body, Canvas(body), None
         self._probes = [*placed_probes(body), *moved]
         self.result = self.doing = self.progress = None
-        self.moments = []
+        self.moments, self.contact_fields = [], {}
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
         if body.refusal is None and self._hands is not None:
             # Nothing answers to pulls where time does not run.
@@ -118,7 +121,7 @@ class Playback:
     def reset(self) -> list[events.Event]:
         """Go back to the unloaded shape at time zero."""
         self.result = None
-        self.moments = []
+        self.moments, self.contact_fields = [], {}
         self.stop_doing()
         if self.player is None:
             self.sentence = ""
@@ -193,8 +196,11 @@ class Playback:
             f"{sentence}, in {time_text(result.seconds)}.",
             residual=result.residual,
             elastic=result.elastic_energy,
+            time=result.time if len(times) > 0 else None,
         )
         self.moments += moments_of(result, player.frame)
+        if result.contact_field is not None:
+            self.contact_fields[player.frame] = result.contact_field
         return [*reported, *self.moments_event()]
 
     def moments_event(self) -> list[events.Event]:

@@ -96,9 +96,10 @@ class Player:
         *,
         residual: float,
         elastic: float,
+        time: float | None = None,
     ) -> list[Event]:
-        """Take the state that a solver found."""
-        reported = self._core.go_to_rest(positions, state, sentence, residual, elastic)
+        """Take the state that a solver found, at a time [s] or now."""
+        reported = self._core.go_to_rest(positions, state, sentence, residual, elastic, time)
         return _EVENTS.decode(reported)
 
     def take_motion(self, times: NDArray[np.float64], positions: NDArray[np.float64]) -> None:

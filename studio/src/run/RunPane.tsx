@@ -7,6 +7,7 @@ import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
 import { viewport } from "../view/instance";
 import { useOverlap } from "../view/overlap";
+import { ContactCard } from "./ContactCard";
 import { EquilibriumCard, useEquilibrium } from "./EquilibriumCard";
 import "./run.css";
 
@@ -32,16 +33,19 @@ export default function RunPane() {
   return (
     <div className="pane">
       <State />
+      <ContactCard />
       <EquilibriumCard />
       <Section title="Loads">
         {body.loads.length === 0 && (
-          <p className="muted">The design has no loads; pull on the body instead.</p>
+          <p className="muted">
+            The design has no loads{body.not_live ? "." : "; pull on the body instead."}
+          </p>
         )}
         {body.loads.map((load) => (
           <Load key={load.index} load={load} />
         ))}
       </Section>
-      <Pulls />
+      {body.not_live ? <NotLive why={body.not_live} /> : <Pulls />}
       {currentEngine()?.kind === "server" && <Solver />}
     </div>
   );
@@ -110,6 +114,16 @@ function siOf(load: BodyLoad): string {
   return known[load.unit] ?? (factorOf(load.unit) === 1 ? load.unit : "1");
 }
 
+function NotLive(props: { why: string }) {
+  return (
+    <Section title="Live motion">
+      <p className="muted" data-testid="not-live-note">
+        {props.why} What is solved over time is kept as frames, which Play shows again.
+      </p>
+    </Section>
+  );
+}
+
 function Pulls() {
   const stiffness = useView((view) => view.stiffness);
   const grabs = useStudio((state) => state.stat?.grabs);
@@ -148,12 +162,15 @@ function Pulls() {
 function Solver() {
   const solver = useStudio((state) => state.stat?.solver ?? "auto");
   const solving = useStudio((state) => state.stat?.state === "solving");
+  const still = useStudio((state) => (state.body?.not_live ?? "") !== "");
+  // XPBD would go through what the body touches.
+  const methods = still ? METHODS.filter(({ value }) => value !== "xpbd") : METHODS;
   return (
-    <Section title="Equilibrium">
+    <Section title={still ? "Contact" : "Equilibrium"}>
       <Select
         label="Solver"
         value={solver}
-        options={METHODS}
+        options={methods}
         onChange={(method) => send({ t: "solver", method: method as SolverCommand["method"] })}
       />
       <div className="run-buttons">

@@ -4,6 +4,7 @@ import { stepFrames, togglePlay } from "../shell/actions";
 import { Icon } from "../shell/icons";
 import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
+import { stopFilm, useFilm, useHasFilm } from "./film";
 import { PaceChoice } from "./PaceChoice";
 import "./run.css";
 
@@ -11,6 +12,8 @@ import "./run.css";
 export function Transport() {
   const stat = useStudio((state) => state.stat);
   const body = useStudio((state) => state.body);
+  const film = useFilm((state) => state.on);
+  const hasFilm = useHasFilm();
   const wanted = useRef<number | null>(null);
   const asked = useRef<number | null>(null);
   useEffect(
@@ -20,13 +23,15 @@ export function Transport() {
     [],
   );
   if (!body) return null;
-  const playing = stat?.state === "playing";
+  const still = body.not_live !== "";
+  const playing = stat?.state === "playing" || film;
   const past = stat?.state === "past";
   const solving = stat?.state === "solving";
   const first = stat?.first_frame ?? 0;
   const last = stat?.last_frame ?? 0;
   // Drags move faster than answers come: only the newest requested is sent, once for each picture.
   const seek = (frame: number) => {
+    stopFilm();
     wanted.current = frame;
     asked.current ??= requestAnimationFrame(() => {
       asked.current = null;
@@ -39,9 +44,17 @@ export function Transport() {
       <Button
         icon
         kind="primary"
-        label={playing ? "Pause (Space)" : "Play (Space)"}
+        label={
+          playing
+            ? "Pause (Space)"
+            : still
+              ? hasFilm
+                ? "Show the motion that was solved (Space)"
+                : body.not_live
+              : "Play (Space)"
+        }
         testId="play"
-        disabled={solving}
+        disabled={solving || (still && !hasFilm)}
         onClick={togglePlay}
       >
         <Icon name={playing ? "pause" : "play"} />
@@ -51,7 +64,7 @@ export function Transport() {
         kind="quiet"
         label="One frame forward (→)"
         testId="step"
-        disabled={playing || solving}
+        disabled={playing || solving || (still && last <= first)}
         onClick={() => stepFrames(1)}
       >
         <Icon name="step" />
@@ -62,14 +75,21 @@ export function Transport() {
         label="Back to the unloaded shape (0)"
         testId="reset"
         disabled={solving}
-        onClick={() => send({ t: "reset" })}
+        onClick={() => {
+          stopFilm();
+          send({ t: "reset" });
+        }}
       >
         <Icon name="reset" />
       </Button>
       {currentEngine()?.kind === "server" && !solving && (
         <Button
           kind="quiet"
-          label="Solve for the equilibrium under these loads (R)"
+          label={
+            still
+              ? "Find contact: the equilibrium under these loads, or the motion over time (R)"
+              : "Solve for the equilibrium under these loads (R)"
+          }
           testId="rest"
           onClick={() => send({ t: "rest" })}
         >
@@ -107,7 +127,10 @@ export function Transport() {
         data-testid="live"
         aria-pressed={!past}
         title="Back to the present (L)"
-        onClick={() => send({ t: "live" })}
+        onClick={() => {
+          stopFilm();
+          send({ t: "live" });
+        }}
       >
         <i /> LIVE
       </button>

@@ -21,7 +21,7 @@ export function StatusLine() {
         data-testid="sentence"
         aria-live="polite"
       >
-        {stat?.sentence || idle(stat?.state, body !== null)}
+        {stat?.sentence || body?.not_live || idle(stat?.state, body !== null)}
       </span>
       {doubts > 0 && (
         <button

@@ -1,6 +1,7 @@
 // Every action with a name: the palette lists them, keys start them, the help sheet shows them.
 
 import { nextPace } from "../engine/pace";
+import { newestFilm, toggleFilm } from "../run/film";
 import {
   MODE_TITLES,
   MODES,
@@ -48,7 +49,13 @@ export function showPane(id: string): void {
 }
 
 export function togglePlay(): void {
-  const state = useStudio.getState().stat?.state;
+  const { stat, body, moments } = useStudio.getState();
+  const state = stat?.state;
+  // Time does not run for a body that may touch something: what was solved is shown again.
+  if (body?.not_live && newestFilm(moments).length > 1) {
+    toggleFilm();
+    return;
+  }
   send({ t: state === "playing" ? "pause" : "play" });
 }
 
@@ -56,7 +63,8 @@ export function togglePlay(): void {
 export function stepFrames(count: number): void {
   const stat = useStudio.getState().stat;
   if (!stat) return;
-  if (stat.state !== "past" && count > 0) {
+  const live = !useStudio.getState().body?.not_live;
+  if (live && stat.state !== "past" && count > 0) {
     send({ t: "step", n: count });
     return;
   }

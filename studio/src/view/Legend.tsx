@@ -28,8 +28,11 @@ export function Legend() {
   const high = useShown((shown) => shown.high);
   const clipped = useShown((shown) => shown.clipped);
   const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
+  const frame = useShown((shown) => shown.frame);
+  const solved = useStudio((state) => state.moments.get(frame)?.fields ?? false);
   const [shut, setShut] = useState(false);
   if (coloring !== "field" || !about) return null;
+  const unknown = about.contact && !solved;
   const unit = shownUnit(about.unit);
   const factor = factorOf(unit);
   const lock = (mode: RangeMode) =>
@@ -50,10 +53,15 @@ export function Legend() {
         {about.title}
         {unitText(unit) && <span className="muted"> {unitText(unit)}</span>}
       </button>
-      {!shut && high <= low && range !== "locked" && (
+      {!shut && unknown && (
+        <p className="muted legend-flat" data-testid="legend-unknown">
+          known where Solve has ended
+        </p>
+      )}
+      {!shut && !unknown && high <= low && range !== "locked" && (
         <p className="muted legend-flat">{formatNumber(low / factor, 3)} everywhere</p>
       )}
-      {!shut && (high > low || range === "locked") && (
+      {!shut && !unknown && (high > low || range === "locked") && (
         <>
           <div className="legend-scale">
             <div className="legend-bar" style={{ background: gradient(colormap, bands) }} />

@@ -6,6 +6,7 @@ import { openDocument } from "../shell/actions";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView } from "../store/view";
+import { ContactBanner } from "./ContactBanner";
 import { Cube } from "./Cube";
 import { viewport } from "./instance";
 import { Legend } from "./Legend";
@@ -37,6 +38,7 @@ export default function ViewPane() {
             <Picked />
             <Banner />
             <OverlapBanner />
+            <ContactBanner />
           </>
         ) : (
           !document && <Welcome />

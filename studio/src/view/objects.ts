@@ -27,6 +27,7 @@ const CHOSEN_COLOR = "#f0b429";
 /** How much of a picture an object takes: what it presses must be seen through it. */
 const OPACITY = 0.42;
 const CHOSEN_OPACITY = 0.5;
+const FAINT = 0.08;
 /** How far around a body its objects are brought into the picture, in lengths of its longest side. */
 const AROUND = 1;
 
@@ -135,8 +136,13 @@ export class RigidObjects {
     this.place(undefined, 1, null);
   }
 
-  /** Put all where they are in a frame, and mark the one that is chosen. */
-  place(moment: Moment | undefined, exaggeration: number, chosen: string | null): void {
+  /** Put all where they are in a frame, and mark the one that is chosen; faint ones do not hide what they press. */
+  place(
+    moment: Moment | undefined,
+    exaggeration: number,
+    chosen: string | null,
+    faint = false,
+  ): void {
     for (const [i, { object, mesh, middle }] of this.drawn.entries()) {
       placedBy(moment?.poses[i], object.middle, exaggeration, mesh.matrix);
       mesh.matrixWorldNeedsUpdate = true;
@@ -144,7 +150,7 @@ export class RigidObjects {
       const { uniforms } = mesh.material;
       const marked = object.name === chosen;
       (uniforms.uOwn!.value as Color).set(marked ? CHOSEN_COLOR : COLOR);
-      uniforms.uAlpha!.value = marked ? CHOSEN_OPACITY : OPACITY;
+      uniforms.uAlpha!.value = faint ? FAINT : marked ? CHOSEN_OPACITY : OPACITY;
     }
   }
 

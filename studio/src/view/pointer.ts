@@ -110,6 +110,7 @@ function mayPull(): boolean {
   const state = useStudio.getState().stat?.state;
   const view = useView.getState();
   const moving = state === "playing" || state === "paused" || state === "at-rest";
+  if (useStudio.getState().body?.not_live) return false;
   return moving && !view.tape && view.exaggeration === 1;
 }
 

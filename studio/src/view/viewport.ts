@@ -171,6 +171,7 @@ export class Viewport {
     } else this.surface = mesh;
     this.scene.add(mesh.group);
     this.coverSurface();
+    if (fresh) this.takeIn();
     this.stir(performance.now());
     this.request();
   }
@@ -223,17 +224,20 @@ export class Viewport {
   }
 
   private bodyChanged(): void {
-    const body = useStudio.getState().body;
+    const { body, hello } = useStudio.getState();
     if (body) this.symbols.build(body);
     else this.symbols.clear();
     this.attachments.build(body?.attachments ?? []);
     this.objects.build(body?.objects ?? []);
+    // Only what may touch something has fields of contact.
+    const shown = hello?.fields.find((one) => one.id === useView.getState().field);
+    if (body && !body.not_live && shown?.contact) setView({ field: 0, range: "auto" });
     this.takeIn();
     this.coverSurface();
     this.request();
   }
 
-  // Objects come after the body, or later: a picture that no hand has turned takes them in.
+  // Objects come before the body's surface, with it or later: a picture that no hand has turned takes them in.
   private takeIn(): void {
     const { body } = useStudio.getState();
     const mesh = this.shownMesh();
@@ -454,7 +458,8 @@ export class Viewport {
     this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
     const { body, moments } = useStudio.getState();
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
-    this.objects.place(moments.get(this.latest?.number ?? 0), view.exaggeration, view.chosen);
+    const moment = moments.get(this.latest?.number ?? 0);
+    this.objects.place(moment, view.exaggeration, view.chosen, this.ofContact);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
   }
@@ -470,9 +475,18 @@ export class Viewport {
   private colorRange(): ColorRange {
     const frame = this.latest;
     const mesh = frame && [this.surface, this.tets].find((one) => one?.suits(frame));
-    if (!frame || !mesh) return { low: frame?.min ?? 0, high: frame?.max ?? 1, clipped: [] };
+    const whole = { low: frame?.min ?? 0, high: frame?.max ?? 1, clipped: [] };
+    // Most of a body is pressed by nothing, so that 99 % of its area say little of contact.
+    if (!frame || !mesh || this.ofContact) return whole;
     this.colors ??= colorRange(frame, mesh.topology);
     return this.colors;
+  }
+
+  // Whether what is colored is a field of contact.
+  private get ofContact(): boolean {
+    const { field, coloring } = useView.getState();
+    const about = useStudio.getState().hello?.fields.find((one) => one.id === field);
+    return coloring === "field" && (about?.contact ?? false);
   }
 
   private words(view: View, mesh: BodyMesh | null): Label[] {
@@ -619,7 +633,8 @@ export class Viewport {
     this.lastHover = now;
     const hit = this.hit(this.hoverAt.x, this.hoverAt.y);
     const frame = this.shownMesh()?.frame;
-    this.renderer.domElement.style.cursor = view.tape ? "crosshair" : hit ? "grab" : "";
+    const pulled = hit && !useStudio.getState().body?.not_live;
+    this.renderer.domElement.style.cursor = view.tape ? "crosshair" : pulled ? "grab" : "";
     if (!hit || !frame || view.coloring !== "field") {
       if (useShown.getState().hover) useShown.setState({ hover: null });
       return;

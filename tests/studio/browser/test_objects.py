@@ -1,8 +1,12 @@
 """Rigid objects in the picture: gray beside the body, where a solution has them, chosen by name."""
 
+from pathlib import Path
+
 import pytest
 
 pytestmark = pytest.mark.browser
+
+PINCH = Path(__file__).parents[3] / "examples" / "pinch.toml"
 
 BALL = """
 schema = "voxsoft/1"
@@ -44,13 +48,25 @@ def test_a_ball_is_drawn_solved_and_gone_back_from(dented, open_tab):
     at = tab.page.evaluate("voxsoft.objectPosition('ball')")
     # Its surface is traced to rounding of single precision.
     assert at == pytest.approx([0, 0, 0.013], abs=1e-6)
+    # All of the ball is in the picture, whichever of it and the body came first.
+    assert tab.find("label-object-ball").is_visible()
     tab.shot("objects_at_rest")
     tab.find("rest").click()
     tab.until("voxsoft.state === 'at-rest'")
     tab.until("Math.abs(voxsoft.objectPosition('ball')[2] - 0.009) < 1e-6")
+    card = tab.find("contacts")
+    assert card.locator("strong").all_inner_texts() == ["body on ball"]
+    assert "mm²" in card.inner_text()
+    assert "slips" in card.inner_text()  # nothing holds without friction
+    fields = tab.page.get_by_label("Color by")
+    fields.select_option(label="Contact pressure")
+    tab.find("legend").get_by_text("kPa").wait_for()
+    tab.until("document.querySelector('.legend-ticks') !== null")
     tab.shot("objects_solved")
     tab.find("reset").click()
     tab.until("Math.abs(voxsoft.objectPosition('ball')[2] - 0.013) < 1e-6")
+    tab.find("legend-unknown").wait_for()
+    assert card.count() == 0
     assert tab.errors == []
 
 
@@ -132,4 +148,41 @@ def test_objects_to_grip_are_added_beside_the_body_and_taken_back(served, open_t
             tab.until(f"voxsoft.rev > {rev}")
         tab.until(f"voxsoft.objectPosition('{name}') === null")
         assert tab.find(f"objects-{index - 1}").count() == int(index > 0)
+    assert tab.errors == []
+
+
+@pytest.fixture
+def pinch(tmp_path, serving):
+    text = PINCH.read_text().replace('end_time = "0.5 s"', 'end_time = "0.2 s"')
+    server = serving(tmp_path, text, "pinch.toml")
+    yield server
+    server.stop()
+
+
+def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_solution(pinch, open_tab):
+    tab = open_tab(pinch.address, mode="simulate", size=(1000, 640))
+    tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
+    banner = tab.find("not-live")
+    banner.wait_for()
+    assert "Live motion knows no contact" in banner.inner_text()
+    assert tab.find("play").is_disabled()
+    tab.shot("objects_not_live")
+    # A press on the body turns the view: nothing answers to a pull.
+    x, y = tab.middle()
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x + 40, y, steps=3)
+    tab.page.mouse.up()
+    tab.find("not-live-solve").click()
+    tab.until("voxsoft.state === 'at-rest' && Math.abs(voxsoft.time - 0.2) < 1e-9")
+    assert banner.count() == 0
+    last = tab.page.evaluate("voxsoft.frame")
+    assert last > 5
+    tab.find("scrubber").fill("2")
+    tab.until("voxsoft.frame === 2")
+    began = tab.page.evaluate("voxsoft.objectPosition('plate')[2]")
+    tab.find("play").click()
+    tab.until(f"voxsoft.frame === {last}")
+    assert tab.page.evaluate("voxsoft.objectPosition('plate')[2]") < began
+    tab.shot("objects_film")
     assert tab.errors == []

@@ -11,6 +11,8 @@ export interface Format {
   readonly asksUnit?: boolean;
   /** Can be written as the body was built, or as it is now. */
   readonly asksShape?: boolean;
+  /** Moves where it is looked at. */
+  readonly live?: boolean;
 }
 
 export const FORMATS: readonly Format[] = [
@@ -64,6 +66,7 @@ export const FORMATS: readonly Format[] = [
     title: "Live page",
     ending: ".html",
     purpose: "For people without VoxSoft: one file to turn, pull and inflate in any browser.",
+    live: true,
   },
 ];
 
@@ -77,8 +80,16 @@ export interface Options {
 }
 
 /** Why a format cannot be written now, in words; null where it can. */
-export function obstacle(format: Format, options: Options, open: boolean): string | null {
+export function obstacle(
+  format: Format,
+  options: Options,
+  open: boolean,
+  touches = false,
+): string | null {
   if (!open) return "Open a design first.";
+  if (format.live && touches) {
+    return "A live page knows no contact: leave objects and [contact] out of the design.";
+  }
   if (format.asksUnit && options.unit === null) {
     return "Choose the unit: the file itself does not tell it.";
   }
