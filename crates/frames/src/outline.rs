@@ -1,5 +1,4 @@
 use voxsoft_solid::ProblemError;
-use voxsoft_solid::fields::Field;
 use voxsoft_solid::vector::{Vec3, add, scale, sub};
 
 use crate::pack::{FrameHead, TopologyFlag, pack_frame, pack_topology};
@@ -117,7 +116,7 @@ impl Outline {
     }
 
     /// The message of one picture: where all vertices of the mesh are (m), and a value for each of
-    /// [`Outline::vertices`]. The number of the field is that of a [`Field`], or of one that its sender knows.
+    /// [`Outline::vertices`]. The number of the field is that of a [`Field`](voxsoft_solid::fields::Field), or of one that its sender knows.
     pub fn frame(
         &self,
         head: FrameHead,
