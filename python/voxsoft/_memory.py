@@ -13,6 +13,10 @@ from voxsoft._cgroups import free_in_groups
 #: Seconds for which an answer holds: asking takes as long as meshing a small body.
 _LASTING: Final = 0.2
 
+#: Bytes beyond which the system is asked anew. An answer of 0.2 s ago may come from before the
+#: last large thing was made; to fill so many bytes takes longer than to ask.
+_LARGE: Final = 10e6
+
 
 class _Reading:
     """The last answer of the system and when it came."""
@@ -66,7 +70,7 @@ def shortage(due: float) -> str:
     >>> shortage(0), shortage(1e30).partition(", ")[0]
     ('', 'needs about 1,000,000,000,000,000,000,000 GB of memory')
     """
-    free = memory_limit()
+    free = memory_limit() if due < _LARGE else _read()
     if due <= free:
         return ""
     return f"needs about {gigabytes(due)} of memory, more than the limit of {gigabytes(free)}"

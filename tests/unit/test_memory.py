@@ -9,6 +9,7 @@ import pytest
 
 from voxsoft import _memory
 from voxsoft._cgroups import free_in_groups
+from voxsoft._memory import memory_limit, shortage
 
 GB = 1 << 30
 
@@ -71,6 +72,14 @@ def test_the_least_of_machine_groups_and_process_counts(monkeypatch):
     assert _memory._read() == 12_345
     monkeypatch.setattr(_memory, "free_in_groups", lambda: None)
     assert 0 < _memory._read() <= machine + GB
+
+
+def test_what_is_large_is_not_judged_by_an_old_answer(monkeypatch):
+    before = memory_limit()
+    monkeypatch.setattr(_memory, "_read", lambda: 0)
+    monkeypatch.setattr(_memory._Reading, "time", float("inf"))
+    assert shortage(1e6) == ""
+    assert "0 GB" in shortage(0.5 * before)
 
 
 def test_no_other_system_needs_the_limits_of_unix(monkeypatch):
