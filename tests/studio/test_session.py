@@ -49,8 +49,8 @@ def test_a_tab_is_shown_the_design_and_its_body(fresh_studio):
             0.035, abs=1e-5
         )
         assert hello.design_schema["$id"] == "voxsoft/1"
-        assert len([field for field in hello.fields if not field.contact]) == 9
-        of_contact = [field.name for field in hello.fields if field.contact]
+        assert len([field for field in hello.fields if not field["contact"]]) == 9
+        of_contact = [field["name"] for field in hello.fields if field["contact"]]
         assert of_contact == ["contact_pressure", "contact_friction", "contact_gap"]
         assert document.valid
         assert [p["name"] for p in document.parameters] == ["radius", "height", "wall", "cap"]
