@@ -16,6 +16,10 @@ pub trait Contact: Term {
     /// not before, or no longer many that it did. To be called before the stiffness is asked for.
     fn follow(&self, positions: &[Vec3]) -> bool;
 
+    /// A search starts, or a guess at where: the next calls of [`follow`](Contact::follow) look for all that is faced, not
+    /// only where it was left.
+    fn look_anew(&self);
+
     /// Brings the multipliers up to the forces at `positions`, an equilibrium; how far off they are. At most 1 is
     /// good enough, and nothing changes. Forces of the size `negligible` (N) do not matter.
     fn correct(&self, positions: &[Vec3], negligible: f64) -> f64;

@@ -53,6 +53,10 @@ impl Contact for Touch {
         state.pattern.len() > before || shrank
     }
 
+    fn look_anew(&self) {
+        self.write().looks = LOOKS;
+    }
+
     fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
         let mut state = self.write();
         // What loses contact for now keeps its anchor: it may come back before the state is accepted.

@@ -69,6 +69,8 @@ impl Run<'_> {
     /// Where the search begins: where the motion as it was leads, or the velocity alone, or nothing moves, whichever has
     /// the least potential. What meets something, or feels a load that has jumped, does not move on as it did, and
     /// from deep inside an obstacle the way out takes more than twice the iterations.
+    ///
+    /// Each is judged by what it faces itself, and the search looks anew: what the last one faced is not what the best one does.
     fn best_prediction(
         &mut self,
         step: f64,
@@ -84,13 +86,21 @@ impl Run<'_> {
         for mut prediction in predictions {
             self.problem
                 .place_clamps(point.time, point.dead, &mut prediction);
+            self.look_anew();
             self.equilibrium.follow_contact(&prediction)?;
             let (potential, _) = self.equilibrium.potential(&prediction, point);
             if potential < best.0 {
                 best = (potential, prediction);
             }
         }
+        self.look_anew();
         Ok(best.1)
+    }
+
+    fn look_anew(&self) {
+        if let Some(contact) = self.problem.contact() {
+            contact.look_anew();
+        }
     }
 
     /// Where the motion goes on as it did: at its acceleration since the state `before`, if that is given.
