@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 import { nextPace, paceName } from "../src/engine/pace";
-import { PACES } from "../src/protocol";
+import { PACES, type StatEvent } from "../src/protocol";
+import { apply, showAskedPace, useStudio } from "../src/store/studio";
 
 describe("the pace of time", () => {
   it("has names that can be read", () => {
@@ -13,5 +14,19 @@ describe("the pace of time", () => {
     expect(nextPace(1, -1)).toBe(1);
     expect(nextPace(1 / 200, 1)).toBe(1 / 200);
     expect(nextPace(1 / 20, 1)).toBe(1 / 200); // between two of the list: the next slower ones
+  });
+
+  it("stays as asked for until it is confirmed, and then follows the engine", () => {
+    const stat = (pace: number): StatEvent =>
+      ({ t: "stat", pace, pace_chosen: pace }) as Partial<StatEvent> as StatEvent;
+    const shown = () => useStudio.getState().stat?.pace_chosen;
+    apply(stat(1 / 50));
+    showAskedPace(1 / 10);
+    expect(shown()).toBe(1 / 10);
+    apply(stat(1 / 50)); // was on its way when the pace was asked for
+    expect(shown()).toBe(1 / 10);
+    apply(stat(1 / 10));
+    apply(stat(1 / 2)); // chosen in another tab
+    expect(shown()).toBe(1 / 2);
   });
 });

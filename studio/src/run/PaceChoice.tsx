@@ -1,7 +1,7 @@
 import { Select } from "../controls/Choice";
 import { paceName } from "../engine/pace";
 import { PACES } from "../protocol";
-import { send } from "../store/session";
+import { choosePace } from "../shell/actions";
 import { useStudio } from "../store/studio";
 
 const AUTO = "auto";
@@ -22,7 +22,7 @@ export function PaceChoice() {
       title="Speed of time: slower (,) and faster (.)"
       value={chosen === null ? AUTO : String(chosen)}
       options={options}
-      onChange={(value) => send({ t: "pace", factor: value === AUTO ? null : Number(value) })}
+      onChange={(value) => choosePace(value === AUTO ? null : Number(value))}
     />
   );
 }

@@ -12,7 +12,7 @@ import {
   usePage,
 } from "../store/page";
 import { send } from "../store/session";
-import { useStudio } from "../store/studio";
+import { showAskedPace, useStudio } from "../store/studio";
 
 export interface Action {
   readonly id: string;
@@ -76,10 +76,13 @@ export function stepFrames(count: number): void {
 function changePace(steps: number): void {
   const stat = useStudio.getState().stat;
   if (!stat) return;
-  const pace = nextPace(stat.pace, steps);
-  send({ t: "pace", factor: pace });
+  choosePace(nextPace(stat.pace, steps));
+}
+
+/** Show time at a pace, or with null as fast as the motion can be seen. */
+export function choosePace(factor: number | null): void {
   // Two quick presses are two steps, though the first was not answered yet.
-  useStudio.setState({ stat: { ...stat, pace, pace_chosen: pace } });
+  if (send({ t: "pace", factor }) > 0) showAskedPace(factor);
 }
 
 export function setTheme(theme: ThemeChoice): void {
@@ -164,7 +167,7 @@ function simple(): Action[] {
       id: "pace-auto",
       title: "Show time as fast as the motion can be seen",
       group: "Simulation",
-      run: () => send({ t: "pace", factor: null }),
+      run: () => choosePace(null),
     },
     {
       id: "live",

@@ -46,6 +46,8 @@ export interface Studio {
   document: DocumentEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
+  /** The pace that was asked for and is not confirmed yet: null is the automatic one. */
+  askedPace: number | null | undefined;
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
@@ -81,6 +83,7 @@ export const useStudio = create<Studio>(() => ({
   document: null,
   body: null,
   stat: null,
+  askedPace: undefined,
   overlap: null,
   equilibrium: null,
   moments: new Map(),
@@ -136,7 +139,8 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
   switch (event.t) {
     case "hello":
       // All jobs that this server knows are told anew; others are asked for (watchJob).
-      set({ hello: event, jobs: {} });
+      // A pace that was asked for may have been lost with the connection.
+      set({ hello: event, jobs: {}, askedPace: undefined });
       break;
     case "document":
       set({ document: event });
@@ -149,7 +153,10 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       }));
       break;
     case "stat":
-      set({ stat: event });
+      set(({ askedPace }) => ({
+        stat: withPace(event, askedPace),
+        askedPace: event.pace_chosen === askedPace ? undefined : askedPace,
+      }));
       break;
     case "equilibrium":
       set({ equilibrium: event });
@@ -215,6 +222,17 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "log":
       note(event.level, event.text);
   }
+}
+
+/** Statistics with the pace that was asked for: those on their way then hold the one before. */
+function withPace(stat: StatEvent, asked: number | null | undefined): StatEvent {
+  if (asked === undefined || asked === stat.pace_chosen) return stat;
+  return { ...stat, pace: asked ?? 1, pace_chosen: asked };
+}
+
+/** Show a pace as chosen at once, until the engine confirms it. */
+export function showAskedPace(asked: number | null): void {
+  useStudio.setState(({ stat }) => ({ stat: stat && withPace(stat, asked), askedPace: asked }));
 }
 
 function savedToast({ what, path }: SavedEvent): Omit<Toast, "id"> {
