@@ -74,13 +74,16 @@ impl Touch {
     }
 
     /// Whether a point is in front of a triangle, or not too deep behind it.
+    ///
+    /// Beside the triangle this is asked of the surface at its edge: the plane of a wall goes on into the body where
+    /// that wall ends in a corner, and what lies along it there is inside.
     pub(super) fn is_in_front(&self, triangle: u32, point: Vec3, points: &[Vec3]) -> bool {
-        let corners = self.corners(triangle, points);
-        let found = closest(point, corners);
-        dot(found.away, normal(corners)) >= -DEPTH * self.description.voxel
+        let found = closest(point, self.corners(triangle, points));
+        let outward = self.normal_beside(triangle, found.weights, points);
+        dot(found.away, outward) >= 0.0 || found.distance <= DEPTH * self.description.voxel
     }
 
-    /// The mean normal at a point on an edge or corner of a triangle, which tells outside from inside (Baerentzen and
+    /// The mean normal at a point of a triangle, on an edge or corner that of all that meet there, which tells outside from inside (Baerentzen and
     /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
     fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
         let corners = self.triangles[triangle as usize];
@@ -107,5 +110,61 @@ impl Touch {
             axpy(&mut sum, weight, n);
         }
         unit(sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touch::{Carried, Description, Surface};
+
+    /// A prism of the height 1 over the L of the lengths 2 and the width 1, its inner edge at (1, 1).
+    fn angle() -> (Touch, Vec<Vec3>) {
+        let outline = [
+            [0.0, 0.0],
+            [2.0, 0.0],
+            [2.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 2.0],
+            [0.0, 2.0],
+        ];
+        let at = |z: f64| outline.map(|[x, y]| [x, y, z]);
+        let positions = [at(0.0), at(1.0)].concat();
+        let mut triangles = Vec::new();
+        for i in 0..6u32 {
+            let j = (i + 1) % 6;
+            triangles.extend([[i, j, j + 6], [i, j + 6, i + 6]]);
+        }
+        for [a, b, c] in [[3, 4, 5], [3, 5, 0], [3, 0, 1], [3, 1, 2]] {
+            triangles.extend([[a, c, b], [a + 6, b + 6, c + 6]]);
+        }
+        let surface = Surface {
+            points: (0..12).map(Carried::vertex).collect(),
+            triangles,
+        };
+        let description = Description {
+            surfaces: vec![surface],
+            friction: vec![vec![0.0]],
+            voxel: 1.0,
+            young: 1.0,
+        };
+        (Touch::new(description, &positions).unwrap(), positions)
+    }
+
+    #[test]
+    fn what_lies_along_a_wall_but_behind_its_end_is_not_in_front_of_it() {
+        let (touch, positions) = angle();
+        let front = |triangle: u32, point: Vec3| touch.is_in_front(triangle, point, &positions);
+        // The wall y = 1, which ends at the inner edge, where its plane goes on into the body.
+        let wall = 4;
+        assert_eq!(touch.triangles[wall as usize], [2, 3, 9]);
+        assert!(!front(wall, [0.5, 0.99, 0.5]));
+        assert!(front(wall, [1.2, 1.5, 0.5]));
+        // Not too deep behind it, at its edge too.
+        assert!(front(wall, [0.9, 0.99, 0.5]));
+        assert!(front(wall, [1.2, 0.8, 0.5]));
+        assert!(!front(wall, [1.2, 0.7, 0.5]));
+        // Beyond an outer edge, along the wall and a little below its plane.
+        assert!(front(wall, [3.0, 0.7, 0.5]));
     }
 }
