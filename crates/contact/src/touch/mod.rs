@@ -26,6 +26,7 @@ mod field;
 mod friction;
 pub(crate) mod gap;
 mod listing;
+pub mod live;
 mod path;
 mod report;
 pub mod rigid;
@@ -105,6 +106,8 @@ pub struct Touch {
     surface_of: Vec<u32>,
     /// The triangles at each point.
     around: Vec<Vec<u32>>,
+    /// The penalty in units of Young's modulus over the voxel size.
+    penalty: f64,
     state: RwLock<State>,
 }
 
@@ -120,6 +123,28 @@ struct Meeting {
     gap: f64,
     /// From the triangle to the sample.
     normal: Vec3,
+}
+
+impl Meeting {
+    /// How a sample at `point` lies to what it faces, a triangle with these corners.
+    fn new(sample: u32, facing: Facing, point: Vec3, corners: [Vec3; 3]) -> Self {
+        let (weights, normal, inside) = match facing {
+            Facing::Plane(_) => (gap::affine(point, corners), normal(corners), true),
+            Facing::Edge(_, weights, normal) => (weights, normal, false),
+        };
+        let mut away = point;
+        for (weight, corner) in weights.iter().zip(corners) {
+            axpy(&mut away, -weight, corner);
+        }
+        Self {
+            sample,
+            triangle: facing.triangle(),
+            weights,
+            inside,
+            gap: dot(away, normal),
+            normal,
+        }
+    }
 }
 
 impl Touch {
@@ -175,6 +200,7 @@ impl Touch {
             triangles,
             surface_of,
             around,
+            penalty: PENALTY,
             state: RwLock::default(),
         };
         Contact::start(&touch, rest);
@@ -224,7 +250,7 @@ impl Touch {
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
         let sample = &self.samples[sample as usize];
-        let per_area = PENALTY * self.description.young / self.description.voxel;
+        let per_area = self.penalty * self.description.young / self.description.voxel;
         per_area * sample.area.max(self.least_area[sample.surface as usize]) / 2.0
     }
 
@@ -234,25 +260,8 @@ impl Touch {
 
     /// How a sample at `point` lies to what it faces.
     fn meeting(&self, sample: u32, facing: Facing, point: Vec3, points: &[Vec3]) -> Meeting {
-        let (triangle, weights, normal, inside) = match facing {
-            Facing::Plane(triangle) => {
-                let corners = self.corners(triangle, points);
-                (triangle, gap::affine(point, corners), normal(corners), true)
-            }
-            Facing::Edge(triangle, weights, normal) => (triangle, weights, normal, false),
-        };
-        let mut away = point;
-        for (weight, corner) in weights.iter().zip(self.corners(triangle, points)) {
-            axpy(&mut away, -weight, corner);
-        }
-        Meeting {
-            sample,
-            triangle,
-            weights,
-            inside,
-            gap: dot(away, normal),
-            normal,
-        }
+        let corners = self.corners(facing.triangle(), points);
+        Meeting::new(sample, facing, point, corners)
     }
 
     /// The force with which a sample is pushed away, N.

@@ -5,6 +5,7 @@ use voxsoft_solid::matrix::determinant;
 use voxsoft_solid::vector::{Vec3, add, norm, scale};
 use voxsoft_solid::{Ask, Problem};
 
+use super::contact::{make_rigid, restore};
 use super::lagged::Lagged;
 use super::objective::{Objective, Value};
 use super::quasi_newton::{Memory, product};
@@ -60,24 +61,26 @@ impl Search<'_> {
         let problem = self.objective.problem;
         let mut trial = Vec::with_capacity(positions.len());
         let mut next = Value::default();
-        let mut force = self.free_force(value);
+        let mut force = self.free_force(positions, value);
         let mut extremes = Extremes::of(problem, positions);
         for taken in 0..most {
             if !go_on(Ask::Within) {
                 return (End::Cancelled, taken);
             }
-            self.lagged.turn(problem.body(), positions, self.carried);
+            self.lagged.turn(problem, positions, self.carried);
             let lagged = &*self.lagged;
             let direction = self
                 .memory
                 .direction(force.clone(), |side| lagged.apply(side));
+            let mut moves = lagged.spread(&direction);
+            make_rigid(problem, positions, &mut moves);
+            let direction = lagged.gather(&moves);
             let gain = product(&direction, &force);
             if !(gain > 0.0) {
                 // A force of zero, or rounding.
                 let end = if gain == 0.0 { End::Found } else { End::Stuck };
                 return (end, taken);
             }
-            let moves = lagged.spread(&direction);
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
             let mut part = (LARGEST_CHANGE / largest_change(problem, &moves)).min(1.0);
             let mut halvings = 0;
@@ -85,6 +88,7 @@ impl Search<'_> {
                 trial.clear();
                 let pairs = positions.iter().zip(&moves);
                 trial.extend(pairs.map(|(x, m)| add(*x, scale(part, *m))));
+                restore(problem, &mut trial);
                 let new = Extremes::of(problem, &trial);
                 if new.are_sound_after(extremes) {
                     self.objective.evaluate(&trial, &mut next);
@@ -105,7 +109,7 @@ impl Search<'_> {
             }
             std::mem::swap(positions, &mut trial);
             std::mem::swap(value, &mut next);
-            let after = self.free_force(value);
+            let after = self.free_force(positions, value);
             let change = force.iter().zip(&after).map(|(a, b)| a - b).collect();
             let step = direction.iter().map(|d| part * d).collect();
             self.memory.note(step, change);
@@ -130,8 +134,15 @@ impl Search<'_> {
     }
 
     /// Minus the gradient on free coordinates.
-    fn free_force(&self, value: &Value) -> Vec<f64> {
-        let mut force = self.lagged.gather(&value.net);
+    fn free_force(&self, positions: &[Vec3], value: &Value) -> Vec<f64> {
+        let problem = self.objective.problem;
+        let mut force = if problem.rigid().is_empty() {
+            self.lagged.gather(&value.net)
+        } else {
+            let mut net = value.net.clone();
+            make_rigid(problem, positions, &mut net);
+            self.lagged.gather(&net)
+        };
         for (vertex, _) in self.carried.iter().enumerate().filter(|(_, c)| **c) {
             if let Some(row) = self.lagged.row_of(vertex, 2) {
                 force[row] = 0.0;

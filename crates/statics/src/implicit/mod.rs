@@ -12,6 +12,7 @@
 //! steps ([`minimize`]) with a factor of the tangent that serves many steps ([`lagged`]); it is made anew where the
 //! moves that an old one costs would have paid for it.
 
+mod contact;
 mod floor;
 mod guess;
 mod lagged;
@@ -26,10 +27,12 @@ mod turns;
 mod viscosity;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::hands::{Hands, shortest_edge};
 use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
 
+use self::contact::FACING_ROUNDS;
 use self::lagged::Lagged;
 use self::minimize::{End, Search};
 use self::objective::{Goal, Objective, Value};
@@ -61,6 +64,11 @@ const ANCHOR_SPEED: f64 = 60.0;
 const MAX_BACK_OFFS: u32 = 10;
 /// Good steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
+/// The tangent is factorized directly, whatever its size.
+const MEANS: Means = Means {
+    solver: LinearSolver::Direct,
+    memory: u64::MAX,
+};
 /// Rounds of a step in which vertices may touch the floor or leave it.
 const FLOOR_ROUNDS: u32 = 3;
 
@@ -135,6 +143,10 @@ pub struct Implicit {
     value: Value,
     /// Vertices that the floor carries.
     carried: Vec<bool>,
+    /// Whether anything was pressed at the state.
+    touching: bool,
+    /// Whether contact joins other vertices than the tangent has room for.
+    pattern_changed: bool,
     damping_rate: f64,
     step: f64,
     steps: u64,
@@ -177,6 +189,8 @@ impl Implicit {
             before: None,
             value: Value::default(),
             carried: vec![false; state.positions.len()],
+            touching: false,
+            pattern_changed: false,
             damping_rate: initial_rate(settings.damping),
             step: settings.step.clamp(STEPS[0], STEPS[1]),
             steps: 0,
@@ -222,9 +236,27 @@ impl Implicit {
         }
     }
 
+    /// By the second-order formula, but for what touches.
     fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let second_order = self.before.is_some() && !self.touching;
+        let mut found = self.find(second_order, go_on);
+        if second_order && matches!(&found, Ok((next, _)) if self.touches(&next.positions)) {
+            self.go_back();
+            found = self.find(false, go_on);
+        }
+        let (next, value) = found.inspect_err(|_| self.go_back())?;
+        self.accept(next, value)
+    }
+
+    /// The end of a step that starts from the state, by the second-order formula or by backward Euler.
+    fn find(
+        &mut self,
+        second_order: bool,
+        go_on: &mut dyn FnMut(Ask) -> bool,
+    ) -> Result<(State, Value), Failure> {
         let step = self.step;
-        let start = Start::new(&self.state, self.before.as_ref(), step);
+        let before = self.before.as_ref().filter(|_| second_order);
+        let start = Start::new(&self.state, before, step);
         let braked = start.rate + self.damping_rate;
         let inertia = start.rate * braked;
         let free: Vec<Vec3> = start
@@ -234,8 +266,8 @@ impl Implicit {
             .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / braked))
             .collect();
         let time = self.state.time + step;
-        let anchors = self.hands.clone();
-        let grabs = self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        let mut hands = self.hands.clone();
+        let grabs = hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         let dead = (!self.problem.is_conservative()).then(|| {
             let mut forces = vec![[0.0; 3]; free.len()];
             self.problem
@@ -255,14 +287,7 @@ impl Implicit {
             dead: dead.as_deref(),
             within: &within,
         };
-        let found = self.minimize(goal, go_on);
-        let (mut positions, value) = match found {
-            Ok(found) => found,
-            Err(failure) => {
-                self.hands = anchors;
-                return Err(failure);
-            }
-        };
+        let (mut positions, value) = self.minimize(goal, go_on)?;
         self.keep_momentum(inertia, &mut positions, &value);
         let velocities = positions.iter().zip(&start.positions);
         let velocities = velocities.map(|(x, from)| scale(start.rate, sub(*x, *from)));
@@ -271,13 +296,30 @@ impl Implicit {
             positions,
             time,
         };
+        Ok((next, value))
+    }
+
+    /// Goes on from the end of a step, if it is sound.
+    fn accept(&mut self, next: State, value: Value) -> Result<(), Failure> {
+        let step = next.time - self.state.time;
         if let Some(place) =
-            Breakdown::find(&self.problem, &next.positions, self.travel_limit, time)
+            Breakdown::find(&self.problem, &next.positions, self.travel_limit, next.time)
         {
-            self.hands = anchors;
             self.breakdown = Some(place);
+            self.go_back();
             return Err(Failure::Lost);
         }
+        let touching = self.touches(&next.positions);
+        let taken = self
+            .problem
+            .contact()
+            .is_none_or(|contact| contact.take_step(&next.positions));
+        if !taken {
+            self.go_back();
+            return Err(Failure::Lost);
+        }
+        self.touching = touching;
+        self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if let Some(viscosity) = &mut self.viscosity {
             viscosity.end(self.problem.body(), &next.positions, step);
         }
@@ -290,53 +332,40 @@ impl Implicit {
         Ok(())
     }
 
+    /// Forgets what contact has learned since the state.
+    fn go_back(&self) {
+        if let Some(contact) = self.problem.contact() {
+            contact.go_back();
+        }
+    }
+
     /// The minimum of a step's potential.
     fn minimize(
         &mut self,
         goal: Goal<'_>,
         go_on: &mut dyn FnMut(Ask) -> bool,
     ) -> Result<(Vec<Vec3>, Value), Failure> {
-        let Goal { time, inertia, .. } = goal;
-        if self.lagged.is_none() {
-            let means = Means {
-                solver: LinearSolver::Direct,
-                memory: u64::MAX,
-            };
-            self.lagged = Some(Lagged::new(&self.problem, means)?);
-        }
-        let mut value = Value::default();
-        let mut positions = self.predicted(time);
-        let objective = Objective {
-            problem: &self.problem,
-            goal,
-        };
-        objective.evaluate(&positions, &mut value);
-        if self.is_violent() {
-            // The motion may not go on as it did: a load has jumped, or something is met.
-            let stayed = self.stayed(time);
-            let mut other = Value::default();
-            objective.evaluate(&stayed, &mut other);
-            if !(value.potential <= other.potential) {
-                (positions, value) = (stayed, other);
-            }
-        }
+        let Goal { inertia, .. } = goal;
+        let (mut positions, mut value) = self.first_guess(goal);
         let mut rounds = 0;
         let mut searches = 0;
         let mut fresh = false;
         loop {
-            let springs = self.springs(inertia, goal.grabs);
-            let lagged = self.lagged.as_mut().expect("made above");
-            if !lagged.is_assembled() {
-                lagged.assemble(&self.problem, &positions, time, goal.within);
+            if !self.lagged.as_ref().is_some_and(Lagged::is_assembled) {
+                self.assemble(&positions, goal, Tangent::Exact)?;
                 fresh = true;
             }
+            let springs = self.springs(inertia, goal.grabs);
+            let lagged = self.lagged.as_mut().expect("assembled above");
             if !lagged.serves(inertia, INERTIA_RANGE) || !lagged.patch(&springs) {
                 if !go_on(Ask::Within) {
                     return Err(Failure::Cancelled);
                 }
                 if !lagged.factorize(inertia, &springs)? {
                     // Compressed, or swollen on the way: without what stress adds it is positive definite.
-                    lagged.assemble_stressless(&self.problem, &positions, goal.within);
+                    let (time, within) = (goal.time, goal.within);
+                    let tangent = Tangent::Stressless;
+                    lagged.assemble(&self.problem, &positions, time, within, tangent);
                     lagged.factorize_lifted(inertia, &springs)?;
                 }
                 self.memory.clear();
@@ -366,11 +395,14 @@ impl Implicit {
                 End::Found => {
                     rounds += 1;
                     let changed = self.touch_floor(&mut positions, &value);
-                    if !changed || rounds > FLOOR_ROUNDS {
+                    let faced = self.faces_other(goal, &positions, &mut value);
+                    if changed {
+                        let problem = &self.problem;
+                        Objective { problem, goal }.evaluate(&positions, &mut value);
+                    }
+                    if !(changed && rounds <= FLOOR_ROUNDS || faced && rounds <= FACING_ROUNDS) {
                         break;
                     }
-                    let problem = &self.problem;
-                    Objective { problem, goal }.evaluate(&positions, &mut value);
                     continue;
                 }
                 End::Slow | End::Stuck => {}
@@ -379,24 +411,33 @@ impl Implicit {
             if searches > MOST_SEARCHES || (fresh && end == End::Stuck) {
                 return Err(Failure::Lost);
             }
-            if let Some(lagged) = &mut self.lagged {
-                lagged.assemble_stressless(&self.problem, &positions, goal.within);
-            }
-            self.excess = 0.0;
+            self.faces_other(goal, &positions, &mut value);
+            self.assemble(&positions, goal, Tangent::Stressless)?;
             fresh = true;
         }
         if self.excess > self.lagged.as_ref().map_or(0.0, Lagged::factor_cost) {
             // For the next step.
-            self.renew(&positions, goal);
+            self.assemble(&positions, goal, Tangent::Exact)?;
         }
         Ok((positions, value))
     }
 
-    fn renew(&mut self, positions: &[Vec3], goal: Goal<'_>) {
-        if let Some(lagged) = &mut self.lagged {
-            lagged.assemble(&self.problem, positions, goal.time, goal.within);
-        }
+    /// Takes the tangent at `positions`, where what is faced was looked for last.
+    fn assemble(
+        &mut self,
+        positions: &[Vec3],
+        goal: Goal<'_>,
+        tangent: Tangent,
+    ) -> Result<(), Failure> {
+        let problem = &self.problem;
+        let lagged = match &mut self.lagged {
+            Some(lagged) if !self.pattern_changed => lagged,
+            lagged => lagged.insert(Lagged::new(problem, MEANS)?),
+        };
+        self.pattern_changed = false;
+        lagged.assemble(problem, positions, goal.time, goal.within, tangent);
         self.excess = 0.0;
+        Ok(())
     }
 
     /// Moves a body that nothing holds as a whole, until all forces on it account for its momentum: the search ends
@@ -427,6 +468,10 @@ impl Implicit {
         self.pressures = Pressures::at(self.problem.body(), &state.positions);
         self.state = state;
         self.before = None;
+        self.touching = false;
+        if let Some(contact) = self.problem.contact() {
+            contact.start(&self.state.positions);
+        }
         self.value = Value::default();
         self.carried.fill(false);
         if let Some(viscosity) = &mut self.viscosity {
