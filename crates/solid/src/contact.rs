@@ -38,6 +38,12 @@ pub trait Contact: Term {
         true
     }
 
+    /// Whether something is so deep in something else at `positions` that a step should not end there before its
+    /// multipliers have been corrected.
+    fn is_deep(&self, _positions: &[Vec3]) -> bool {
+        false
+    }
+
     /// Whether anything is pressed at `positions`.
     fn is_touching(&self, positions: &[Vec3]) -> bool {
         self.energy(positions) > 0.0

@@ -24,8 +24,10 @@ use super::state::{Memory, State};
 use super::{Description, LOOKS, Meeting, Touch, gap, listing};
 
 /// The penalty in units of Young's modulus over the voxel size, and that of slip relative to it.
-const PENALTY: f64 = 50.0;
-const STICK: f64 = 0.2;
+const PENALTY: f64 = 8.0;
+const STICK: f64 = 1.0;
+/// How deep a sample may be before multipliers are corrected within a step, in voxels.
+const DEEP: f64 = 0.05;
 /// How deep a step may leave a sample, in voxels: beyond [`listing::DEPTH`] its side is lost.
 const DEEPEST: f64 = 0.8 * listing::DEPTH;
 
@@ -281,6 +283,10 @@ impl Contact for LiveTouch {
             .expect("no holder of the lock panics")
             .borne = pressures;
         true
+    }
+
+    fn is_deep(&self, positions: &[Vec3]) -> bool {
+        self.depth(positions) > DEEP * self.touch.description.voxel
     }
 
     fn is_touching(&self, positions: &[Vec3]) -> bool {

@@ -13,8 +13,8 @@
 use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
-use super::Implicit;
 use super::objective::{Goal, Objective, Value};
+use super::{Implicit, MOST_MOVES, MOST_MOVES_IN_CONTACT, MOVE_IN_CONTACT, MOVE_OF_EDGE, ROUGH};
 
 /// Searches of one step for which samples may look anew at what they face.
 pub(super) const FACING_ROUNDS: u32 = 4;
@@ -30,7 +30,8 @@ impl Implicit {
         }
     }
 
-    /// Evaluates anew what is faced at `positions`; whether that changes anything.
+    /// Evaluates anew what is faced at `positions`, with multipliers that bear what is too deep; whether that changes
+    /// anything.
     pub(super) fn faces_other(
         &mut self,
         goal: Goal<'_>,
@@ -42,9 +43,24 @@ impl Implicit {
         }
         let before = value.potential;
         self.face(positions, false);
+        if let Some(contact) = self.problem.contact()
+            && contact.is_deep(positions)
+        {
+            contact.correct(positions, 0.0);
+        }
         let problem = &self.problem;
         Objective { problem, goal }.evaluate(positions, value);
         value.potential != before
+    }
+
+    /// A last move of a search that is small in any case (m), how many moves it may take, and how many times as large
+    /// the last one may be then.
+    pub(super) fn patience(&self) -> (f64, u32, f64) {
+        let (part, most, rough) = match self.problem.contact() {
+            Some(_) => (MOVE_IN_CONTACT, MOST_MOVES_IN_CONTACT, ROUGH),
+            None => (MOVE_OF_EDGE, MOST_MOVES, 0.0),
+        };
+        (part * self.shortest_edge, most, rough)
     }
 
     /// Whether anything is pressed at `positions`.

@@ -2,7 +2,7 @@
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::determinant;
-use voxsoft_solid::vector::{Vec3, add, norm, scale};
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Ask, Problem};
 
 use super::contact::{make_rigid, restore};
@@ -10,6 +10,9 @@ use super::lagged::Lagged;
 use super::objective::{Objective, Value};
 use super::quasi_newton::{Memory, product};
 
+/// The parts of [`Tolerance`].
+const MOVE_OF_STEP: f64 = 1e-2;
+const MOVE_OF_FORCES: f64 = 3e-2;
 /// Armijo's condition: the part of the predicted gain that a move must bring.
 const SUFFICIENT: f64 = 1e-4;
 /// The largest stretch of a voxel after a move, unless it is stretched farther already: no elastomer follows.
@@ -30,6 +33,8 @@ const LEAST_VOLUME: f64 = 0.05;
 pub(super) enum End {
     /// The last move was as small as asked.
     Found,
+    /// As many moves as allowed, the last one being small enough where surfaces touch.
+    Rough,
     /// As many moves as allowed.
     Slow,
     /// No move along the direction helps.
@@ -45,8 +50,35 @@ pub(super) struct Search<'a> {
     pub memory: &'a mut Memory,
     /// Coordinates that do not move besides the clamped ones: vertices on the floor.
     pub carried: &'a [bool],
-    /// A move (m) after which the search ends.
-    pub tolerance: f64,
+    /// After which move it ends.
+    pub tolerance: Tolerance<'a>,
+}
+
+/// How small the last move of a search must be: as a part of how far the step has come, and of how far forces have
+/// driven it from where the body would be without them.
+pub(super) struct Tolerance<'a> {
+    /// The positions that the step starts from, m.
+    pub from: &'a [Vec3],
+    /// Where the body would be without forces, m.
+    pub free: &'a [Vec3],
+    /// What is small in any case, m.
+    pub least: f64,
+    /// How many times as large a last move may be that ends a search which has taken as many as allowed.
+    pub rough: f64,
+}
+
+impl Tolerance<'_> {
+    fn at(&self, positions: &[Vec3]) -> f64 {
+        (MOVE_OF_STEP * farthest(positions, self.from))
+            .min(MOVE_OF_FORCES * farthest(positions, self.free))
+            .max(self.least)
+    }
+}
+
+/// The largest distance between two places of a vertex.
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
 impl Search<'_> {
@@ -63,6 +95,7 @@ impl Search<'_> {
         let mut next = Value::default();
         let mut force = self.free_force(positions, value);
         let mut extremes = Extremes::of(problem, positions);
+        let mut last = f64::INFINITY;
         for taken in 0..most {
             if !go_on(Ask::Within) {
                 return (End::Cancelled, taken);
@@ -112,13 +145,15 @@ impl Search<'_> {
             let after = self.free_force(positions, value);
             let change = force.iter().zip(&after).map(|(a, b)| a - b).collect();
             let step = direction.iter().map(|d| part * d).collect();
-            self.memory.note(step, change);
+            self.memory.note(step, change, part * part * gain);
             force = after;
-            if part * largest <= self.tolerance {
+            last = part * largest;
+            if last <= self.tolerance.at(positions) {
                 return (End::Found, taken + 1);
             }
         }
-        (End::Slow, most)
+        let rough = last <= self.tolerance.rough * self.tolerance.at(positions);
+        (if rough { End::Rough } else { End::Slow }, most)
     }
 
     /// What potentials are known to, in J.

@@ -34,7 +34,7 @@ use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
 
 use self::contact::FACING_ROUNDS;
 use self::lagged::Lagged;
-use self::minimize::{End, Search};
+use self::minimize::{End, Search, Tolerance};
 use self::objective::{Goal, Objective, Value};
 use self::pressures::Pressures;
 use self::quasi_newton::Memory;
@@ -48,11 +48,14 @@ use crate::system::{FactorError, Means};
 const MOST_MOVES: u32 = 8;
 /// Searches of one step, after which it counts as failed.
 const MOST_SEARCHES: u32 = 30;
-/// The last move of a search, as a part of how far the step goes, of how far forces drive it from where the body
-/// would be without them, and of the shortest edge.
-const MOVE_OF_STEP: f64 = 1e-2;
-const MOVE_OF_FORCES: f64 = 3e-2;
+/// A last move of a search that is small in any case, as a part of the shortest edge; where there is contact, a
+/// hundredth of its clearance.
 const MOVE_OF_EDGE: f64 = 1e-9;
+const MOVE_IN_CONTACT: f64 = 1e-5;
+/// Where there is contact: moves of one search, and how many times as large its last move may be after them. What comes
+/// into contact or leaves it is not in the factor.
+const MOST_MOVES_IN_CONTACT: u32 = 12;
+const ROUGH: f64 = 10.0;
 /// By how much the inertia of a factor may be off.
 const INERTIA_RANGE: f64 = 1.5;
 /// How fast an anchor goes, in shortest edges per second: one edge in a step of 1/60 s. Where time is shown slower
@@ -350,6 +353,7 @@ impl Implicit {
         let mut rounds = 0;
         let mut searches = 0;
         let mut fresh = false;
+        let (least, most, rough) = self.patience();
         loop {
             if !self.lagged.as_ref().is_some_and(Lagged::is_assembled) {
                 self.assemble(&positions, goal, Tangent::Exact)?;
@@ -373,9 +377,6 @@ impl Implicit {
             if !value.potential.is_finite() {
                 return Err(Failure::Lost);
             }
-            let tolerance = (MOVE_OF_STEP * farthest(&positions, &self.state.positions))
-                .min(MOVE_OF_FORCES * farthest(&positions, goal.free))
-                .max(MOVE_OF_EDGE * self.shortest_edge);
             let mut search = Search {
                 objective: Objective {
                     problem: &self.problem,
@@ -384,22 +385,30 @@ impl Implicit {
                 lagged,
                 memory: &mut self.memory,
                 carried: &self.carried,
-                tolerance,
+                tolerance: Tolerance {
+                    from: &self.state.positions,
+                    free: goal.free,
+                    least,
+                    rough,
+                },
             };
-            let (end, moves) = search.run(&mut positions, &mut value, MOST_MOVES, go_on);
+            let (end, moves) = search.run(&mut positions, &mut value, most, go_on);
             if !fresh {
                 self.excess += f64::from(moves.saturating_sub(2));
             }
             match end {
                 End::Cancelled => return Err(Failure::Cancelled),
-                End::Found => {
+                End::Found | End::Rough => {
+                    if end == End::Rough {
+                        self.excess = f64::INFINITY;
+                    }
                     rounds += 1;
                     let changed = self.touch_floor(&mut positions, &value);
-                    let faced = self.faces_other(goal, &positions, &mut value);
                     if changed {
                         let problem = &self.problem;
                         Objective { problem, goal }.evaluate(&positions, &mut value);
                     }
+                    let faced = self.faces_other(goal, &positions, &mut value);
                     if !(changed && rounds <= FLOOR_ROUNDS || faced && rounds <= FACING_ROUNDS) {
                         break;
                     }
@@ -487,12 +496,6 @@ impl Implicit {
         self.excess = 0.0;
         self.wake();
     }
-}
-
-/// The largest distance between two places of a vertex.
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
-    let pairs = a.iter().zip(b);
-    pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
 fn initial_rate(damping: Damping) -> f64 {
