@@ -13,6 +13,7 @@ use crate::pace::{Pace, RealTimeFactor};
 use crate::plots::{Plots, Probe};
 use crate::recording::{Recorded, Recording};
 use crate::stepper::stepper;
+use crate::touching::Touching;
 
 /// What a player is told of a problem beside its mechanics.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,6 +47,7 @@ pub(crate) struct Numbers {
 pub struct Player {
     pub(crate) stepper: Box<dyn Stepper>,
     pub(crate) surface: Display,
+    pub(crate) touching: Option<Touching>,
     pub(crate) topology: u32,
     pub(crate) controls: Vec<Control>,
     /// The value of each control now.
@@ -79,6 +81,7 @@ impl Player {
         Self {
             stepper: stepper(problem, settings),
             surface,
+            touching: None,
             topology: cast.topology,
             loads: cast.controls.iter().map(|one| one.value).collect(),
             controls: cast.controls,
@@ -99,6 +102,13 @@ impl Player {
             plots: Plots::of(cast.probes),
             reported: [f64::NEG_INFINITY; 2],
         }
+    }
+
+    /// The same with the contact of its problem, of which it tells.
+    #[must_use]
+    pub fn with_touching(mut self, touching: Touching) -> Self {
+        self.touching = Some(touching);
+        self
     }
 
     /// Does what is asked, and gives what there is to tell of it.
@@ -167,7 +177,8 @@ impl Player {
         self.recording.clear();
         self.plots.clear();
         self.stand(Mode::Paused, String::new());
-        vec![Event::Plot(self.whole_plot()), Event::Stat(self.stat())]
+        let told = [Event::Plot(self.whole_plot()), Event::Stat(self.stat())];
+        self.moment().into_iter().chain(told).collect()
     }
 
     fn on_pace(&mut self, factor: Option<f64>) -> Result<(), Refusal> {

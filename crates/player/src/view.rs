@@ -6,7 +6,9 @@ use voxsoft_frames::{Display, Field, FrameHead, frame_flag, name_of};
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Problem, State};
 
-use crate::event::{GrabState, Mode, Picked, Plot, Refusal, Shown, Stat, Value, finite};
+use crate::event::{
+    Event, GrabState, Mode, MomentOf, Picked, Plot, Refusal, Shown, Stat, Value, finite,
+};
 use crate::player::Player;
 
 impl Player {
@@ -121,6 +123,16 @@ impl Player {
         let body = self.stepper.problem().body();
         let display = display.unwrap_or(&self.surface);
         display.frame(body, &self.state(), field, head)
+    }
+
+    /// What touches what now, and where objects are; nothing without contact.
+    pub fn moment(&self) -> Option<Event> {
+        let touching = self.touching.as_ref()?;
+        let state = self.stepper.state();
+        let rest = self.stepper.problem().body().rest();
+        let moment = touching.moment((self.frame, state.time), rest, &state.positions);
+        let topology = self.topology;
+        Some(Event::Moment(MomentOf { topology, moment }))
     }
 
     /// All rows of the plots, to replace those that a reader has.

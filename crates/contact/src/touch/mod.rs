@@ -215,6 +215,11 @@ impl Touch {
         self
     }
 
+    /// Who touches whom, and how.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
     /// The vertices that stand for a point, as points are numbered over all surfaces.
     fn share(&self, point: u32) -> &Carried {
         let point = point as usize;

@@ -29,7 +29,7 @@ mod viscosity;
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::hands::{Hands, shortest_edge};
-use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
 
 use self::contact::FACING_ROUNDS;
