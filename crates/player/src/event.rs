@@ -147,6 +147,8 @@ pub struct GrabState {
     pub id: u32,
     /// The point of the surface.
     pub vertex: usize,
+    /// The object that is held by its middle instead.
+    pub object: Option<usize>,
     /// Toward where, in m.
     pub target: Vec3,
     /// In N/m.

@@ -55,6 +55,7 @@ mod command;
 mod control;
 mod event;
 mod motion;
+mod objects;
 mod pace;
 mod player;
 mod plots;

@@ -30,6 +30,9 @@ pub struct Cast {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Held {
     pub(crate) vertex: usize,
+    /// An object that is held instead, and its vertices from its middle when it was taken.
+    pub(crate) object: Option<(usize, [Vec3; 4])>,
+    pub(crate) target: Vec3,
     pub(crate) stiffness: f64,
 }
 
@@ -127,9 +130,17 @@ impl Player {
             Command::Grab {
                 id,
                 vertex,
+                object: None,
                 target,
                 stiffness,
             } => self.on_grab(id, vertex, target, stiffness)?,
+            Command::Grab {
+                id,
+                object: Some(object),
+                target,
+                stiffness,
+                ..
+            } => self.on_hold_object(id, object, target, stiffness)?,
             Command::Release { id } => self.on_release(id),
             Command::Seek { frame, time } => self.on_seek(frame, time)?,
             Command::Live => self.on_live(),
@@ -228,14 +239,26 @@ impl Player {
         self.stepper
             .grab(id, of_body, target, stiffness)
             .map_err(|error| Refusal::new("grab", error, ""))?;
-        self.held.insert(id, Held { vertex, stiffness });
+        let held = Held {
+            vertex,
+            object: None,
+            target,
+            stiffness,
+        };
+        self.held.insert(id, held);
         self.wake();
         Ok(())
     }
 
     fn on_release(&mut self, id: u32) {
-        self.held.remove(&id);
-        self.stepper.release(id);
+        match self.held.remove(&id) {
+            Some(Held {
+                object: Some(_), ..
+            }) => self.let_go_of_object(id),
+            _ => {
+                self.stepper.release(id);
+            }
+        }
         self.wake();
     }
 
@@ -254,7 +277,7 @@ impl Player {
         Ok(())
     }
 
-    fn on_live(&mut self) {
+    pub(crate) fn on_live(&mut self) {
         if self.shown.take().is_some() {
             self.stand(Mode::Paused, String::new());
         }
@@ -298,7 +321,7 @@ impl Player {
     }
 
     /// A hand is on a load or a pull: what it does is shown at once, and what was at rest is so no more.
-    fn wake(&mut self) {
+    pub(crate) fn wake(&mut self) {
         self.pace.rest_in = None;
         if self.mode == Mode::AtRest {
             self.stand(Mode::Paused, String::new());

@@ -21,7 +21,7 @@ pub struct Placed {
 
 impl Placed {
     /// Where its middle is, and its rotation from its first pose.
-    fn pose(&self, rest: &[Vec3], positions: &[Vec3]) -> (Vec3, Mat3) {
+    pub(crate) fn pose(&self, rest: &[Vec3], positions: &[Vec3]) -> (Vec3, Mat3) {
         let mean = |all: &[Vec3]| {
             let sum = self.vertices.iter().map(|v| all[*v as usize]);
             scale(0.25, sum.fold([0.0; 3], add))

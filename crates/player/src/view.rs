@@ -146,19 +146,21 @@ impl Player {
         let asked = |id: u32| self.held.get(&id);
         let grabs = self.stepper.grabs().iter();
         let grabs = grabs.filter_map(|(id, grab)| Some((*id, grab, asked(*id)?)));
-        grabs
-            .map(|(id, grab, asked)| {
-                let position = positions[grab.vertex as usize];
-                GrabState {
-                    id,
-                    vertex: asked.vertex,
-                    target: grab.target,
-                    stiffness: asked.stiffness,
-                    force: grab.force(position),
-                    stretch: norm(sub(grab.anchor, position)),
-                }
-            })
-            .collect()
+        let of_body = grabs.map(|(id, grab, asked)| {
+            let position = positions[grab.vertex as usize];
+            GrabState {
+                id,
+                vertex: asked.vertex,
+                object: None,
+                target: grab.target,
+                stiffness: asked.stiffness,
+                force: grab.force(position),
+                stretch: norm(sub(grab.anchor, position)),
+            }
+        });
+        let of_objects = self.held.iter();
+        let of_objects = of_objects.filter_map(|(id, held)| self.hold_of(*id, held));
+        of_body.chain(of_objects).collect()
     }
 
     pub(crate) fn picked(&self, point: usize) -> Result<Picked, Refusal> {

@@ -109,11 +109,12 @@ def page_of_body(
     FileError
         The viewer was not built.
     VoxSoftError
-        The body cannot be solved, or has contact, which a page does not find.
+        The body cannot be solved, or is of the lattice material and has contact, which a page does not find.
     """
     if body.refusal is not None:
         raise body.refusal
-    refuse_contact(body.setup.design, "exported pages")
+    if body.not_live:
+        refuse_contact(body.setup.design, "exported pages of the lattice material")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(
