@@ -110,6 +110,7 @@ impl Player {
             residual: finite(look.residual),
             elastic: finite(look.elastic),
             kinetic: finite(look.kinetic),
+            unsettled: !look.settled,
         };
         Some(look)
     }

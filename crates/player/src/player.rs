@@ -44,6 +44,7 @@ pub(crate) struct Numbers {
     pub(crate) residual: Option<f64>,
     pub(crate) elastic: Option<f64>,
     pub(crate) kinetic: Option<f64>,
+    pub(crate) unsettled: bool,
 }
 
 /// A problem that lives: it does what it is asked, moves as time is handed to it, and tells of it.

@@ -10,6 +10,7 @@ use crate::event::{
     Event, GrabState, Mode, MomentOf, Picked, Plot, Refusal, Shown, Stat, Value, finite,
 };
 use crate::player::Player;
+use crate::sentences::UNSETTLED;
 
 impl Player {
     /// All numbers of the moment.
@@ -19,6 +20,7 @@ impl Player {
             topology: self.topology,
             state: self.mode,
             sentence: match self.sentence.as_str() {
+                "" if moving && self.numbers.unsettled => UNSETTLED.to_owned(),
                 "" if moving => self.pace.words(),
                 sentence => sentence.to_owned(),
             },

@@ -55,6 +55,18 @@ pub(crate) struct Form {
     objects: Vec<Placed>,
 }
 
+/// Whether triangles are of so many points, each of which is on one.
+fn all_are_used(points: usize, triangles: &[[u32; 3]]) -> bool {
+    let mut used = vec![false; points];
+    for point in triangles.as_flattened() {
+        match used.get_mut(*point as usize) {
+            Some(used) => *used = true,
+            None => return false,
+        }
+    }
+    !used.contains(&false)
+}
+
 impl From<&Touching> for Form {
     fn from(touching: &Touching) -> Self {
         let point = |point: &Carried| (point.vertices.clone(), point.weights.clone());
@@ -88,14 +100,12 @@ impl Form {
         let sound = |(vertices, weights): &(Vec<u32>, Vec<f64>)| {
             vertices.iter().all(known) && vertices.len() == weights.len()
         };
-        let good = self
-            .surfaces
+        let good = self.surfaces.iter().all(|(points, triangles)| {
+            points.iter().all(sound) && all_are_used(points.len(), triangles)
+        }) && self
+            .objects
             .iter()
-            .all(|(points, _)| points.iter().all(sound))
-            && self
-                .objects
-                .iter()
-                .all(|object| object.vertices.iter().all(known));
+            .all(|object| object.vertices.iter().all(known));
         let surface = |(points, triangles): (Vec<(Vec<u32>, Vec<f64>)>, Vec<[u32; 3]>)| {
             let point = |(vertices, weights)| Carried { vertices, weights };
             let points = points.into_iter().map(point).collect();

@@ -17,7 +17,7 @@ use super::objective::{Goal, Objective, Value};
 use super::{Implicit, MOST_MOVES, MOST_MOVES_IN_CONTACT, MOVE_IN_CONTACT, MOVE_OF_EDGE, ROUGH};
 
 /// Searches of one step for which samples may look anew at what they face.
-pub(super) const FACING_ROUNDS: u32 = 4;
+pub(super) const FACING_ROUNDS: u32 = 2;
 
 impl Implicit {
     /// Lets all samples look for what they face at `positions`.

@@ -56,6 +56,8 @@ const MOVE_IN_CONTACT: f64 = 1e-5;
 /// into contact or leaves it is not in the factor.
 const MOST_MOVES_IN_CONTACT: u32 = 12;
 const ROUGH: f64 = 10.0;
+/// Tangents of one step where there is contact: it ends where it has come to then, and says that it has not settled.
+const SEARCHES_IN_CONTACT: u32 = 1;
 /// By how much the inertia of a factor may be off.
 const INERTIA_RANGE: f64 = 1.5;
 /// How fast an anchor goes, in shortest edges per second: one edge in a step of 1/60 s. Where time is shown slower
@@ -146,6 +148,8 @@ pub struct Implicit {
     value: Value,
     /// Vertices that the floor carries.
     carried: Vec<bool>,
+    /// Whether the last step went on to the end of its search.
+    settled: bool,
     /// Whether anything was pressed at the state.
     touching: bool,
     /// Whether contact joins other vertices than the tangent has room for.
@@ -192,6 +196,7 @@ impl Implicit {
             before: None,
             value: Value::default(),
             carried: vec![false; state.positions.len()],
+            settled: true,
             touching: false,
             pattern_changed: false,
             damping_rate: initial_rate(settings.damping),
@@ -350,6 +355,7 @@ impl Implicit {
     ) -> Result<(Vec<Vec3>, Value), Failure> {
         let Goal { inertia, .. } = goal;
         let (mut positions, mut value) = self.first_guess(goal);
+        self.settled = true;
         let mut rounds = 0;
         let mut searches = 0;
         let mut fresh = false;
@@ -417,6 +423,11 @@ impl Implicit {
                 End::Slow | End::Stuck => {}
             }
             searches += 1;
+            if self.problem.contact().is_some() && searches > SEARCHES_IN_CONTACT {
+                self.settled = false;
+                self.faces_other(goal, &positions, &mut value);
+                break;
+            }
             if searches > MOST_SEARCHES || (fresh && end == End::Stuck) {
                 return Err(Failure::Lost);
             }
