@@ -10,7 +10,7 @@ import pytest
 from own_loop import run
 
 import voxsoft as vs
-from voxsoft.design import Object, families
+from voxsoft.design import Contact, Object, families
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
 from voxsoft.simulation import simulate
@@ -121,7 +121,8 @@ def test_what_was_pulled_or_played_stops_where_an_object_comes(pressed):
 
 
 def test_a_plate_presses_live_as_hard_as_statics_says(pressed):
-    design = load(pressed)
+    # Live the plate comes in one step: friction, which depends on the way, would be another.
+    design = load(pressed).replace(contact=Contact())
     playback = playing(design)
     assert playback.body.event().not_live == ""
     playback.do(commands.Play(seq=1))
