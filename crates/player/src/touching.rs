@@ -79,10 +79,7 @@ impl Touching {
             poses: self.objects.iter().map(pose).collect(),
             contacts: touches.collect(),
             fields: false,
-            depth: self
-                .contact
-                .is_deep(positions)
-                .then(|| self.contact.depth(positions)),
+            depth: self.contact.excess_depth(positions),
         }
     }
 

@@ -38,9 +38,8 @@ pub trait Contact: Term {
         true
     }
 
-    /// Whether something is so deep in something else at `positions` that a step should not end there before its
-    /// multipliers have been corrected.
-    fn is_deep(&self, _positions: &[Vec3]) -> bool {
+    /// Resists more for the rest of the step where something is too deep in something else at `positions`; whether it is.
+    fn stiffen(&self, _positions: &[Vec3]) -> bool {
         false
     }
 

@@ -12,6 +12,7 @@
 //!   the samples that have some.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::Ordering;
 use std::sync::{RwLock, RwLockReadGuard};
 
 use voxsoft_solid::assembly::Visitor;
@@ -26,8 +27,9 @@ use super::{Description, LOOKS, Meeting, Touch, gap, listing};
 /// The penalty in units of Young's modulus over the voxel size, and that of slip relative to it.
 const PENALTY: f64 = 8.0;
 const STICK: f64 = 1.0;
-/// How deep a sample may be before multipliers are corrected within a step, in voxels.
+/// How deep a sample may be before the penalty grows within a step, in voxels, and by how much.
 const DEEP: f64 = 0.05;
+const STIFFER: f64 = 4.0;
 /// How deep a step may leave a sample, in voxels: beyond [`listing::DEPTH`] its side is lost.
 const DEEPEST: f64 = 0.8 * listing::DEPTH;
 
@@ -53,10 +55,6 @@ impl LiveTouch {
     /// Makes contact ready for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
         let touch = Touch::new(description, rest)?;
-        let touch = Touch {
-            penalty: PENALTY,
-            ..touch
-        };
         let live = Self {
             touch,
             run: RwLock::default(),
@@ -65,9 +63,20 @@ impl LiveTouch {
         Ok(live)
     }
 
+    fn set_penalty(&self, penalty: f64) {
+        self.touch
+            .penalty
+            .store(penalty.to_bits(), Ordering::Relaxed);
+    }
+
     /// The contact with the multipliers of the last step: what touches, and the fields of contact.
     pub fn touch(&self) -> &Touch {
         &self.touch
+    }
+
+    /// The same where it is more than contact lets it in a step.
+    pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
+        Some(self.depth(positions)).filter(|depth| *depth > DEEP * self.touch.description.voxel)
     }
 
     /// How deep the deepest sample is in what it faces at `positions`, m.
@@ -202,6 +211,7 @@ impl LiveTouch {
 
 impl Contact for LiveTouch {
     fn start(&self, positions: &[Vec3]) {
+        self.set_penalty(PENALTY);
         self.touch.start(positions);
         let mut state = self.touch.write();
         state.stick = STICK;
@@ -234,6 +244,15 @@ impl Contact for LiveTouch {
 
     fn look_anew(&self) {
         self.touch.write().looks = LOOKS;
+    }
+
+    fn stiffen(&self, positions: &[Vec3]) -> bool {
+        if self.depth(positions) <= DEEP * self.touch.description.voxel {
+            return false;
+        }
+        let penalty = f64::from_bits(self.touch.penalty.load(Ordering::Relaxed));
+        self.set_penalty(STIFFER * penalty);
+        true
     }
 
     fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
@@ -278,15 +297,12 @@ impl Contact for LiveTouch {
         state.now = moved;
         state.looks = LOOKS;
         drop(state);
+        self.set_penalty(PENALTY);
         self.run
             .write()
             .expect("no holder of the lock panics")
             .borne = pressures;
         true
-    }
-
-    fn is_deep(&self, positions: &[Vec3]) -> bool {
-        self.depth(positions) > DEEP * self.touch.description.voxel
     }
 
     fn is_touching(&self, positions: &[Vec3]) -> bool {
@@ -300,6 +316,7 @@ impl Contact for LiveTouch {
         let mut state = self.touch.write();
         state.now = state.accepted.clone();
         state.looks = LOOKS;
+        self.set_penalty(PENALTY);
         self.note_near(&state);
     }
 }

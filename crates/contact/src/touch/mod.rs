@@ -34,6 +34,7 @@ mod state;
 pub(crate) mod surface;
 mod term;
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use voxsoft_solid::vector::{Vec3, axpy, dot};
@@ -106,8 +107,8 @@ pub struct Touch {
     surface_of: Vec<u32>,
     /// The triangles at each point.
     around: Vec<Vec<u32>>,
-    /// The penalty in units of Young's modulus over the voxel size.
-    penalty: f64,
+    /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
+    penalty: AtomicU64,
     state: RwLock<State>,
 }
 
@@ -200,7 +201,7 @@ impl Touch {
             triangles,
             surface_of,
             around,
-            penalty: PENALTY,
+            penalty: AtomicU64::new(PENALTY.to_bits()),
             state: RwLock::default(),
         };
         Contact::start(&touch, rest);
@@ -255,7 +256,8 @@ impl Touch {
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
         let sample = &self.samples[sample as usize];
-        let per_area = self.penalty * self.description.young / self.description.voxel;
+        let penalty = f64::from_bits(self.penalty.load(Ordering::Relaxed));
+        let per_area = penalty * self.description.young / self.description.voxel;
         per_area * sample.area.max(self.least_area[sample.surface as usize]) / 2.0
     }
 

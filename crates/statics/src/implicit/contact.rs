@@ -18,6 +18,8 @@ use super::{Implicit, MOST_MOVES, MOST_MOVES_IN_CONTACT, MOVE_IN_CONTACT, MOVE_O
 
 /// Searches of one step for which samples may look anew at what they face.
 pub(super) const FACING_ROUNDS: u32 = 2;
+/// The same after which contact may resist more, where something is too deep.
+pub(super) const DEEP_ROUNDS: u32 = 4;
 
 impl Implicit {
     /// Lets all samples look for what they face at `positions`.
@@ -30,8 +32,7 @@ impl Implicit {
         }
     }
 
-    /// Evaluates anew what is faced at `positions`, with multipliers that bear what is too deep; whether that changes
-    /// anything.
+    /// Evaluates anew what is faced at `positions`; whether that changes anything.
     pub(super) fn faces_other(
         &mut self,
         goal: Goal<'_>,
@@ -43,14 +44,20 @@ impl Implicit {
         }
         let before = value.potential;
         self.face(positions, false);
-        if let Some(contact) = self.problem.contact()
-            && contact.is_deep(positions)
-        {
-            contact.correct(positions, 0.0);
-        }
         let problem = &self.problem;
         Objective { problem, goal }.evaluate(positions, value);
         value.potential != before
+    }
+
+    /// Lets contact resist more where something is too deep at `positions`; whether anything is.
+    pub(super) fn stiffens(&self, goal: Goal<'_>, positions: &[Vec3], value: &mut Value) -> bool {
+        let problem = &self.problem;
+        let contact = problem.contact();
+        if !contact.is_some_and(|contact| contact.stiffen(positions)) {
+            return false;
+        }
+        Objective { problem, goal }.evaluate(positions, value);
+        true
     }
 
     /// A last move of a search that is small in any case (m), how many moves it may take, and how many times as large

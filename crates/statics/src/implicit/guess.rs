@@ -10,18 +10,21 @@ use super::objective::{Goal, Objective, Value};
 const VIOLENT: f64 = 1e-3;
 
 impl Implicit {
-    /// Where the search begins, evaluated.
-    pub(super) fn first_guess(&mut self, goal: Goal<'_>) -> (Vec<Vec3>, Value) {
+    /// Where the search begins, evaluated, and the potential of standing still where that is known.
+    pub(super) fn first_guess(&mut self, goal: Goal<'_>) -> (Vec<Vec3>, Value, f64) {
         let (positions, value) = self.judged(self.predicted(goal.time), goal);
         if !self.is_violent() && !self.touches(&positions) {
-            return (positions, value);
+            let bound = value.potential;
+            return (positions, value, bound);
         }
         // The motion may not go on as it did: a load has jumped, or something is met.
         let (stayed, other) = self.judged(self.stayed(goal.time), goal);
-        if !(value.potential <= other.potential) {
-            return (stayed, other);
+        let bound = other.potential;
+        if !(value.potential <= bound) {
+            return (stayed, other, bound);
         }
-        self.judged(positions, goal)
+        let (positions, value) = self.judged(positions, goal);
+        (positions, value, bound)
     }
 
     /// A guess, what it faces being looked for there.

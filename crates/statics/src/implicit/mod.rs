@@ -32,7 +32,7 @@ use voxsoft_solid::hands::{Hands, shortest_edge};
 use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
 
-use self::contact::FACING_ROUNDS;
+use self::contact::{DEEP_ROUNDS, FACING_ROUNDS};
 use self::lagged::Lagged;
 use self::minimize::{End, Search, Tolerance};
 use self::objective::{Goal, Objective, Value};
@@ -56,8 +56,9 @@ const MOVE_IN_CONTACT: f64 = 1e-5;
 /// into contact or leaves it is not in the factor.
 const MOST_MOVES_IN_CONTACT: u32 = 12;
 const ROUGH: f64 = 10.0;
-/// Tangents of one step where there is contact: it ends where it has come to then, and says that it has not settled.
-const SEARCHES_IN_CONTACT: u32 = 1;
+/// Tangents of one step where there is contact: it ends where it has come to then, unless it would have been better to
+/// stand still, and says that it has not settled.
+const SEARCHES_IN_CONTACT: u32 = 6;
 /// By how much the inertia of a factor may be off.
 const INERTIA_RANGE: f64 = 1.5;
 /// How fast an anchor goes, in shortest edges per second: one edge in a step of 1/60 s. Where time is shown slower
@@ -354,7 +355,7 @@ impl Implicit {
         go_on: &mut dyn FnMut(Ask) -> bool,
     ) -> Result<(Vec<Vec3>, Value), Failure> {
         let Goal { inertia, .. } = goal;
-        let (mut positions, mut value) = self.first_guess(goal);
+        let (mut positions, mut value, mut bound) = self.first_guess(goal);
         self.settled = true;
         let mut rounds = 0;
         let mut searches = 0;
@@ -414,8 +415,17 @@ impl Implicit {
                         let problem = &self.problem;
                         Objective { problem, goal }.evaluate(&positions, &mut value);
                     }
-                    let faced = self.faces_other(goal, &positions, &mut value);
-                    if !(changed && rounds <= FLOOR_ROUNDS || faced && rounds <= FACING_ROUNDS) {
+                    let mut faced =
+                        self.faces_other(goal, &positions, &mut value) && rounds <= FACING_ROUNDS;
+                    if rounds <= DEEP_ROUNDS {
+                        let deep = self.stiffens(goal, &positions, &mut value);
+                        if deep {
+                            // Potentials under other penalties do not compare.
+                            bound = f64::INFINITY;
+                        }
+                        faced |= deep;
+                    }
+                    if !(changed && rounds <= FLOOR_ROUNDS || faced) {
                         break;
                     }
                     continue;
@@ -423,10 +433,15 @@ impl Implicit {
                 End::Slow | End::Stuck => {}
             }
             searches += 1;
-            if self.problem.contact().is_some() && searches > SEARCHES_IN_CONTACT {
+            let contact = self.problem.contact().is_some();
+            let hopeless = searches > SEARCHES_IN_CONTACT || (fresh && end == End::Stuck);
+            if contact && hopeless {
                 self.settled = false;
                 self.faces_other(goal, &positions, &mut value);
-                break;
+                if value.potential <= bound {
+                    break;
+                }
+                return Err(Failure::Lost);
             }
             if searches > MOST_SEARCHES || (fresh && end == End::Stuck) {
                 return Err(Failure::Lost);
