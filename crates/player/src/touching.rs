@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 use voxsoft_contact::touch::live::LiveTouch;
+use voxsoft_solid::Rigid;
 use voxsoft_solid::matrix::{Mat3, apply};
 use voxsoft_solid::vector::{Vec3, add, scale, sub};
-use voxsoft_solid::{Contact, Rigid};
 
 use crate::event::{Moment, Pose, Touch};
 

@@ -32,6 +32,8 @@ const DEEP: f64 = 0.05;
 const STIFFER: f64 = 4.0;
 /// How deep a step may leave a sample, in voxels: beyond [`listing::DEPTH`] its side is lost.
 const DEEPEST: f64 = 0.8 * listing::DEPTH;
+/// How often a step that is too deep is taken again, before what is too deep is let go.
+const REFUSALS: u32 = 2;
 
 /// Contact of surfaces, for live motion.
 #[derive(Debug)]
@@ -47,6 +49,10 @@ struct Run {
     near: Vec<u32>,
     /// The pressure of each sample at the end of the last step, N.
     borne: Vec<f64>,
+    /// How often in a row a step was too deep.
+    refused: u32,
+    /// How deep samples were that were let go since the start, m.
+    lost: f64,
     /// Samples and triangles that the pattern of the stiffness has.
     pattern: BTreeSet<(u32, u32)>,
 }
@@ -74,9 +80,11 @@ impl LiveTouch {
         &self.touch
     }
 
-    /// The same where it is more than contact lets it in a step.
+    /// The same where it is more than contact lets it in a step; from then on, too, where something had to be let go that
+    /// was too deep to be held.
     pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
-        Some(self.depth(positions)).filter(|depth| *depth > DEEP * self.touch.description.voxel)
+        let depth = self.depth(positions).max(self.run().lost);
+        Some(depth).filter(|depth| *depth > DEEP * self.touch.description.voxel)
     }
 
     /// How deep the deepest sample is in what it faces at `positions`, m.
@@ -218,6 +226,7 @@ impl Contact for LiveTouch {
         self.note_near(&state);
         let mut run = self.run.write().expect("no holder of the lock panics");
         run.borne = vec![0.0; self.touch.samples.len()];
+        (run.refused, run.lost) = (0, 0.0);
         run.pattern.clear();
     }
 
@@ -271,12 +280,19 @@ impl Contact for LiveTouch {
     }
 
     fn take_step(&self, positions: &[Vec3]) -> bool {
-        if self.depth(positions) > DEEPEST * self.touch.description.voxel {
-            return false;
+        let depth = self.depth(positions);
+        if depth > DEEPEST * self.touch.description.voxel {
+            let mut run = self.run.write().expect("no holder of the lock panics");
+            run.refused += 1;
+            if run.refused <= REFUSALS {
+                return false;
+            }
+            run.lost = run.lost.max(depth);
         }
         let mut state = self.touch.write();
         let mut moved = vec![Memory::default(); self.touch.samples.len()];
         let mut pressures = vec![0.0; moved.len()];
+        let deepest = DEEPEST * self.touch.description.voxel;
         let borne = std::mem::take(
             &mut self
                 .run
@@ -286,6 +302,9 @@ impl Contact for LiveTouch {
         );
         self.each_pressed(&state, positions, |meeting, pressure, point| {
             let sample = meeting.sample as usize;
+            if -meeting.gap > deepest {
+                return; // It is let go, and told of.
+            }
             pressures[sample] = pressure;
             let both = (pressure, borne[sample]);
             moved[sample] = self.remembered(&state, meeting, both, point, positions);
@@ -298,10 +317,8 @@ impl Contact for LiveTouch {
         state.looks = LOOKS;
         drop(state);
         self.set_penalty(PENALTY);
-        self.run
-            .write()
-            .expect("no holder of the lock panics")
-            .borne = pressures;
+        let mut run = self.run.write().expect("no holder of the lock panics");
+        (run.borne, run.refused) = (pressures, 0);
         true
     }
 
