@@ -238,7 +238,7 @@ fn pinched() -> (Problem, Arc<LiveTouch>) {
 }
 
 #[test]
-fn what_is_pinched_is_held_and_can_be_taken() {
+fn what_is_pinched_is_held() {
     let (problem, touch) = pinched();
     let box_of = |run: &Implicit| mean(&run.state().positions[problem.body().rest().len() - 4..]);
     let mut run = Implicit::new(problem.clone(), undamped(1.0 / 60.0));
@@ -261,18 +261,6 @@ fn what_is_pinched_is_held_and_can_be_taken() {
         .zip(&run.state().positions)
         .map(|(a, b)| norm(sub(*a, *b)));
     assert!(off.fold(0.0, f64::max) < 1e-12);
-    // A hand takes it out, upward, by a millimeter in each step.
-    let from = rigid.0.map(|vertex| run.state().positions[vertex as usize]);
-    for step in 1..=60 {
-        let way = [0.0, 0.0, 1e-3 * f64::from(step.min(30))];
-        for (vertex, place) in rigid.0.into_iter().zip(from) {
-            run.grab(vertex, vertex, add(place, way), 50.0).unwrap();
-        }
-        let look = run.advance(1);
-        assert_eq!(look.status, LiveStatus::Moving, "{look:?}");
-    }
-    assert!(box_of(&run)[2] - before[2] > 0.02);
-    assert!(touch.touch().pairs(&run.state().positions).is_empty());
 }
 
 #[test]

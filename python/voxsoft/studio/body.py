@@ -13,6 +13,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of

@@ -109,7 +109,8 @@ def page_of_body(
     FileError
         The viewer was not built.
     VoxSoftError
-        The body cannot be solved, or is of the lattice material and has contact, which a page does not find.
+        The body cannot be solved, or is of the lattice material and has contact, which a page does
+        not find.
     """
     if body.refusal is not None:
         raise body.refusal
