@@ -692,8 +692,8 @@ export interface BodyObject {
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
- * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text; `touches` tells
- * whether anything of the design may touch.
+ * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
+ * `touches` tells whether anything of the design may touch.
  */
 export interface BodyEvent {
   t: "body";
@@ -852,8 +852,8 @@ export interface Touch {
 /**
  * A frame of a solution: its time in s, the pose of each object of the body, what touches.
  *
- * `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are in
- * each other in m, where that is more than live contact should let them.
+ * `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are
+ * in each other in m, where that is more than live contact should let them.
  */
 export interface Moment {
   frame: number;

@@ -41,11 +41,14 @@ impl Touching {
     }
 }
 
+/// Vertices and weights of each point, and triangles of points.
+type SurfaceForm = (Vec<(Vec<u32>, Vec<f64>)>, Vec<[u32; 3]>);
+
 /// The same as it is laid out in bytes.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Form {
     /// Of each surface the vertices and weights of its points, and its triangles.
-    surfaces: Vec<(Vec<(Vec<u32>, Vec<f64>)>, Vec<[u32; 3]>)>,
+    surfaces: Vec<SurfaceForm>,
     friction: Vec<Vec<f64>>,
     voxel: f64,
     young: f64,
@@ -106,7 +109,7 @@ impl Form {
             .objects
             .iter()
             .all(|object| object.vertices.iter().all(known));
-        let surface = |(points, triangles): (Vec<(Vec<u32>, Vec<f64>)>, Vec<[u32; 3]>)| {
+        let surface = |(points, triangles): SurfaceForm| {
             let point = |(vertices, weights)| Carried { vertices, weights };
             let points = points.into_iter().map(point).collect();
             Surface { points, triangles }

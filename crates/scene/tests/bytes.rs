@@ -219,7 +219,7 @@ fn what_is_cut_off_or_too_long_is_reported() {
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
     // A list that says to be longer than all there is is refused once the bytes are used up.
-    let endless = b"VXSC\x03\0\0\0\xff\xff\xff\xff\x0fab";
+    let endless = b"VXSC\x04\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }
@@ -251,7 +251,7 @@ proptest! {
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = open(&bytes);
         // The same behind a good head, so that lengths and kinds are reached.
-        let _ = open(&[b"VXSC\x02\0\0\0", &bytes[..]].concat());
+        let _ = open(&[b"VXSC\x04\0\0\0", &bytes[..]].concat());
     }
 
     #[test]
