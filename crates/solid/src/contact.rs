@@ -32,4 +32,8 @@ pub trait Contact: Term {
 
     /// Forgets what happened since the last accepted state.
     fn go_back(&self);
+
+    /// Lets the multipliers of the last accepted state go on as they changed in the step to it: a start for one that is
+    /// `ratio` times as long. The answer does not depend on it.
+    fn extrapolate(&self, ratio: f64);
 }

@@ -50,6 +50,7 @@ mod ordering;
 mod path;
 mod point;
 mod settings;
+mod settle;
 mod system;
 mod transient;
 mod volume;

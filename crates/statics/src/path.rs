@@ -4,7 +4,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Observer, Problem, Progress, Status};
 
 use crate::control;
-use crate::equilibrium::{Equilibrium, Failure, Found, Way};
+use crate::equilibrium::{Equilibrium, Failure};
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::system::{FactorError, Means, System};
@@ -26,8 +26,6 @@ const GOOD_TURN: f64 = 0.5;
 const LONGEST_WITH_FRICTION: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
-/// How often the floor or contact may change their minds at one point.
-pub(crate) const ROUNDS: usize = 40;
 
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.
@@ -171,35 +169,11 @@ impl Path<'_, '_> {
         safe: bool,
     ) -> Result<(), Failure> {
         let mut positions = trial;
-        let found = self.find(&mut positions, point, settings, safe)?;
+        let found =
+            self.equilibrium
+                .settle(&mut positions, point, settings, safe, self.observer)?;
         self.accept(positions, point, found.iterations, found.residual);
         Ok(())
-    }
-
-    /// The same without going there.
-    fn find(
-        &mut self,
-        positions: &mut Vec<Vec3>,
-        point: Point,
-        settings: &Settings,
-        safe: bool,
-    ) -> Result<Found, Failure> {
-        let mut iterations = 0;
-        for round in 0..ROUNDS {
-            let way = Way::of_round(round, self.equilibrium.problem, safe);
-            let found = self
-                .equilibrium
-                .newton(positions, point, settings, way, self.observer)?;
-            iterations += found.iterations;
-            let floor_changed = self.equilibrium.update_floor(positions, point)?;
-            if !floor_changed && self.equilibrium.is_contact_settled(positions) {
-                return Ok(Found {
-                    iterations,
-                    residual: found.residual,
-                });
-            }
-        }
-        Err(Failure::Lost)
     }
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
@@ -257,6 +231,7 @@ impl Path<'_, '_> {
         };
         let mut step = step.min(longest);
         let mut cuts = 0;
+        let mut last = f64::INFINITY;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let now = self.point.pressure;
@@ -267,7 +242,11 @@ impl Path<'_, '_> {
             };
             let point = Point::all(next);
             let mut trial = self.positions.clone();
-            let found = self.find(&mut trial, point, settings, step <= SAFE_STEP);
+            contact.inspect(|contact| contact.extrapolate((next - now) / last));
+            let safe = step <= SAFE_STEP;
+            let found = self
+                .equilibrium
+                .settle(&mut trial, point, settings, safe, self.observer);
             let failure = match found {
                 Ok(found) => {
                     let stable = self.equilibrium.is_stable(&trial, point);
@@ -276,6 +255,7 @@ impl Path<'_, '_> {
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
                         }
+                        last = next - now;
                         if next == 1.0 {
                             return Ending::new(Status::AtRest, None, 1.0);
                         }

@@ -8,7 +8,8 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 use super::gap::{self, normal};
 use super::state::{Facing, Memory, State};
 use super::{
-    APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED, Touch, listing,
+    APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED,
+    Touch, listing,
 };
 use crate::threads;
 
@@ -16,6 +17,8 @@ use crate::threads;
 /// triangles, and an iteration that goes astray by any.
 const WASTE: usize = 2;
 const MANY: usize = 100;
+/// How far multipliers are taken to go on as they did, in steps.
+const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
 impl Contact for Touch {
     fn start(&self, positions: &[Vec3]) {
@@ -27,6 +30,7 @@ impl Contact for Touch {
             accepted_points: points.clone(),
             accepted_samples: samples,
             accepted: nothing.clone(),
+            before: nothing.clone(),
             now: nothing,
             stick: STICK[0],
             crept: f64::INFINITY,
@@ -82,8 +86,6 @@ impl Contact for Touch {
         });
         state.corrections += 1;
         let patient = state.corrections <= PATIENCE;
-        let bounds = now.iter().chain(&state.now).map(|memory| memory.bound);
-        let known = BOUND[usize::from(!patient)] * bounds.fold(negligible, f64::max);
         let mut largest = self.off_bounds(&state.now, &now, negligible);
         let mut farthest = 0.0f64;
         for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
@@ -94,10 +96,6 @@ impl Contact for Touch {
             let pressed = (new.normal - old.normal) / unit;
             let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
             largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
-            let bound = (new.bound - old.bound).abs();
-            if bound > 0.0 {
-                largest = largest.max(bound / known);
-            }
             farthest = farthest.max(crept / CREEP);
         }
         largest = largest.max(farthest);
@@ -139,7 +137,7 @@ impl Contact for Touch {
         let points = self.points_at(positions);
         state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         state.accepted_points.clone_from(&points);
-        state.accepted.clone_from(&moved);
+        state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
         (state.crept, state.corrections) = (f64::INFINITY, 0);
         self.list_from_accepted(&mut state, points);
@@ -151,6 +149,32 @@ impl Contact for Touch {
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
         self.list_from_accepted(&mut state, points);
+    }
+
+    fn extrapolate(&self, ratio: f64) {
+        let mut state = self.write();
+        let ratio = ratio.min(LONGEST_EXTRAPOLATION);
+        let State {
+            now,
+            accepted,
+            before,
+            ..
+        } = &mut *state;
+        for (now, (last, before)) in now.iter_mut().zip(accepted.iter().zip(before)) {
+            if !(last.normal > 0.0 && before.normal > 0.0) {
+                continue;
+            }
+            let on = |last: f64, before: f64| last + ratio * (last - before);
+            now.normal = on(last.normal, before.normal).max(0.0);
+            now.bound = on(last.bound, before.bound).max(0.0);
+            let friction = [0, 1, 2].map(|i| on(last.friction[i], before.friction[i]));
+            let most = now.bound / norm(friction).max(now.bound);
+            now.friction = if most.is_finite() {
+                scale(most, friction)
+            } else {
+                [0.0; 3]
+            };
+        }
     }
 }
 
@@ -183,28 +207,50 @@ impl Touch {
         farthest.fold(0.0, f64::max) / self.description.voxel
     }
 
-    /// How far the sum of the bounds of friction between two surfaces is off, as a part of what it may.
+    /// How far the bounds of friction are off, as a part of what they may: as vertices feel them, and summed over two
+    /// surfaces.
+    ///
+    /// Surfaces that do not fit share a pressure among their samples in many ways, between which multipliers decide slowly
+    /// and nothing moves: there are more samples than vertices that carry them. So single bounds do not count.
     fn off_bounds(&self, old: &[Memory], new: &[Memory], negligible: f64) -> f64 {
-        let mut sums: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
-        for (sample, (old, new)) in self.samples.iter().zip(old.iter().zip(new)) {
-            let Some((triangle, _)) = new.anchor else {
+        let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
+        let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for (index, (old, new)) in old.iter().zip(new).enumerate() {
+            let Some((triangle, weights)) = new.anchor else {
                 continue;
             };
-            let mut pair = [sample.surface, self.surface_of[triangle as usize]];
+            let change = new.bound - old.bound;
+            let mut pair = [
+                self.samples[index].surface,
+                self.surface_of[triangle as usize],
+            ];
             pair.sort_unstable();
-            let [change, size] = sums.entry(pair).or_default();
-            *change += new.bound - old.bound;
-            *size += new.bound;
-        }
-        let part = |[change, size]: &[f64; 2]| {
-            let off = change.abs();
-            if off > 0.0 {
-                off / (BOUND[0] * size.max(negligible))
-            } else {
-                0.0
+            let entry = pairs.entry(pair).or_default();
+            entry[0] += change;
+            entry[1] += new.bound;
+            let corners = self.triangles[triangle as usize].into_iter().zip(weights);
+            for (point, part) in corners.chain([(index as u32, 1.0)]) {
+                let Carried {
+                    vertices: carriers,
+                    weights,
+                } = self.share(point);
+                for (vertex, weight) in carriers.iter().zip(weights) {
+                    let entry = vertices.entry(*vertex).or_default();
+                    entry[0] += part * weight * change;
+                    entry[1] += part * weight * new.bound;
+                }
             }
-        };
-        sums.values().map(part).fold(0.0, f64::max)
+        }
+        let largest = vertices
+            .values()
+            .map(|[_, size]| *size)
+            .fold(negligible, f64::max);
+        let of_vertices = vertices.values().map(|[change, _]| change.abs() / largest);
+        let of_pairs = pairs
+            .values()
+            .map(|[change, size]| change.abs() / size.max(negligible));
+        let off = of_vertices.chain(of_pairs).fold(0.0, f64::max);
+        if off > 0.0 { off / BOUND } else { 0.0 }
     }
 
     /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its

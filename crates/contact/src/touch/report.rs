@@ -6,10 +6,8 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
 use super::gap::normal;
 use super::state::State;
-use super::{Meeting, Touch};
+use super::{Meeting, NEARLY, Touch};
 
-/// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
-const NEARLY: f64 = 0.95;
 /// How near what is not pressed itself must be to count as touching between points that are, in voxels: facets of a
 /// ball of four voxels radius are a thirtieth of a voxel apart from it.
 const NEAR: f64 = 0.05;

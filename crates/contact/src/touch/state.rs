@@ -38,6 +38,8 @@ pub(super) struct State {
     pub accepted_samples: Vec<Vec3>,
     /// What they carried.
     pub accepted: Vec<Memory>,
+    /// What they carried at the accepted state before that.
+    pub before: Vec<Memory>,
     /// What they carry now.
     pub now: Vec<Memory>,
     /// The points when candidates were listed last.

@@ -1,0 +1,68 @@
+//! Equilibria in which the floor and contact have settled.
+
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Contact, Observer, Problem};
+
+use crate::equilibrium::{Equilibrium, Failure, Found, Way};
+use crate::point::Point;
+use crate::settings::Settings;
+
+/// How often the floor or contact may change their minds at one point.
+const ROUNDS: usize = 40;
+/// How good an equilibrium must be for contact to be corrected by it. What is left is below what corrections change; at
+/// the end they are checked at the tolerance that was asked for.
+const LOOSE: f64 = 1e-3;
+
+impl Equilibrium<'_> {
+    /// Finds the equilibrium at `point` from `positions`, which it changes, with floor and contact settled.
+    pub fn settle(
+        &mut self,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        safe: bool,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let mut iterations = 0;
+        let mut loose = self.problem.contact().is_some();
+        for round in 0..ROUNDS {
+            let tolerance = if loose {
+                settings.tolerance.max(LOOSE)
+            } else {
+                settings.tolerance
+            };
+            let settings = Settings {
+                tolerance,
+                ..*settings
+            };
+            let way = way_of(round, self.problem, safe);
+            let found = self.newton(positions, point, &settings, way, observer)?;
+            iterations += found.iterations;
+            let floor_changed = self.update_floor(positions, point)?;
+            let settled = !floor_changed && self.is_contact_settled(positions);
+            if settled && !loose {
+                return Ok(Found {
+                    iterations,
+                    residual: found.residual,
+                });
+            }
+            loose &= !settled;
+        }
+        Err(Failure::Lost)
+    }
+
+    /// Corrects the forces of contact by an equilibrium; whether they have settled.
+    fn is_contact_settled(&self, positions: &[Vec3]) -> bool {
+        let settled = |contact: &dyn Contact| contact.correct(positions, self.negligible) <= 1.0;
+        self.problem.contact().is_none_or(settled)
+    }
+}
+
+/// How Newton's method goes in a round, the first of which has number 0.
+fn way_of(round: usize, problem: &Problem, safe: bool) -> Way {
+    match (problem.contact(), safe) {
+        (Some(_), _) if round > 0 => Way::Again,
+        (_, true) => Way::Safe,
+        (_, false) => Way::Quick,
+    }
+}
