@@ -101,8 +101,6 @@ pub(crate) struct Equilibrium<'a> {
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
 pub(crate) const PATIENCE: u32 = 8;
-/// The same with contact: what friction lets go sends such iterations astray, and they do not come back.
-const PATIENCE_WITH_CONTACT: u32 = 3;
 /// How far a vertex may move in an iteration, in sizes of the body; beyond it that is lost.
 const FARTHEST: f64 = 20.0;
 /// The same with contact. What may meet on such a way would be listed, and is of no use.
@@ -286,9 +284,9 @@ impl<'a> Equilibrium<'a> {
         let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
-        let (patience, farthest) = match self.problem.contact() {
-            Some(_) => (PATIENCE_WITH_CONTACT, FARTHEST_WITH_CONTACT),
-            None => (PATIENCE, FARTHEST),
+        let farthest = match self.problem.contact() {
+            Some(_) => FARTHEST_WITH_CONTACT,
+            None => FARTHEST,
         };
         for iteration in 0..=MIXED_ITERATIONS {
             self.follow_contact(positions)?;
@@ -310,7 +308,7 @@ impl<'a> Equilibrium<'a> {
                     (lowest, since_lowest) = (relative, 0);
                 }
             }
-            if since_lowest > patience {
+            if since_lowest > PATIENCE {
                 return Err(Failure::Lost);
             }
             self.iterations += 1;
