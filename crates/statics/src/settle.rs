@@ -9,9 +9,10 @@ use crate::settings::Settings;
 
 /// How often the floor or contact may change their minds at one point.
 const ROUNDS: usize = 40;
-/// How good an equilibrium must be for contact to be corrected by it. What is left is below what corrections change; at
-/// the end they are checked at the tolerance that was asked for.
+/// How good an equilibrium must be for contact to be corrected by it, and how much of what the last correction has changed
+/// may be left; at the end corrections are checked at the tolerance that was asked for.
 const LOOSE: f64 = 1e-3;
+const LEFT: f64 = 0.05;
 
 impl Equilibrium<'_> {
     /// Finds the equilibrium at `point` from `positions`, which it changes, with floor and contact settled.
@@ -27,7 +28,8 @@ impl Equilibrium<'_> {
         let mut loose = self.problem.contact().is_some();
         for round in 0..ROUNDS {
             let tolerance = if loose {
-                settings.tolerance.max(LOOSE)
+                let changed = self.forces(positions, point).relative();
+                settings.tolerance.max(LOOSE.min(LEFT * changed))
             } else {
                 settings.tolerance
             };

@@ -70,11 +70,12 @@ const DEEPEST: f64 = 0.9 * CLEARANCE;
 /// different voxels do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
 const CREEP: f64 = 1e-4;
-/// By how much bounds of friction may be off, of the largest one that a vertex feels.
-const BOUND: f64 = 3e-3;
+/// By how much bounds of friction may be off, of the largest one that a vertex feels: at first, and after [`PATIENCE`]
+/// corrections, as long as the sum of the bounds on each surface is that good.
+const BOUND: [f64; 2] = [3e-3, 0.05];
 /// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
 const NEARLY: f64 = 0.95;
-/// Corrections at one load after which samples keep what they face.
+/// Corrections at one load after which samples keep what they face, and bounds may be off by more.
 const PATIENCE: u32 = 10;
 
 /// Who touches whom, and how.

@@ -86,7 +86,8 @@ impl Contact for Touch {
         });
         state.corrections += 1;
         let patient = state.corrections <= PATIENCE;
-        let mut largest = self.off_bounds(&state.now, &now, negligible);
+        let mut largest =
+            self.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
         let mut farthest = 0.0f64;
         for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
             if old == new {
@@ -207,12 +208,12 @@ impl Touch {
         farthest.fold(0.0, f64::max) / self.description.voxel
     }
 
-    /// How far the bounds of friction are off, as a part of what they may: as vertices feel them, and summed over two
-    /// surfaces.
+    /// How far the bounds of friction are off, as a part of what they may: as vertices feel them, which may be `off_vertex`,
+    /// and summed over two surfaces.
     ///
     /// Surfaces that do not fit share a pressure among their samples in many ways, between which multipliers decide slowly
     /// and nothing moves: there are more samples than vertices that carry them. So single bounds do not count.
-    fn off_bounds(&self, old: &[Memory], new: &[Memory], negligible: f64) -> f64 {
+    fn off_bounds(&self, old: &[Memory], new: &[Memory], off_vertex: f64, negligible: f64) -> f64 {
         let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
         let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
         for (index, (old, new)) in old.iter().zip(new).enumerate() {
@@ -245,12 +246,14 @@ impl Touch {
             .values()
             .map(|[_, size]| *size)
             .fold(negligible, f64::max);
-        let of_vertices = vertices.values().map(|[change, _]| change.abs() / largest);
+        let of_vertices = vertices
+            .values()
+            .map(|[change, _]| change.abs() / (off_vertex * largest));
         let of_pairs = pairs
             .values()
-            .map(|[change, size]| change.abs() / size.max(negligible));
-        let off = of_vertices.chain(of_pairs).fold(0.0, f64::max);
-        if off > 0.0 { off / BOUND } else { 0.0 }
+            .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
+        // Where nothing is bounded, 0/0 counts as nothing.
+        of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
     /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
