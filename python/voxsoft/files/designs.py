@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import with_absolute_paths
+from voxsoft.design.included import placed_document
 from voxsoft.errors import DesignError, ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.toml_text import line_of
@@ -63,8 +63,8 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     document = read_document(text, Path(path).name)
     _refuse_card(document, path)
     try:
-        changed = with_absolute_paths(set_values(document, assignments), Path(path).parent)
-        return Design.from_document(changed, parameters)
+        changed = set_values(document, assignments)
+        return Design.from_document(placed_document(changed, Path(path).parent), parameters)
     except DesignError as error:
         raise type(error).listing(_with_lines(error.problems, text, Path(path).name)) from None
 
