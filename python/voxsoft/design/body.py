@@ -116,7 +116,20 @@ class Body(Record):
     """
 
     model_config = ConfigDict(
-        json_schema_extra={"examples": [{"name": "left", "design": "finger.toml"}]}
+        json_schema_extra={
+            "examples": [
+                {
+                    "name": "block",
+                    "parts": [
+                        {
+                            "shape": {"kind": "box", "size": ["20 mm", "20 mm", "20 mm"]},
+                            "material": "ecoflex-00-30",
+                        }
+                    ],
+                    "position": ["50 mm", 0, 0],
+                }
+            ]
+        }
     )
 
     name: Name
