@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from voxsoft.design.documents import included_files, with_absolute_paths
 from voxsoft.design.resolution import Document
 from voxsoft.errors import DesignError, ErrorDetail, VoxSoftError
-from voxsoft.records import place
+from voxsoft.records import place, steps_of
 
 if TYPE_CHECKING:
     from voxsoft.design.model import Design
@@ -150,10 +150,11 @@ def _at(
     """The same problems at a key of the body; those of a value at that value."""
     problems = []
     for problem in error.problems:
-        if known is not None and problem.where.removeprefix("parameters.") in known:
-            where = f"{key}.{problem.where.removeprefix('parameters.')}"
+        steps = [str(step) for step in steps_of(problem.where)]
+        value = next((step for step in steps[:2] if step in (known or ())), None)
+        if value is not None:
             what = problem.what.replace("of this design", f'of "{name}"')
-            problems.append(ErrorDetail(where, what, problem.hint))
+            problems.append(ErrorDetail(f"{key}.{value}", what, problem.hint))
         else:
             inner = f"{name}: {problem.where}: " if problem.where else f"{name}: "
             problems.append(ErrorDetail(key, f"{inner}{problem.what}", problem.hint))
