@@ -1,4 +1,4 @@
-"""Several bodies in one design: what is read, gathered, refused and told."""
+"""Several bodies in one design: what is read, gathered, refused and reported."""
 
 import json
 import shutil
@@ -14,6 +14,8 @@ from voxsoft.files import load
 from voxsoft.jobs import RunSpec, again, run_job
 from voxsoft.jobs.source import DesignSource
 from voxsoft.simulation.setup import Setup
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.smooth import pack_smooth
 from voxsoft.units import kPa, mm
 
 FINGER = """
@@ -140,7 +142,7 @@ def test_bad_bodies(folder, replaced, where, words):
         assert any(word in problem for problem in found), found
 
 
-def test_designs_in_a_circle_are_told_with_the_way_round(folder):
+def test_designs_in_a_circle_show_the_way_round(folder):
     for name, other in (("one", "two"), ("two", "three"), ("three", "one")):
         text = f'name = "{name}"\nvoxel_size = "2 mm"\n'
         text += f'[[bodies]]\nname = "x"\ndesign = "{other}.toml"\n'
@@ -157,7 +159,7 @@ def test_a_link_does_not_lead_out_of_the_folder(folder, tmp_path_factory):
         hand(folder, design='design = "link.toml"')
 
 
-def test_what_is_wrong_in_an_inner_file_is_told_with_its_name(folder):
+def test_what_is_wrong_in_an_inner_file_has_its_name(folder):
     (folder / "finger.toml").write_text(FINGER.replace('"soft"', '"sotf"', 1))
     with pytest.raises(DesignError, match=r'finger\.toml: parts\[0\]\.material.*"sotf".*"soft"'):
         load(folder / "hand.toml")
@@ -251,7 +253,7 @@ def test_a_region_is_of_one_body_or_of_all():
         setup.vertices_in(Region(body="high", z=(6 * mm, 7 * mm)), "here")
 
 
-def test_overlap_at_rest_is_told_with_depth_and_place():
+def test_overlap_at_rest_has_depth_and_place():
     design = own_parts(clamps=[{"region": {"z": ("-inf", "inf")}}])
     assert vs.check(design).valid
     bodies = [design.bodies[0], design.bodies[1].replace(position=(0, 0, 3 * mm))]
@@ -265,7 +267,7 @@ def test_overlap_at_rest_is_told_with_depth_and_place():
     assert vs.check(apart).valid
 
 
-def test_check_tells_each_body_and_what_is_left_out(folder):
+def test_check_lists_each_body_and_what_is_left_out(folder):
     report = vs.check(load(folder / "hand.toml"))
     assert report.valid, report
     cells = 12 * 4 * 4 - 8 * 2 * 2, 20 * 8 * 8 - 12 * 4 * 4
@@ -276,16 +278,18 @@ def test_check_tells_each_body_and_what_is_left_out(folder):
     floor = FINGER + '[floor]\nz = "-10 mm"\n[[loads]]\nkind = "gravity"\n'
     (folder / "finger.toml").write_text(floor)
     findings = vs.check(load(folder / "hand.toml")).findings
-    told = [f.what for f in findings if f.where == "bodies[0].design"]
-    assert ["floor" in what or "gravity" in what for what in told] == [True, True]
+    left = [f.what for f in findings if f.where == "bodies[0].design"]
+    assert ["floor" in what or "gravity" in what for what in left] == [True, True]
     say = '[[loads]]\nkind = "gravity"\nvalue = "1 m/s^2"\n[floor]\nz = "-20 mm"\n'
     assert not hand(folder, say).assembled.left_out
 
 
-def test_what_is_wrong_with_an_inner_clamp_is_told_where_it_stands(folder):
+def test_what_is_wrong_with_an_inner_clamp_has_its_place(folder):
     (folder / "finger.toml").write_text(FINGER.replace("x = [0, 0]", 'x = ["-9 mm", "-8 mm"]', 1))
     errors = [f for f in vs.check(load(folder / "hand.toml")).findings if f.severity == "error"]
     assert errors[0].where == "bodies[0].design: clamps[0].region"
+    with pytest.raises(DesignError, match=r"^bodies\[0\]\.design: clamps\[0\]\.region: touches"):
+        vs.simulate(load(folder / "hand.toml"))
 
 
 def test_cavities_of_bodies(folder):
@@ -377,10 +381,11 @@ def test_a_job_copies_nothing_from_outside_the_folder(folder, tmp_path):
 
 def test_contact_of_bodies_by_name(folder):
     """Two blocks, one pressed on the other; forces by pair, on the first, and metrics of each."""
+    press = {"displacement": (0, 0, -0.2 * mm)}
     design = own_parts(
         clamps=[
             {"region": {"body": "low", "z": (0, 0)}},
-            {"region": {"body": "high", "z": (4 * mm, 4 * mm)}, "motion": {"displacement": (0, 0, -0.2 * mm)}},
+            {"region": {"body": "high", "z": (4 * mm, 4 * mm)}, "motion": press},
         ],
         objectives={"force": {"maximize": "contact_force", "object": "low", "axis": "z"}},
         constraints={
@@ -405,12 +410,33 @@ def test_contact_of_bodies_by_name(folder):
         assert force == pytest.approx(contact.pressed, rel=0.02)
 
 
+def test_the_studio_draws_all_bodies(folder):
+    design = load(folder / "hand.toml")
+    body = StudioBody.of(design, 1, 1)
+    assert body.refusal is None
+    event = body.event(body.report())
+    assert event.voxels == sum(event_count(design))
+    assert [part.name for part in event.parts] == ["left.body", "right.body"]
+    assert [cavity.name for cavity in event.cavities] == [c.name for c in body.mesh.cavities]
+    assert event.not_live
+    # Of a square face only its sides are drawn, also where it is turned: two triangles have four
+    # sides, each of two faces, and one diagonal.
+    faces = len(body.mesh.triangles) / 2
+    assert len(body.surface.outline.edges) == pytest.approx(2 * faces, abs=0.5)
+    smooth = pack_smooth(design, body.voxels, 1)
+    assert smooth is not None
+
+
+def event_count(design):
+    return [len(body.mesh.tets) // 5 for body in mesh_of(design).bodies]
+
+
 @pytest.mark.parametrize(
     ("does", "who"),
     [
-        (lambda design: vs.compare(design), "comparisons"),
-        (lambda design: vs.gradient(vs.simulate(design), "max_stress", "loads.0.value"), "gradients"),
-        (lambda design: design.show(), "exported pages"),
+        (vs.compare, "comparisons"),
+        (lambda one: vs.gradient(vs.simulate(one), "max_stress", "loads.0.value"), "gradients"),
+        (Design.show, "exported pages"),
     ],
 )  # fmt: skip
 def test_what_knows_one_body_refuses_several(does, who):

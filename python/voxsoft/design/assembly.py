@@ -17,7 +17,7 @@ from voxsoft.design.layer import Layer
 from voxsoft.design.part import Part
 from voxsoft.design.references import operand_names
 from voxsoft.design.region import Region
-from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft.errors import DesignError, ErrorDetail, VoxSoftError
 from voxsoft.records import Record
 from voxsoft.shapes import Shape
 
@@ -171,6 +171,16 @@ def _names_in(shape: str | Shape) -> list[str]:
     if isinstance(shape, str):
         return [shape]
     return [name for _, name in operand_names(shape, ())]
+
+
+def with_origins(error: VoxSoftError, design: Design) -> VoxSoftError:
+    """An error about an assembled design with places as its files have them."""
+    whole = design.assembled
+    if all(whole.origin_of(each.where) == each.where for each in error.problems):
+        return error
+    return type(error).listing(
+        ErrorDetail(whole.origin_of(each.where), each.what, each.hint) for each in error.problems
+    )
 
 
 def voxel_size_of(design: Design, part: Part) -> float:

@@ -13,10 +13,17 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft._memory import shortage
 from voxsoft.design import Design, Probe, Region
+from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
 from voxsoft.design.discretize import mesh_of
 from voxsoft.design.joined import edge_directions
-from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
+from voxsoft.errors import (
+    DesignError,
+    DisconnectedError,
+    NoCavityError,
+    SimulationError,
+    VoxSoftError,
+)
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.metrics import Place
@@ -99,6 +106,13 @@ class Setup:
         SimulationError
             The problem does not fit in the memory.
         """
+        try:
+            return cls._checked(design.assembled, allow_loose, refine)
+        except VoxSoftError as error:
+            raise with_origins(error, design) from None
+
+    @classmethod
+    def _checked(cls, design: Design, allow_loose: bool | None, refine: int | None) -> Setup:
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
         voxels = len(setup.mesh.tets) // 5
         if short := shortage(voxels * BYTES_PER_VOXEL):
