@@ -60,7 +60,8 @@ def dangling_references(
             probe = entry_of(target, "probe")
             if isinstance(probe, str) and probe not in probes and (included or "." not in probe):
                 yield _unknown((table, key, "probe"), "probe", probe, probes)
-    yield from _objects(document, known)
+    if included is not None or not document.get("bodies"):
+        yield from _objects(document, known)
     if included is not None:
         yield from _bodies(document, included)
 
