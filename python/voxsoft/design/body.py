@@ -111,8 +111,8 @@ class Body(Record):
     ...     for angle in (0, 120, 240)
     ... ]
     >>> star = Design(name="star", voxel_size=5 * mm, bodies=around)
-    >>> [*star.assembled.probes]
-    ['beam 0.tip', 'beam 120.tip', 'beam 240.tip']
+    >>> [name for name in star.assembled.probes if name.endswith("9")]
+    ['beam 0.station-9', 'beam 120.station-9', 'beam 240.station-9']
     """
 
     model_config = ConfigDict(
