@@ -346,6 +346,18 @@ def test_the_hash_covers_what_inner_files_say(folder):
     assert load(folder / "hand.toml").hash == before
 
 
+def test_what_is_saved_elsewhere_holds_its_inner_designs(folder, tmp_path_factory):
+    design, elsewhere = load(folder / "hand.toml"), tmp_path_factory.mktemp("elsewhere")
+    design.save(folder / "copy.toml")
+    assert load(folder / "copy.toml") == design
+    design.save(elsewhere / "copy.toml")
+    for file in (folder / "finger.toml", folder / "parts" / "finger.toml"):
+        file.unlink()
+    moved = load(elsewhere / "copy.toml")
+    assert moved.hash == design.hash
+    assert moved.with_parameters(length="28 mm").assembled.shapes["left.bar"].size[0] == 28 * mm
+
+
 def test_a_job_takes_all_files_along(folder, tmp_path):
     deep = HAND.replace('"finger.toml"', '"parts/pair.toml"').replace(
         'set = { long = "= length" }', ""

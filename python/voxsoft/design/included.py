@@ -87,13 +87,18 @@ def refuse_outside(document: Mapping[str, Any], folder: Path) -> None:
         raise DesignError.listing(problems)
 
 
+def is_outside(path: str, folder: Path) -> bool:
+    """Whether a path, as seen from a folder, leads out of it, also by a link."""
+    return not Path(folder, path).resolve().is_relative_to(folder.resolve())
+
+
 def _outside(document: Mapping[str, Any], folder: Path) -> Iterator[ErrorDetail]:
     """Find design files that a document names and that are not in its folder.
 
     A design that came from a stranger reads nothing that did not come with it.
     """
     for steps, path in included_files(document):
-        if not Path(folder, path).resolve().is_relative_to(folder.resolve()):
+        if is_outside(path, folder):
             what = f'"{path}" is outside of the folder of the design'
             hint = "copy the file beside the design, and name it there"
             yield ErrorDetail(place(steps), what, hint)
