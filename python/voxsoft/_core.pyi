@@ -243,7 +243,10 @@ class ProblemParts:
         voxel_size: float,
         refine: int,
         skin: Skin | None = None,
+        first: int = 0,
+        count: int | None = None,
     ) -> None: ...
+    def axes(self, axes: NDArray[np.float64]) -> None: ...
     def object(
         self,
         points: NDArray[np.float64],

@@ -258,6 +258,7 @@ impl TryFrom<Mesh> for solid::Mesh {
             membranes: membranes?,
             attachments: form.attachments,
             point_masses: Vec::new(),
+            block_axes: Vec::new(),
             vertices: form.vertices,
             tets: form.tets,
             tet_part: form.tet_part,

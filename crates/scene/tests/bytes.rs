@@ -48,6 +48,7 @@ fn full() -> Scene {
             stiffness: 4.0,
         }]))],
         point_masses: vec![],
+        block_axes: vec![],
     };
     let fiber = Fiber {
         direction: [0.0, 0.6, 0.8],

@@ -24,7 +24,8 @@ class ContactPair(Record):
     Parameters
     ----------
     of
-        Names of objects, ``"body"`` or ``"floor"``; the body twice for contact with itself.
+        Names of objects, ``"body"`` or ``"floor"``; the body twice for contact with itself. In a
+        design of several bodies these have their own names.
     friction
         Coulomb's coefficient; default: that of :class:`Contact`.
     kind
@@ -42,7 +43,7 @@ class ContactPair(Record):
 
 
 class Contact(Record):
-    """What touches: by default the body with itself, and all objects with it and with each other.
+    """What touches: by default bodies with themselves, each other and all objects, and those too.
 
     Parameters
     ----------
@@ -58,9 +59,9 @@ class Contact(Record):
     -----
     Voxels that are cut into smaller ones (``refine``) touch with their faces.
 
-    A design has contact where it has this table or objects. It is found in equilibrium, with
-    ``method = "statics"`` and ``control = "load"``, and over time, with ``method = "dynamics"``.
-    Its floor is one of the objects then, with the friction of all.
+    A design has contact where it has this table, objects or several bodies. It is found in
+    equilibrium, with ``method = "statics"`` and ``control = "load"``, and over time, with
+    ``method = "dynamics"``. Its floor is one of the objects then, with the friction of all.
 
     Examples
     --------
@@ -73,8 +74,10 @@ class Contact(Record):
     pairs: tuple[ContactPair, ...] = ()
     surface: Literal["smooth", "voxels"] = "smooth"
 
-    def table(self, objects: Sequence[Object], floor: bool = False) -> list[list[float]]:
-        """The friction of the body, the objects and a floor with each other.
+    def table(
+        self, objects: Sequence[Object], floor: bool = False, bodies: Sequence[str] = (BODY,)
+    ) -> list[list[float]]:
+        """The friction of the bodies, the objects and a floor with each other.
 
         NaN stands where they do not touch: two things that are held or moved do not.
 
@@ -84,12 +87,16 @@ class Contact(Record):
         >>> Contact(friction=0.5).table([plate])
         [[0.5, 0.5], [0.5, nan]]
         """
-        names = names_of(objects, floor)
-        moves = [True, *(each.is_free for each in objects), *([False] if floor else [])]
+        names = names_of(objects, floor, bodies)
+        moves = [
+            *(True for _ in bodies),
+            *(each.is_free for each in objects),
+            *([False] if floor else []),
+        ]
         none = float("nan")
         table = [
             [
-                self.friction if (moves[a] or moves[b]) and (a != b or a == 0) else none
+                self.friction if (moves[a] or moves[b]) and (a != b or a < len(bodies)) else none
                 for b in range(len(names))
             ]
             for a in range(len(names))
@@ -101,31 +108,35 @@ class Contact(Record):
         return table
 
 
-def names_of(objects: Sequence[Object], floor: bool) -> list[str]:
-    """What touches: the body, the objects, and a floor if there is one."""
-    return [BODY, *(each.name for each in objects), *([FLOOR] if floor else [])]
+def names_of(objects: Sequence[Object], floor: bool, bodies: Sequence[str] = (BODY,)) -> list[str]:
+    """What touches: the bodies, the objects, and a floor if there is one."""
+    return [*bodies, *(each.name for each in objects), *([FLOOR] if floor else [])]
 
 
 def contact_problems(
-    objects: Sequence[Object], contact: Contact | None, floor: bool
+    objects: Sequence[Object],
+    contact: Contact | None,
+    floor: bool,
+    bodies: Sequence[str] = (BODY,),
 ) -> Iterator[ErrorDetail]:
     """Find names that are there twice or not at all, and pairs that cannot be."""
     names = [each.name for each in objects]
     for index, name in enumerate(names):
-        if name in (BODY, FLOOR) or name in names[:index]:
+        if name in (BODY, FLOOR, *bodies) or name in names[:index]:
             what = f'the name "{name}" is taken'
             yield ErrorDetail(f"objects[{index}].name", what, "give it another name")
-    known = names_of(objects, floor)
-    free = {BODY, *(each.name for each in objects if each.is_free)}
+    known = names_of(objects, floor, bodies)
+    some = bodies[0]
+    free = {*bodies, *(each.name for each in objects if each.is_free)}
     for index, pair in enumerate(contact.pairs if contact else ()):
         where = f"contact.pairs[{index}].of"
         for name in pair.of:
             if name not in known:
-                hint = closest(name, known) or f'write "{BODY}" or the name of an object'
+                hint = closest(name, known) or f'write "{some}" or the name of an object'
                 yield ErrorDetail(where, f'there is no object "{name}"', hint)
         if pair.kind == "touching" and free.isdisjoint(pair.of):
             what = "are held or moved, both of them, and do not touch each other"
-            yield ErrorDetail(where, what, f'name "{BODY}" or an object that is free')
-        elif pair.kind == "touching" and pair.of[0] == pair.of[1] != BODY:
+            yield ErrorDetail(where, what, f'name "{some}" or an object that is free')
+        elif pair.kind == "touching" and pair.of[0] == pair.of[1] and pair.of[0] not in bodies:
             what = "is rigid, and does not touch itself"
-            yield ErrorDetail(where, what, f'name "{BODY}" twice, or two things')
+            yield ErrorDetail(where, what, f'name "{some}" twice, or two things')

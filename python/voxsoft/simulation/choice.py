@@ -94,6 +94,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     >>> kind_of(families.beam(), Solver(end_time="1 s")).title
     'dynamics to an end time'
     """
+    design = design.assembled
     given = set(given_settings(solver))
     timed = DynamicsToEnd if solver.is_timed else DynamicsToRest
     controlled = _CONTROLS[solver.control or "load"]

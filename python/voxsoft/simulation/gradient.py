@@ -26,7 +26,7 @@ from voxsoft.simulation.motion import held_axes, held_positions
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import refuse_contact
+from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.units import format_percent
 
 Floats = NDArray[np.float64]
@@ -100,6 +100,7 @@ def gradient(
     """
     _check_state(result)
     refuse_contact(result.design, "gradients")
+    refuse_bodies(result.design, "gradients")
     chosen = _targets(result.design, targets)
     names = [parameters] if isinstance(parameters, str) else list(parameters)
     setup = Setup(result.design, result.mesh)

@@ -86,7 +86,7 @@ def simulate(
     >>> result.status
     'ok'
     """
-    given = design.design if isinstance(design, Setup) else require_design(design)
+    given = design.design if isinstance(design, Setup) else require_design(design).assembled
     if record_interval is not None:
         record_interval = si_value(record_interval, "time", "record_interval", positive=True)
     solver = _settings(given.solver, settings)
@@ -97,7 +97,7 @@ def simulate(
         _check_refinement(setup, settings)
     else:
         loose = not method.to_rest or may_lie(given, method)
-        setup = Setup.of(design, allow_loose=loose, refine=solver.refine)
+        setup = Setup.of(given, allow_loose=loose, refine=solver.refine)
     started = time.perf_counter()
     used, report = method.solve(setup, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
@@ -148,7 +148,8 @@ def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
 
 def refinement(setup: Setup) -> int:
     """Into how many along each axis the voxels of a setup's design were cut."""
-    return max(1, round(setup.design.voxel_size / voxel_size(setup.mesh)))
+    first = setup.mesh.each_body[0]
+    return max(1, round(setup.design.alone(first.name).voxel_size / voxel_size(first.mesh)))
 
 
 def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:

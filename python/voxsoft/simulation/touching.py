@@ -39,7 +39,7 @@ class ContactState:
     Attributes
     ----------
     of
-        The body and an object, or the body twice.
+        The body and an object, or the body twice; two bodies where there are several.
     force
         On the first [N]; zero for the body with itself.
     pressed
@@ -96,14 +96,15 @@ class Pose:
 
 def has_contact(design: Design) -> bool:
     """Whether anything of a design may touch."""
-    return design.contact is not None or bool(design.objects)
+    return design.contact is not None or bool(design.objects) or len(design.body_names) > 1
 
 
 def keeps_apart(design: Design) -> bool:
-    """Whether contact keeps the body out of itself."""
-    contact = design.contact or Contact()
-    itself = contact.table(design.objects, design.floor is not None)[0][0]
-    return has_contact(design) and not math.isnan(itself)
+    """Whether contact keeps bodies out of themselves and each other."""
+    contact, bodies = design.contact or Contact(), design.body_names
+    table = contact.table(design.objects, design.floor is not None, bodies)
+    own = [entry for row in table[: len(bodies)] for entry in row[: len(bodies)]]
+    return has_contact(design) and not any(math.isnan(entry) for entry in own)
 
 
 def refuse_contact(design: Design, who: str) -> None:
@@ -117,7 +118,23 @@ def refuse_contact(design: Design, who: str) -> None:
     if has_contact(design):
         where = "contact" if design.contact is not None else "objects"
         hint = 'find the equilibrium with "voxsoft run", or leave contact and objects out'
+        if where == "objects" and not design.objects:
+            where = "bodies"
+            hint = 'find the equilibrium with "voxsoft run", or take one body'
         raise DesignError(where, f"is not known to {who} yet", hint)
+
+
+def refuse_bodies(design: Design, who: str) -> None:
+    """Raise where a design has bodies and someone knows only one, along the axes.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    if design.bodies:
+        hint = "take the design of one of them, or solve it with `voxsoft run`"
+        raise DesignError("bodies", f"are not known to {who} yet", hint)
 
 
 @dataclass(frozen=True)
@@ -170,19 +187,50 @@ class Touching:
         """Of the body, m."""
         return self.mesh.voxel_size or self.design.voxel_size
 
+    @property
+    def names(self) -> list[str]:
+        """What touches: bodies, objects, and the floor if there is one."""
+        design = self.design
+        return names_of(design.objects, design.floor is not None, design.body_names)
+
     @cached_property
-    def skin(self) -> _core.Skin | None:
-        """The smooth surface of the body; None where its voxels touch."""
-        return (
-            skin_of(self.design, self.mesh) if touches_with_skin(self.design, self.mesh) else None
+    def friction(self) -> NDArray[np.float64]:
+        """The friction of each with each, in the order of names; NaN where they do not touch."""
+        design, contact = self.design, self.design.contact or Contact()
+        floor = design.floor is not None
+        return np.array(contact.table(design.objects, floor, design.body_names))
+
+    @cached_property
+    def skins(self) -> tuple[_core.Skin | None, ...]:
+        """The smooth surface of each body, in its own frame; None where its voxels touch."""
+        return tuple(
+            skin_of(own, body.mesh) if touches_with_skin(self.design, own, body.mesh) else None
+            for body in self.mesh.each_body
+            for own in [self.design.alone(body.name)]
         )
 
     @cached_property
-    def body(self) -> Surface:
-        """The surface of the body."""
-        if self.skin is not None:
-            return Surface(self.skin.points, self.skin.triangles)
-        return Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+    def bodies(self) -> tuple[Surface, ...]:
+        """The surface of each body.
+
+        Raises
+        ------
+        DesignError
+            One is in another.
+        """
+        names, found = self.design.body_names, list[Surface]()
+        for index, (body, skin) in enumerate(zip(self.mesh.each_body, self.skins, strict=True)):
+            own = body.mesh
+            surface = (
+                Surface(body.placed(own.vertices), own.triangles.astype(np.uint32))
+                if skin is None
+                else Surface(body.placed(skin.points), skin.triangles)
+            )
+            for other, before in enumerate(found):
+                if not math.isnan(self.friction[index, other]):
+                    self._check_apart(surface, before, f"bodies[{index}]", f'"{names[other]}"')
+            found.append(surface)
+        return tuple(found)
 
     @cached_property
     def traced(self) -> tuple[Surface, ...]:
@@ -198,13 +246,16 @@ class Touching:
         found: list[Surface] = []
         for index, (each, surface) in enumerate(zip(self.design.objects, self.traced, strict=True)):
             where = f"objects[{index}]"
-            self._check_apart(surface, self.body, where, "the body")
+            for name, body in zip(self.design.body_names, self.bodies, strict=True):
+                who = f'the body "{name}"' if self.mesh.bodies else "the body"
+                self._check_apart(surface, body, where, who)
             for other, before in zip(self.design.objects, found, strict=False):
                 if each.is_free or other.is_free:
                     self._check_apart(surface, before, where, f'"{other.name}"')
             self._check_above(surface.vertices, where)
             found.append(surface)
-        self._check_above(self.body.vertices, "floor")
+        for body in self.bodies:
+            self._check_above(body.vertices, "floor")
         return tuple(found)
 
     def _check_above(self, vertices: NDArray[np.float64], where: str) -> None:
@@ -255,8 +306,11 @@ class Touching:
 
     def give_to(self, parts: _core.ProblemParts) -> None:
         """Add it to the parts of a problem."""
-        body = self.mesh.triangles.astype(np.uint32)
-        parts.touch(body, self.voxel_size, _SAMPLES, self.skin)
+        for body, skin in zip(self.mesh.each_body, self.skins, strict=True):
+            triangles = (body.mesh.triangles + body.first_vertex).astype(np.uint32)
+            size = body.mesh.voxel_size or self.design.voxel_size
+            count = len(body.mesh.vertices)
+            parts.touch(triangles, size, _SAMPLES, skin, body.first_vertex, count)
         for each, surface, solid in zip(
             self.design.objects, self.surfaces, self.solids, strict=True
         ):
@@ -274,12 +328,11 @@ class Touching:
                 parts.object(surface.vertices, surface.triangles, **motion)
         if self.floor is not None:
             parts.object(self.floor.vertices, self.floor.triangles)
-        contact = self.design.contact or Contact()
-        parts.friction(np.array(contact.table(self.design.objects, self.floor is not None)))
+        parts.friction(self.friction)
 
     def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
         """What touches, as the core found it."""
-        names = names_of(self.design.objects, self.design.floor is not None)
+        names = self.names
         return tuple(
             ContactState(
                 of=(names[each.a], names[each.b]),

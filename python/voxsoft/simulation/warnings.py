@@ -36,8 +36,14 @@ def _ambiguous_indices(design: Design, mesh: Mesh, _: NDArray[np.float64]) -> It
     return ambiguous_indices(design, mesh)
 
 
+def _left_out(design: Design, _mesh: Mesh, _: NDArray[np.float64]) -> Iterator[Diagnostic]:
+    """What of the designs of bodies is left out although it decides how they behave alone."""
+    return (Diagnostic("warning", *problem) for problem in design.left_out)
+
+
 CHECKS: Final[tuple[Check, ...]] = (
     _ambiguous_indices,
+    _left_out,
     doubtful_surfaces,
     doubtful_thickness,
     overlap_warnings,

@@ -100,7 +100,9 @@ pub struct Touch {
     least_area: Vec<f64>,
     /// The points of all surfaces.
     points: Vec<Carried>,
-    /// For each point of the first surface the vertices that stand for it, where those are not what carries it.
+    /// How many of the surfaces, the first ones, are those of bodies.
+    bodies: u32,
+    /// For each point of bodies the vertices that stand for it, where those are not what carries it.
     shares: Vec<Carried>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
@@ -174,6 +176,7 @@ impl Touch {
             samples,
             least_area,
             points,
+            bodies: 1,
             shares: Vec::new(),
             triangles,
             surface_of,
@@ -184,10 +187,12 @@ impl Touch {
         Ok(touch)
     }
 
-    /// Gives the points of the first surface vertices that stand for them in fields over vertices, with positive
-    /// weights: what carries a smooth surface lies partly inside, and has weights of both signs.
+    /// Says how many surfaces are those of bodies, which come first, and gives their points vertices that stand for
+    /// them in fields over vertices, with positive weights: what carries a smooth surface lies partly inside, and has
+    /// weights of both signs.
     #[must_use]
-    pub fn with_shares(mut self, shares: Vec<Carried>) -> Self {
+    pub fn with_bodies(mut self, bodies: u32, shares: Vec<Carried>) -> Self {
+        self.bodies = bodies;
         self.shares = shares;
         self
     }
