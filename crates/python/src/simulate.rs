@@ -8,11 +8,11 @@ use pyo3::prelude::*;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::matrix::Mat3;
-use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
     Attachment, Body, Clamp, Contact, Filling, Floor, Gravity, History, Load, LoadKind, Material,
     Membrane, MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State,
-    elastic,
+    Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -439,10 +439,15 @@ impl PyProblem {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
-        Ok((
-            elastic::energy(self.problem.body(), &positions),
-            from_rows(py, &forces[..self.own()]),
-        ))
+        if let Some(touching) = &self.touching {
+            let mut others = vec![[0.0; 3]; positions.len()];
+            touching.touch.add_forces(&positions, &mut others);
+            for (force, other) in forces.iter_mut().zip(others) {
+                *force = sub(*force, other);
+            }
+        }
+        let energy = self.elastic_energy(&positions);
+        Ok((energy, from_rows(py, &forces[..self.own()])))
     }
 
     /// Elastic plus external force (N) on every vertex under the final values of all loads.
@@ -576,6 +581,13 @@ impl PyProblem {
         .map_err(to_python)
     }
 
+    /// That of the material, J: what multipliers of contact have of it is none.
+    fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
+        let of_contact = |touching: &Touching| touching.touch.energy(positions);
+        let all = elastic::energy(self.problem.body(), positions);
+        all - self.touching.as_ref().map_or(0.0, of_contact)
+    }
+
     /// How many vertices the body has, those of objects left out.
     pub(crate) fn own(&self) -> usize {
         let all = self.problem.body().rest().len();
@@ -642,7 +654,7 @@ impl PyProblem {
             reaction_moment: balance.total_moment(positions),
             load,
             load_moment,
-            elastic_energy: elastic::energy(self.problem.body(), positions),
+            elastic_energy: self.elastic_energy(positions),
             record_times: PyArray1::from_vec(py, watch.times).unbind(),
             records: PyArray1::from_vec(py, watch.records)
                 .reshape([watch.recorded, sensors, 3])?

@@ -93,6 +93,8 @@ pub(crate) struct Equilibrium<'a> {
     pub inertia: Option<&'a Inertia>,
     /// Forces in N that do not matter.
     pub negligible: f64,
+    /// The part of what contact may be off by default that is asked for.
+    pub precision: f64,
     /// The farthest that a clamp carries a vertex.
     pub largest_motion: f64,
 }
@@ -143,6 +145,7 @@ impl<'a> Equilibrium<'a> {
             largest_turn: None,
             inertia: None,
             negligible: 0.0,
+            precision: 1.0,
             largest_motion: largest_motion(problem),
         })
     }

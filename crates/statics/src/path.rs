@@ -82,7 +82,10 @@ pub fn solve(
         contact.start(&positions);
     }
     let equilibrium = match Equilibrium::new(problem, means) {
-        Ok(equilibrium) => equilibrium,
+        Ok(equilibrium) => Equilibrium {
+            precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
+            ..equilibrium
+        },
         Err(error) => return refused(positions, error),
     };
     let mut path = Path {

@@ -55,7 +55,8 @@ impl Equilibrium<'_> {
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.
     fn is_contact_settled(&self, positions: &[Vec3]) -> bool {
-        let settled = |contact: &dyn Contact| contact.correct(positions, self.negligible) <= 1.0;
+        let settled =
+            |contact: &dyn Contact| contact.correct(positions, self.negligible, self.precision);
         self.problem.contact().is_none_or(settled)
     }
 }

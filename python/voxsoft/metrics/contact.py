@@ -10,7 +10,7 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY, names_of
 from voxsoft.errors import DesignError, ErrorDetail
-from voxsoft.metrics.definition import Metric, State, Target, Touch
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target, Touch
 from voxsoft.metrics.vectors import component
 from voxsoft.records import closest
 
@@ -97,6 +97,11 @@ def _force(state: State, target: Target) -> float:
     return component(total, target) if contacts else 0.0
 
 
+def _slope_at_given_forces(state: SlopeState, target: Target) -> Floats:
+    """None by the positions: forces of contact are unknowns of their own beside them."""
+    return np.zeros_like(state.positions)
+
+
 def _area(state: State, target: Target) -> float:
     return sum(each.area for each in _contacts(CONTACT_AREA, state, target))
 
@@ -113,10 +118,17 @@ def _sticking(state: State, target: Target) -> float:
     return 1.0 - sum(each.pressed * each.slipping for each in contacts) / pressed
 
 
-# Without slopes: gradients know no contact.
 CONTACT_FORCE: Final = Metric(
-    "contact_force", "force", _force, None, frozenset({"object"}), frozenset({"axis"})
+    "contact_force",
+    "force",
+    _force,
+    _slope_at_given_forces,
+    frozenset({"object"}),
+    frozenset({"axis"}),
 )
+CONTACT_GAP: Final = Metric(
+    "contact_gap", "length", _gap, _slope_at_given_forces, frozenset({"object"})
+)
+# Without slopes: they change in jumps, where a point comes into contact or begins to slip.
 CONTACT_AREA: Final = Metric("contact_area", "area", _area, None, frozenset({"object"}))
-CONTACT_GAP: Final = Metric("contact_gap", "length", _gap, None, frozenset({"object"}))
 STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}))

@@ -28,6 +28,7 @@ pub(crate) mod gap;
 mod listing;
 mod path;
 mod predicted;
+mod recording;
 mod report;
 pub mod rigid;
 mod state;
@@ -77,6 +78,8 @@ const BOUND: [f64; 2] = [3e-3, 0.05];
 const NEARLY: f64 = 0.95;
 /// Corrections at one load after which samples keep what they face, and bounds may be off by more.
 const PATIENCE: u32 = 10;
+/// Corrections after which more precision than by default is given up.
+const PRECISE: u32 = 36;
 
 /// Who touches whom, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -361,7 +364,7 @@ mod tests {
         }
         touch.follow(&positions);
         check_term(&touch, &apart, &positions).unwrap();
-        touch.correct(&positions, 0.0);
+        touch.correct(&positions, 0.0, 1.0);
         check_term(&touch, &apart, &positions).unwrap();
     }
 }

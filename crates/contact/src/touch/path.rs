@@ -6,10 +6,11 @@ use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
 use super::gap::{self, normal};
+use super::recording::Recording;
 use super::state::{Facing, Memory, State};
 use super::{
-    APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED,
-    Touch, listing,
+    APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER,
+    STRAYED, Touch, listing,
 };
 use crate::threads;
 
@@ -34,6 +35,7 @@ impl Contact for Touch {
             now: nothing,
             stick: STICK[0],
             crept: f64::INFINITY,
+            recording: state.recording.is_some().then(Recording::default),
             ..State::default()
         };
         self.list_from_accepted(&mut state, points);
@@ -61,29 +63,10 @@ impl Contact for Touch {
         self.write().looks = LOOKS;
     }
 
-    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
+    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
         let mut state = self.write();
-        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
-        let anchor_of = |memory: &Memory| Memory {
-            anchor: memory.anchor,
-            ..Memory::default()
-        };
-        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
-            let sample = meeting.sample as usize;
-            let memory = &state.now[sample];
-            let friction = self.friction(&state, meeting.sample, point, points);
-            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
-            now[sample] = Memory {
-                normal: pressure,
-                friction: friction.map_or([0.0; 3], |friction| friction.force),
-                plane: meeting.normal,
-                bound: coefficient * pressure,
-                anchor: memory
-                    .anchor
-                    .or_else(|| Some(self.first_anchor(&state, meeting, point, points))),
-            };
-        });
+        state.keep_moment(positions);
+        let now = self.corrected(&state, positions);
         state.corrections += 1;
         let patient = state.corrections <= PATIENCE;
         let mut largest =
@@ -100,16 +83,24 @@ impl Contact for Touch {
             farthest = farthest.max(crept / CREEP);
         }
         largest = largest.max(farthest);
-        if farthest > 1.0 && farthest > state.crept / STIFFER {
+        let enough = if state.corrections <= PRECISE {
+            precision
+        } else {
+            1.0
+        };
+        if farthest > enough && farthest > state.crept / STIFFER {
             state.stick = (STIFFER * state.stick).min(STICK[1]);
         }
         state.crept = farthest;
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-        if largest > 1.0 {
+        let settled = largest <= enough;
+        if settled {
+            state.settle_moment();
+        } else {
             state.now = now;
             state.looks = u32::from(patient);
         }
-        largest
+        settled
     }
 
     fn has_friction(&self) -> bool {
@@ -119,17 +110,8 @@ impl Contact for Touch {
 
     fn accept(&self, positions: &[Vec3]) {
         let mut state = self.write();
-        let mut moved = vec![Memory::default(); self.samples.len()];
-        self.each_contact(&state, positions, |meeting, _, point, points| {
-            let memory = &mut moved[meeting.sample as usize];
-            *memory = state.now[meeting.sample as usize];
-            let friction = self.friction(&state, meeting.sample, point, points);
-            if friction.is_none_or(|friction| friction.slips) {
-                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
-                let corners = self.corners(meeting.triangle, points);
-                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
-            }
-        });
+        let moved = self.carried_on(&state, positions);
+        state.keep_step();
         let pairs = self.pairs_of_stiffness(&state, positions);
         if state.pattern.len() > WASTE * pairs.len().max(MANY) {
             state.pattern = pairs;
@@ -146,6 +128,7 @@ impl Contact for Touch {
 
     fn go_back(&self) {
         let mut state = self.write();
+        state.drop_step();
         state.now = state.accepted.clone();
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
@@ -180,6 +163,52 @@ impl Contact for Touch {
 }
 
 impl Touch {
+    /// What samples hold after a correction by the forces at `positions`.
+    pub(super) fn corrected(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
+        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
+        let anchor_of = |memory: &Memory| Memory {
+            anchor: memory.anchor,
+            since: memory.since,
+            ..Memory::default()
+        };
+        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
+        self.each_contact(state, positions, |meeting, pressure, point, points| {
+            let sample = meeting.sample as usize;
+            let memory = &state.now[sample];
+            let friction = self.friction(state, meeting.sample, point, points);
+            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            let (anchor, since) = memory.anchor.map_or_else(
+                || self.first_anchor(state, meeting, point, points),
+                |anchor| (anchor, memory.since),
+            );
+            now[sample] = Memory {
+                normal: pressure,
+                friction: friction.map_or([0.0; 3], |friction| friction.force),
+                plane: meeting.normal,
+                bound: coefficient * pressure,
+                anchor: Some(anchor),
+                since,
+            };
+        });
+        now
+    }
+
+    /// What samples hold from an accepted state on: the anchors of what has slipped come along.
+    pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
+        let mut moved = vec![Memory::default(); self.samples.len()];
+        self.each_contact(state, positions, |meeting, _, point, points| {
+            let memory = &mut moved[meeting.sample as usize];
+            *memory = state.now[meeting.sample as usize];
+            let friction = self.friction(state, meeting.sample, point, points);
+            if friction.is_none_or(|friction| friction.slips) {
+                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
+                let corners = self.corners(meeting.triangle, points);
+                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
+            }
+        });
+        moved
+    }
+
     /// Lists what may be met from the accepted state on, unless it is where it was when that was listed.
     fn list_from_accepted(&self, state: &mut State, points: Vec<Vec3>) {
         if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
@@ -190,7 +219,11 @@ impl Touch {
     }
 
     /// Samples and triangles that have stiffness at `positions`.
-    fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
+    pub(super) fn pairs_of_stiffness(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+    ) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
         self.each_contact(state, positions, |meeting, _, _, _| {
             pairs.insert((meeting.sample, meeting.triangle));
@@ -264,7 +297,7 @@ impl Touch {
         meeting: &Meeting,
         point: Vec3,
         points: &[Vec3],
-    ) -> (u32, [f64; 3]) {
+    ) -> ((u32, [f64; 3]), f64) {
         let corners = self.corners(meeting.triangle, points);
         let before = self.corners(meeting.triangle, &state.accepted_points);
         let start = state.accepted_samples[meeting.sample as usize];
@@ -277,7 +310,10 @@ impl Touch {
         }
         let gap_before = dot(sub(start, foot), normal(before)) - self.clearance();
         let gap_now = meeting.gap - self.clearance();
-        let since = if gap_before > 0.0 && gap_before > gap_now {
+        let given = state.given_since.get(meeting.sample as usize);
+        let since = if let Some(given) = given {
+            *given
+        } else if gap_before > 0.0 && gap_before > gap_now {
             1.0 - gap_before / (gap_before - gap_now.min(0.0))
         } else {
             1.0
@@ -285,7 +321,7 @@ impl Touch {
         // A touch that only just begins has `since` near 0: it has not slipped yet.
         let slip = sub(point, foot_now);
         let anchor = add(point, scale(-since, slip));
-        (meeting.triangle, gap::affine(anchor, corners))
+        ((meeting.triangle, gap::affine(anchor, corners)), since)
     }
 
     /// Lets samples look for what they face: all of them, or those that have strayed from it.

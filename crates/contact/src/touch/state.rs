@@ -4,9 +4,11 @@ use std::collections::BTreeSet;
 
 use voxsoft_solid::vector::Vec3;
 
+use super::recording::Recording;
+
 /// What a sample carries along a load path.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Memory {
+pub struct Memory {
     /// The multiplier of its gap, a force in N that pushes apart.
     pub normal: f64,
     /// That of its slip in N, along the surface.
@@ -17,12 +19,14 @@ pub(super) struct Memory {
     pub bound: f64,
     /// Where on the other surface it sticks: a triangle, and affine coordinates in it.
     pub anchor: Option<(u32, [f64; 3])>,
+    /// The part of its step that was left when it came into contact there.
+    pub since: f64,
 }
 
 /// What a sample faces, fixed for some steps of Newton's method, so that what it minimizes has no kinks where a
 /// sample slides over an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Facing {
+pub enum Facing {
     /// The plane of a triangle.
     Plane(u32),
     /// A point on an edge or corner of a triangle, with its barycentric coordinates, and the normal there.
@@ -62,4 +66,11 @@ pub(super) struct State {
     pub pattern: BTreeSet<(u32, u32)>,
     /// Whether that has become less, and nobody has been told.
     pub pattern_shrank: bool,
+    /// Whether a path is gone over again, for which the stiffness has to be exact.
+    pub retraces: bool,
+    /// That part for each sample which comes into contact, while a path is gone over again: where a sample was just apart it
+    /// changes steeply, and soon no more.
+    pub given_since: Vec<f64>,
+    /// The path so far, where derivatives will ask for it.
+    pub recording: Option<Recording>,
 }

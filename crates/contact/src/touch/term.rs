@@ -68,6 +68,7 @@ impl Term for Touch {
         let believed = |sample: usize, pressure: f64| {
             let more = SPURIOUS * self.description.young * self.samples[sample].area;
             match tangent {
+                Tangent::Exact if state.retraces => pressure,
                 Tangent::Exact => pressure.min(state.now[sample].normal + more),
                 Tangent::Stressless => 0.0,
             }
