@@ -55,7 +55,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::sensitivities, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::record_contact, module)?)?;
-    module.add_function(wrap_pyfunction!(sensitivity::recorded_friction, module)?)?;
+    module.add_function(wrap_pyfunction!(sensitivity::recorded_contact, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::same_surfaces, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::contacts_at, module)?)?;
     module.add_function(wrap_pyfunction!(transient::transient, module)?)?;

@@ -21,12 +21,16 @@ pub fn record_contact(problem: PyRef<'_, PyProblem>) -> PyResult<()> {
     Ok(())
 }
 
-/// The largest part of the pressure with friction, of the steps that were recorded: under which something slipped, and on
-/// what came into contact after the first of them.
+/// Of the steps that were recorded: whether contact settled as precisely as was asked for, and the largest part of the
+/// pressure with friction under which something slipped, and on what came into contact after the first of them.
 #[pyfunction]
-pub fn recorded_friction(problem: PyRef<'_, PyProblem>) -> PyResult<(f64, f64)> {
+pub fn recorded_contact(problem: PyRef<'_, PyProblem>) -> PyResult<(bool, f64, f64)> {
     let touch = problem.touch()?;
-    Ok((touch.recorded_slip(), touch.recorded_touching_later()))
+    Ok((
+        touch.recorded_precisely(),
+        touch.recorded_slip(),
+        touch.recorded_touching_later(),
+    ))
 }
 
 /// Whether the contact of two problems is of the same surfaces, wherever they are.

@@ -12,7 +12,7 @@
 //! where the derivative puts them, so that the differences of their forces, over those of their values, are the right-hand
 //! side above. That is the derivative of what the path computes, with multipliers as good as its corrections have made them.
 
-use voxsoft_solid::vector::{Vec3, axpy};
+use voxsoft_solid::vector::{Vec3, axpy, norm, sub};
 use voxsoft_solid::{Moment, Problem, RecordedContact, elastic};
 
 use crate::adjoint::AdjointError;
@@ -102,6 +102,7 @@ pub fn sensitivities<C: RecordedContact>(
             let places = loop {
                 let mut side = vec![0.0; system.size()];
                 let mut places = Vec::with_capacity(parameter.len());
+                let mut carried = 0.0f64;
                 for varied in parameter {
                     varied.contact.face_as(moment);
                     let mut positions = moment.positions.clone();
@@ -112,6 +113,9 @@ pub fn sensitivities<C: RecordedContact>(
                     for (side, force) in side.iter_mut().zip(forces) {
                         *side += varied.weight * force;
                     }
+                    let moves = positions.iter().zip(&moment.positions);
+                    let farthest = moves.map(|(x, own)| norm(sub(*x, *own)));
+                    carried = carried.max(farthest.fold(0.0, f64::max) / varied.offset.abs());
                     places.push(positions);
                 }
                 system.solve(&factor, &mut side, false, TOLERANCE, stop)?;
@@ -124,7 +128,7 @@ pub fn sensitivities<C: RecordedContact>(
                         axpy(x, varied.offset, *slope);
                     }
                 }
-                let change = change(&before, &slopes);
+                let change = change(&before, &slopes, carried);
                 if !moment.settled || change <= SETTLED {
                     break places;
                 }
@@ -145,15 +149,16 @@ pub fn sensitivities<C: RecordedContact>(
     Ok(ends)
 }
 
-/// The largest change of slopes, as a part of the largest one; infinite where there were none.
-fn change(before: &[Vec3], now: &[Vec3]) -> f64 {
+/// The largest change of slopes, as a part of the largest one or of how far clamps and objects are `carried`, beside which
+/// the slopes of the body may be nothing but rounding; infinite where there were none.
+fn change(before: &[Vec3], now: &[Vec3], carried: f64) -> f64 {
     let largest = |all: &[f64]| all.iter().fold(0.0f64, |most, x| most.max(x.abs()));
     if before.is_empty() {
         return f64::INFINITY;
     }
     let (before, now) = (before.as_flattened(), now.as_flattened());
     let moved: Vec<f64> = before.iter().zip(now).map(|(a, b)| a - b).collect();
-    let size = largest(now);
+    let size = largest(now).max(carried);
     if size > 0.0 {
         largest(&moved) / size
     } else {

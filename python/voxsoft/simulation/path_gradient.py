@@ -122,7 +122,13 @@ def _recorded_path(setup: Setup, result: Result) -> list[float]:
     points = path_of(report.answer).points
     # Not that of the result: anchors of friction have come along since.
     check_residual(float(points[-1, 2]))
-    slip, later = _core.recorded_friction(setup.problem)
+    precise, slip, later = _core.recorded_contact(setup.problem)
+    if not precise:
+        raise SimulationError(
+            "gradient",
+            f"contact does not settle as precisely as a tolerance of {settings.tolerance:g} asks for",
+            "solve with a looser tolerance, 1e-8 or less, or use a sampler without gradients",
+        )
     if slip > _MOST_SLIP:
         raise SimulationError(
             "gradient",

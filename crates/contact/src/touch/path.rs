@@ -95,7 +95,7 @@ impl Contact for Touch {
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
         let settled = largest <= enough;
         if settled {
-            state.settle_moment();
+            state.settle_moment(enough <= precision);
         } else {
             state.now = now;
             state.looks = u32::from(patient);
@@ -129,6 +129,7 @@ impl Contact for Touch {
     fn go_back(&self) {
         let mut state = self.write();
         state.drop_step();
+        state.extrapolated = None;
         state.now = state.accepted.clone();
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
@@ -137,6 +138,7 @@ impl Contact for Touch {
 
     fn extrapolate(&self, ratio: f64) {
         let mut state = self.write();
+        state.extrapolated = Some(ratio);
         let ratio = ratio.min(LONGEST_EXTRAPOLATION);
         let State {
             now,

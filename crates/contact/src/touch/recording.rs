@@ -1,7 +1,7 @@
 //! Contact that goes over its path again.
 
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
-use voxsoft_solid::{Moment, RecordedContact};
+use voxsoft_solid::{Contact, Moment, RecordedContact};
 
 use super::gap::normal;
 use super::state::{Facing, Memory, State};
@@ -17,6 +17,8 @@ pub struct Held {
     now: Vec<Memory>,
     facing: Vec<Option<Facing>>,
     stick: f64,
+    extrapolated: Option<f64>,
+    precise: bool,
 }
 
 /// A path as far as it was recorded.
@@ -30,28 +32,31 @@ pub(super) struct Recording {
 impl State {
     /// Records an equilibrium before its correction, if the path is recorded.
     pub fn keep_moment(&mut self, positions: &[Vec3]) {
-        let memory = || Held {
-            now: self.now.clone(),
-            facing: self.facing.clone(),
-            stick: self.stick,
-        };
+        let extrapolated = self.extrapolated.take();
         if let Some(recording) = &mut self.recording {
             recording.pending.push(Moment {
                 positions: positions.to_vec(),
                 settled: false,
-                memory: memory(),
+                memory: Held {
+                    now: self.now.clone(),
+                    facing: self.facing.clone(),
+                    stick: self.stick,
+                    extrapolated,
+                    precise: true,
+                },
             });
         }
     }
 
-    /// Contact has settled at the last equilibrium.
-    pub fn settle_moment(&mut self) {
+    /// Contact has settled at the last equilibrium, and whether as precisely as was asked for.
+    pub fn settle_moment(&mut self, precise: bool) {
         let pending = self
             .recording
             .as_mut()
             .map(|recording| &mut recording.pending);
         if let Some(last) = pending.and_then(|pending| pending.last_mut()) {
             last.settled = true;
+            last.memory.precise = precise;
         }
     }
 
@@ -112,34 +117,23 @@ impl RecordedContact for Touch {
         let since = |memory: &Memory| memory.since;
         let given: Vec<f64> =
             next.map_or_else(Vec::new, |next| next.memory.now.iter().map(since).collect());
-        let after = |(touch, positions): (&&Self, &Vec<Vec3>)| {
+        for (touch, positions) in group.iter().zip(positions) {
             touch.write().given_since.clone_from(&given);
-            let state = touch.read();
-            if moment.settled {
-                touch.carried_on(&state, positions)
-            } else {
-                touch.corrected(&state, positions)
-            }
-        };
-        let mut all: Vec<Vec<Memory>> = group.iter().zip(positions).map(after).collect();
-        if let Some(next) = next {
-            for (sample, own) in next.memory.now.iter().enumerate() {
-                let mut of_sample: Vec<&mut Memory> = all
-                    .iter_mut()
-                    .map(|memories| &mut memories[sample])
-                    .collect();
-                bring_around(&mut of_sample, own);
+            touch.follow_to(positions, moment.settled);
+            if moment.settled
+                && let Some(ratio) = next.and_then(|next| next.memory.extrapolated)
+            {
+                touch.extrapolate(ratio);
             }
         }
-        for ((touch, positions), memories) in group.iter().zip(positions).zip(all) {
-            let points = touch.points_at(positions);
-            let mut state = touch.write();
-            state.now = memories;
-            if moment.settled {
-                let samples = touch.samples.iter().map(|s| s.point.at(positions));
-                state.accepted_samples = samples.collect();
-                state.accepted_points = points;
-            }
+        let Some(next) = next else { return };
+        let mut states: Vec<_> = group.iter().map(|touch| touch.write()).collect();
+        for (sample, own) in next.memory.now.iter().enumerate() {
+            let mut of_sample: Vec<&mut Memory> = states
+                .iter_mut()
+                .map(|state| &mut state.now[sample])
+                .collect();
+            bring_around(&mut of_sample, own);
         }
     }
 }
@@ -178,6 +172,21 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
 }
 
 impl Touch {
+    /// Corrects what samples hold, or where contact has `settled` accepts the state.
+    fn follow_to(&self, positions: &[Vec3], settled: bool) {
+        let points = self.points_at(positions);
+        let mut state = self.write();
+        if !settled {
+            state.now = self.corrected(&state, positions);
+            return;
+        }
+        let moved = self.carried_on(&state, positions);
+        state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
+        state.accepted_points = points;
+        state.before = std::mem::replace(&mut state.accepted, moved.clone());
+        state.now = moved;
+    }
+
     /// Whether another contact has the same surfaces, wherever they are.
     pub fn has_surfaces_of(&self, other: &Self) -> bool {
         let sizes = |touch: &Self| {
@@ -185,6 +194,16 @@ impl Touch {
             surfaces.map(|s| s.points.len()).collect::<Vec<_>>()
         };
         self.triangles == other.triangles && sizes(self) == sizes(other)
+    }
+
+    /// Whether contact has settled as precisely as was asked for in all recorded steps.
+    pub fn recorded_precisely(&self) -> bool {
+        let state = self.read();
+        let mut moments = state
+            .recording
+            .iter()
+            .flat_map(|recording| &recording.accepted);
+        moments.all(|moment| moment.memory.precise)
     }
 
     /// The largest part of the pressure between surfaces with friction under which something has slipped, of the recorded

@@ -44,6 +44,8 @@ pub(super) struct State {
     pub accepted: Vec<Memory>,
     /// What they carried at the accepted state before that.
     pub before: Vec<Memory>,
+    /// By how many steps what they carry now goes on, while nothing has corrected it.
+    pub extrapolated: Option<f64>,
     /// What they carry now.
     pub now: Vec<Memory>,
     /// The points when candidates were listed last.
