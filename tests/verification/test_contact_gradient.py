@@ -1,9 +1,11 @@
 """Gradients where something touches, against central differences of whole solutions."""
 
 import pytest
+from pressed import slit
 
 from voxsoft import Objective, gradient, simulate
 from voxsoft.design import Design
+from voxsoft.design.contact import Contact
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import SimulationError
 
@@ -96,13 +98,32 @@ def test_a_ball_without_friction():
 
 
 def test_what_slips_or_touches_under_way_with_friction_is_refused():
-    """Slopes by depth would be wrong by 5 %, and without limit where points are just apart."""
     slipping = pressed(PLATE, 0.1, sideways="1 mm")
     with pytest.raises(SimulationError, match="surfaces slip on the way under"):
         gradient(simulate(slipping, method="statics"), {"force": FORCE}, "E")
     apart = pressed({**PLATE, "center": ["4.3 mm", "3.9 mm", "10.34 mm"]}, 0.9)
     with pytest.raises(SimulationError, match="came into contact under way"):
         gradient(simulate(apart, method="statics"), {"force": FORCE}, "depth")
+
+
+def test_friction_at_a_loose_tolerance_is_refused():
+    """Anchors then depend on what an iteration has left, and slopes were off by a third."""
+    result = simulate(pressed(PLATE, 0.9), method="statics")
+    with pytest.raises(SimulationError, match="too much for a derivative with friction"):
+        gradient(result, {"force": FORCE}, "E")
+
+
+def test_what_presses_itself_is_refused():
+    result = simulate(slit(contact=Contact()), method="statics")
+    with pytest.raises(SimulationError, match="the body presses itself"):
+        gradient(result, {"energy": ENERGY}, "parts.0.material.young")
+
+
+def test_motion_that_moves_nothing_has_no_slope():
+    """A plate without friction slides over the block: what is left of its slope is rounding."""
+    name = "objects.0.motion.displacement.0"
+    found = gradient(solved(pressed(PLATE, 0.0)), {"side": SIDE}, name)
+    assert abs(found["side"][name]) < CLOSE
 
 
 def test_areas_and_surfaces_that_change_in_jumps_are_refused():

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
+from voxsoft.design import Design
+from voxsoft.design.contact import BODY, Contact
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import Target, metric_named
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, path_of
@@ -29,12 +31,15 @@ LARGEST_RESIDUAL: Final = 1e-5
 _SAME: Final = 1e-9
 
 
-#: The part of the pressure under which something may slip in a step: beyond it derivatives were
-#: found to be wrong by percents, as points begin and end to slip at values close by.
+#: The part of the pressure under which something may slip in a step. Points begin and end to slip
+#: at values close by, and slopes across that are not checked.
 _MOST_SLIP: Final = 0.01
 #: The part of the pressure on what came into contact under way that is let pass, with friction.
 #: Where a surface was just apart, its anchor changes steeply with what moves it there.
 _MOST_LATER: Final = 0.01
+#: Largest tolerance of a state that is differentiated with friction. From 1e-8 on contact is first
+#: corrected by loose equilibria, where its anchors depend on what an iteration has left.
+LARGEST_WITH_FRICTION: Final = 1e-9
 
 
 class Variation(Protocol):
@@ -75,14 +80,19 @@ def path_gradient(
     Raises
     ------
     SimulationError
-        The path ends elsewhere now, something slips or moves freely, a tangent is singular, or
-        there is too little memory.
+        The path ends elsewhere now, something slips or moves freely, the body
+        presses itself, contact has not settled as precisely as was asked for, a tangent is
+        singular, or there is too little memory.
     DesignError
         A number that changes which triangles a surface has.
     """
     if any(each.is_free for each in setup.design.objects):
         what = "an object moves freely, and derivatives of where it ends are not known yet"
         raise SimulationError("gradient", what, "hold the object, or give it a motion")
+    if any(each.of == (BODY, BODY) and each.pressed > 0.0 for each in result.contacts):
+        what = "the body presses itself, and multipliers of its surfaces do not settle well enough"
+        hint = "keep it apart from itself, or use a sampler without gradients"
+        raise SimulationError("gradient", what, hint)
     for name, variation in variations.items():
         _check_surfaces(setup, variation, name)
     factors = _recorded_path(setup, result)
@@ -126,7 +136,7 @@ def _recorded_path(setup: Setup, result: Result) -> list[float]:
     if not precise:
         raise SimulationError(
             "gradient",
-            f"contact does not settle as precisely as a tolerance of {settings.tolerance:g} asks for",
+            f"contact does not settle as precisely as a tolerance of {used['tolerance']:g} asks",
             "solve with a looser tolerance, 1e-8 or less, or use a sampler without gradients",
         )
     if slip > _MOST_SLIP:
@@ -144,8 +154,20 @@ def _recorded_path(setup: Setup, result: Result) -> list[float]:
             "let it touch in the unloaded body, set the friction to 0, or use a sampler without "
             "gradients",
         )
+    if has_friction(setup.design) and settings.tolerance > LARGEST_WITH_FRICTION:
+        raise SimulationError(
+            "gradient",
+            f"a tolerance of {settings.tolerance:g} is too much for a derivative with friction",
+            f"solve with a tolerance of {LARGEST_WITH_FRICTION:g} or less",
+        )
     factors: list[float] = points[:, 0].tolist()
     return factors
+
+
+def has_friction(design: Design) -> bool:
+    """Whether anything of a design touches with friction."""
+    contact = design.contact or Contact()
+    return contact.friction > 0.0 or any(pair.friction for pair in contact.pairs)
 
 
 def check_residual(residual: float) -> None:
