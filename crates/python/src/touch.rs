@@ -140,6 +140,12 @@ pub struct PyContact {
     pub force: Vec3,
     /// The sum of the sizes of all forces, N.
     pub pressed: f64,
+    /// The sum of all pressures, N.
+    pub pressure: f64,
+    /// The part of the force that is friction, N.
+    pub friction: Vec3,
+    /// The most that friction can be, N.
+    pub bound: f64,
     /// In the unloaded body, m².
     pub area: f64,
     /// The smallest, m.
@@ -214,6 +220,9 @@ pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<
             b: pair.of[1],
             force: pair.force,
             pressed: pair.pressed,
+            pressure: pair.pressure,
+            friction: pair.friction,
+            bound: pair.bound,
             area: pair.area,
             gap: pair.gap,
             slipping: pair.slipping,

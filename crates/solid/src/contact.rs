@@ -24,6 +24,9 @@ pub trait Contact: Term {
     /// good enough, and nothing changes. Forces of the size `negligible` (N) do not matter.
     fn correct(&self, positions: &[Vec3], negligible: f64) -> f64;
 
+    /// A length by which things are near each other, in m: the size of a voxel.
+    fn length(&self) -> f64;
+
     /// Whether the answer depends on the way to it.
     fn has_friction(&self) -> bool;
 

@@ -44,6 +44,12 @@ class ContactState:
         On the first [N]; zero for the body with itself.
     pressed
         The sum of the sizes of all forces [N].
+    pressure
+        The sum of all pressures, which push apart [N].
+    friction
+        The part of the force that is friction [N].
+    bound
+        The most that friction can be: the sum of all pressures times their coefficients [N].
     area
         In the unloaded body [m²].
     gap
@@ -55,6 +61,9 @@ class ContactState:
     of: tuple[str, str]
     force: tuple[float, float, float]
     pressed: float
+    pressure: float
+    friction: tuple[float, float, float]
+    bound: float
     area: float
     gap: float
     slipping: float
@@ -73,6 +82,9 @@ class ContactState:
             "of": list(self.of),
             "force": list(self.force),
             "pressed": self.pressed,
+            "pressure": self.pressure,
+            "friction": list(self.friction),
+            "friction_bound": self.bound,
             "area": self.area,
             "gap": self.gap,
             "sticking": 1.0 - self.slipping,
@@ -285,6 +297,9 @@ class Touching:
                 of=(names[each.a], names[each.b]),
                 force=(each.force[0], each.force[1], each.force[2]),
                 pressed=each.pressed,
+                pressure=each.pressure,
+                friction=(each.friction[0], each.friction[1], each.friction[2]),
+                bound=each.bound,
                 area=each.area,
                 gap=each.gap,
                 slipping=each.slipping,

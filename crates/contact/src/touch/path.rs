@@ -112,6 +112,10 @@ impl Contact for Touch {
         largest
     }
 
+    fn length(&self) -> f64 {
+        self.description.voxel
+    }
+
     fn has_friction(&self) -> bool {
         let table = self.description.friction.iter().flatten();
         table.into_iter().any(|coefficient| *coefficient > 0.0)

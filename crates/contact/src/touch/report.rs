@@ -21,6 +21,12 @@ pub struct PairReport {
     pub force: Vec3,
     /// The sum of the sizes of all pressures and frictions, N: also what cancels.
     pub pressed: f64,
+    /// The sum of all pressures alone, N.
+    pub pressure: f64,
+    /// The part of the force that is friction, N.
+    pub friction: Vec3,
+    /// The most that friction can be: the sum of all pressures times their coefficients, N.
+    pub bound: f64,
     /// The area in contact in the unloaded body, m².
     pub area: f64,
     /// The smallest gap in m.
@@ -33,7 +39,7 @@ impl Touch {
     /// What touches at `positions`, with the multipliers of the last correction; ascending.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
         let state = self.read();
-        let mut found: BTreeMap<[u32; 2], (PairReport, f64, [f64; 2])> = BTreeMap::new();
+        let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
         self.each_contact(&state, positions, |meeting, pressure, point, points| {
             pressed_samples[meeting.sample as usize] = true;
@@ -42,9 +48,11 @@ impl Touch {
             let memory = &state.now[meeting.sample as usize];
             let friction = self.friction(&state, meeting.sample, point, points);
             let mut force = scale(pressure, meeting.normal);
+            let mut tangential = [0.0; 3];
             let (mut pressed, mut slipping) = (pressure, pressure);
             if let Some(friction) = friction {
-                force = add(force, friction.force);
+                tangential = friction.force;
+                force = add(force, tangential);
                 pressed = norm(force);
                 let sticks = !friction.slips && norm(friction.force) < NEARLY * memory.bound;
                 if sticks {
@@ -56,30 +64,35 @@ impl Touch {
                     of,
                     force: [0.0; 3],
                     pressed: 0.0,
+                    pressure: 0.0,
+                    friction: [0.0; 3],
+                    bound: 0.0,
                     area: 0.0,
                     gap: f64::INFINITY,
                     slipping: 0.0,
                 };
-                (report, 0.0, [0.0; 2])
+                (report, [0.0; 2])
             });
-            let (report, total, areas) = entry;
+            let (report, areas) = entry;
             if of[0] != of[1] {
                 let sign = if sample.surface == of[0] { 1.0 } else { -1.0 };
                 axpy(&mut report.force, sign, force);
+                axpy(&mut report.friction, sign, tangential);
             }
+            report.pressure += pressure;
+            report.bound += self.coefficient(meeting.sample, meeting.triangle) * pressure;
             report.pressed += pressed;
             areas[self.side(meeting)] += self.area_toward(meeting, points);
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
-            *total += pressure;
         });
         self.each_between(&state, positions, &pressed_samples, |meeting, points| {
-            if let Some((_, _, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
+            if let Some((_, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
                 areas[self.side(meeting)] += self.area_toward(meeting, points);
             }
         });
-        let each = found.into_values().map(|(mut report, total, areas)| {
-            report.slipping /= total;
+        let each = found.into_values().map(|(mut report, areas)| {
+            report.slipping /= report.pressure;
             // Both sides see the contact, the coarser one less sharply; a surface with itself counts twice.
             report.area = match report.of {
                 [a, b] if a == b => areas[1] / 2.0,
