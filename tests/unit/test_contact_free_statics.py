@@ -150,5 +150,5 @@ def test_a_ball_goes_to_the_lowest_point_of_a_bowl(friction):
     found = statics(design)
     assert found.status == "ok", found.message
     x, y, _ = found.objects["ball"].position
-    # Friction may hold it where the slope is its coefficient, as far off for 10 mm between the radii.
+    # Friction may hold it where the slope is its coefficient, for 10 mm between the radii.
     assert np.hypot(x, y) < friction * 10 * mm

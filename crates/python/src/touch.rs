@@ -3,6 +3,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
+use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Description, PairReport, Surface, Touch};
 use voxsoft_solid::vector::Vec3;
@@ -43,6 +44,17 @@ pub(crate) struct TouchParts {
     pub skin: Option<Arc<Skin>>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
+    pub bonds: Vec<BondPart>,
+}
+
+/// Two surfaces that are bonded where they are near each other at rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BondPart {
+    pub of: [u32; 2],
+    /// m
+    pub reach: f64,
+    /// Pa; infinite for a bond that does not let go.
+    pub strength: f64,
 }
 
 impl TouchParts {
@@ -105,7 +117,14 @@ impl TouchParts {
                 triangles: object.triangles.clone(),
             });
         }
+        let bonds = self.bonds.iter().map(|bond| {
+            let side = |surface: u32| self.side(surface, &surfaces, body, first);
+            let [a, b] = bond.of.map(side);
+            Bond::new(a, b, bond.reach, bond.strength, body.rest())
+        });
+        let bonds = bonds.collect::<Result<_, _>>()?;
         let description = Description {
+            bonds,
             surfaces,
             friction: self.friction.clone(),
             voxel: self.voxel,
@@ -116,6 +135,36 @@ impl TouchParts {
             Some(skin) => touch.with_shares(skin.shares.clone()),
             None => touch,
         })
+    }
+}
+
+impl TouchParts {
+    /// A surface with what is behind it. The body comes before the objects, so that of a bond the first side is the soft one.
+    fn side<'a>(
+        &'a self,
+        number: u32,
+        surfaces: &'a [Surface],
+        body: &'a Body,
+        first: usize,
+    ) -> Side<'a> {
+        let object = (number as usize).checked_sub(1);
+        let solid = match object {
+            Some(object) => {
+                let at = first + 4 * object;
+                Solid::Rigid(&self.objects[object].frame, at as u32)
+            }
+            None => Solid::Voxels(body.voxels()),
+        };
+        let shares = match (&self.skin, object) {
+            (Some(skin), None) => skin.shares.as_slice(),
+            _ => &[],
+        };
+        Side {
+            number,
+            surface: &surfaces[number as usize],
+            shares,
+            solid,
+        }
     }
 }
 
@@ -148,6 +197,8 @@ pub struct PyContact {
     pub bound: f64,
     /// In the unloaded body, m².
     pub area: f64,
+    /// The part of it that is bonded, m².
+    pub bonded: f64,
     /// The smallest, m.
     pub gap: f64,
     /// The part of the pressure under which the surfaces slip.
@@ -224,6 +275,7 @@ pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<
             friction: pair.friction,
             bound: pair.bound,
             area: pair.area,
+            bonded: pair.bonded,
             gap: pair.gap,
             slipping: pair.slipping,
         };

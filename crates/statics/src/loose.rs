@@ -258,12 +258,12 @@ impl Path<'_, '_> {
 
     /// Records the equilibrium in place of the points that led to it.
     fn rest(&mut self, loose: &Loose, positions: Vec<Vec3>, found: &Found, known: usize) -> Ending {
+        // Neutral motions leave the tangent singular; what is unstable has it indefinite by more than this rate makes up.
+        loose.dampers.set(LEAST_RATE, positions.clone());
+        let stable = self.equilibrium.is_stable(&positions, self.point);
         self.looking = false;
         self.points.truncate(known);
         self.accept(positions, self.point, found.iterations, found.residual);
-        // Neutral motions leave the tangent singular; what is unstable has it indefinite by more than this rate makes up.
-        loose.dampers.set(LEAST_RATE, self.positions.clone());
-        let stable = self.equilibrium.is_stable(&self.positions, self.point);
         if let Some(point) = self.points.last_mut() {
             point.stable = stable;
         }

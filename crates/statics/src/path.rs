@@ -25,8 +25,8 @@ const SAFE_STEP: f64 = 0.05;
 const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
-/// The longest step along a path on which friction depends.
-const LONGEST_WITH_FRICTION: f64 = 0.05;
+/// The longest step along a path on which the answer depends: with friction, or bonds that may break.
+const LONGEST_OF_WAY: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
@@ -110,7 +110,10 @@ fn follow(
         Err(error) => return refused(positions, error),
     };
     let mut path = Path {
-        equilibrium,
+        equilibrium: Equilibrium {
+            has_loose: loose.is_some(),
+            ..equilibrium
+        },
         positions,
         point: Point::all(0.0),
         points: Vec::new(),
@@ -246,7 +249,7 @@ impl Path<'_, '_> {
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
         let longest = match contact {
-            Some(contact) if contact.has_friction() => LONGEST_WITH_FRICTION,
+            Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
             _ => 1.0,
         };
         let easy = if contact.is_some() {

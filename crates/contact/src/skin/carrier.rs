@@ -11,7 +11,7 @@ use crate::touch::Carried;
 const ON: f64 = 1e-6;
 
 /// The voxels, ready to carry points.
-pub(super) struct Carriers<'a> {
+pub(crate) struct Carriers<'a> {
     voxels: &'a [[u32; 8]],
     vertices: &'a [Vec3],
     /// The voxels around each vertex.
@@ -19,7 +19,7 @@ pub(super) struct Carriers<'a> {
 }
 
 impl<'a> Carriers<'a> {
-    pub(super) fn new(voxels: &'a [[u32; 8]], vertices: &'a [Vec3]) -> Self {
+    pub(crate) fn new(voxels: &'a [[u32; 8]], vertices: &'a [Vec3]) -> Self {
         let mut around = vec![Vec::new(); vertices.len()];
         for (number, voxel) in voxels.iter().enumerate() {
             for vertex in voxel {
@@ -35,7 +35,7 @@ impl<'a> Carriers<'a> {
 
     /// Carries a point by the voxel that it is in or nearest to, of those at all vertices of `share`; by the mean of
     /// several that are as near.
-    pub(super) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
+    pub(crate) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
         let (first, others) = share.vertices.split_first().expect("a point has vertices");
         let at_all = |voxel: &&u32| {
             let corners = &self.voxels[**voxel as usize];

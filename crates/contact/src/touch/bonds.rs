@@ -1,8 +1,8 @@
 //! Bonds: surfaces that are glued to each other, for good or until a traction.
 //!
-//! Samples `s` of the first surface that lie on the second at rest, with the areas `A_s`, are tied to the places `y_s` of the second
-//! body where they are: these move with it. Vertices `v` share each sample by `N_v(s)`, and there is one tie for
-//! each of them (a mortar form: Bernardi, Maday and Patera 1994; Puso and Laursen 2004, doi 10.1016/j.cma.2003.10.010):
+//! Points `s` all over the triangles of the first surface that lie on the second at rest, with the areas `A_s`, are tied to the
+//! places `y_s` of the second body where they are: these move with it. Vertices `v` share each point by `N_v(s)`, and there
+//! is one tie for each of them (a mortar form: Bernardi, Maday and Patera 1994; Puso and Laursen 2004, doi 10.1016/j.cma.2003.10.010):
 //!
 //! ```text
 //! c_v = Σ_s A_s N_v(s) (x_s − y_s) / W_v = 0,   W_v = Σ_s A_s N_v(s),
@@ -10,12 +10,13 @@
 //!
 //! so that a uniform traction passes between voxels of different sizes, and neither side is stiffened. With a multiplier
 //! `f` and a penalty `k` its force is `f − k c`, and `f` is brought up after each equilibrium as that of contact is. As
-//! `y_s` is where the sample was, gaps and overlaps at rest are kept, and no moment is lost.
+//! `y_s` is where the point was, gaps and overlaps at rest are kept, and no moment is lost.
 //!
 //! A bond with a strength lets go where `√(t_n² + t_t²)` passes it, with the pull `t_n` along the normal, which
-//! a pressure does not count for, and the traction `t_t` along the surface. What has let go touches.
+//! a pressure does not count for, and the traction `t_t` along the surface; both as means over a tie and those beside it.
+//! What has let go touches.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use voxsoft_solid::ProblemError;
 use voxsoft_solid::assembly::Visitor;
@@ -33,6 +34,10 @@ use crate::tree::Tree;
 const FACING: f64 = -0.5;
 /// How far a tie may be off at the end, in voxels: a hundredth of the clearance of contact.
 const OFF: f64 = 1e-6;
+/// Into how many parts the edge of a triangle is divided for the integrals: functions of the other side have kinks in it.
+const PARTS: u32 = 4;
+/// How far beside a triangle what lies on its edge may be, of the reach.
+const ROUNDING: f64 = 1e-9;
 /// Of the ties that are past their strength those let go together that are within this part of the worst one. What the
 /// others carry changes then.
 const WORST: f64 = 0.9;
@@ -83,6 +88,8 @@ pub(super) struct Tie {
     pub triangle: u32,
     /// The points of the first surface in it, and those of the second one nearest to it.
     pub points: [Vec<u32>; 2],
+    /// The ties of its bond that have points of it, itself included.
+    pub patch: Vec<u32>,
 }
 
 /// What a tie carries along a load path.
@@ -109,8 +116,7 @@ impl Bond {
         strength: f64,
         rest: &[Vec3],
     ) -> Result<Self, ProblemError> {
-        let meeting = Meeting::of(first, second, reach, rest);
-        let ties = meeting.ties(first, second, rest);
+        let ties = Meeting::new([first, second], reach, rest).ties(rest);
         if ties.is_empty() {
             let what = "the bonded area in m²";
             return Err(ProblemError::NotPositive { what, value: 0.0 });
@@ -123,130 +129,177 @@ impl Bond {
     }
 }
 
-/// Where two surfaces meet at rest.
-struct Meeting {
+/// Two surfaces at rest, and where they meet.
+struct Meeting<'a> {
+    sides: [Side<'a>; 2],
     /// The points of both, m.
     points: [Vec<Vec3>; 2],
-    /// For each point of the first surface the area that is bonded, m².
-    areas: Vec<f64>,
-    /// For each of them the triangle of the second that it is on.
-    on: Vec<Option<u32>>,
-    /// The points of the second surface that are on bonded triangles of the first.
-    beside: Vec<u32>,
+    trees: [Tree; 2],
+    /// m
+    reach: f64,
 }
 
-impl Meeting {
-    fn of(first: Side<'_>, second: Side<'_>, reach: f64, rest: &[Vec3]) -> Self {
-        let at = |side: Side<'_>| -> Vec<Vec3> {
-            side.surface.points.iter().map(|p| p.at(rest)).collect()
+/// A triangle near a point.
+#[derive(Clone, Copy)]
+struct Near {
+    distance: f64,
+    triangle: u32,
+    /// Whether the point is straight above it.
+    is_over: bool,
+}
+
+impl<'a> Meeting<'a> {
+    fn new(sides: [Side<'a>; 2], reach: f64, rest: &[Vec3]) -> Self {
+        let points = sides.map(|side| side.surface.points.iter().map(|p| p.at(rest)).collect());
+        let tree = |side: usize| {
+            let points: &Vec<Vec3> = &points[side];
+            let triangles = sides[side].surface.triangles.iter();
+            let boxes = triangles.map(|t| Bounds::of(t.map(|p| points[p as usize])));
+            Tree::new(&boxes.collect::<Vec<_>>())
         };
-        let points = [at(first), at(second)];
-        let corners = |side: usize, surface: &Surface, t: u32| {
-            surface.triangles[t as usize].map(|p| points[side][p as usize])
-        };
-        let tree_of = |side: usize, of: Side<'_>| {
-            let all = 0..of.surface.triangles.len() as u32;
-            let boxes: Vec<Bounds> = all.map(|t| Bounds::of(corners(side, of.surface, t))).collect();
-            Tree::new(&boxes)
-        };
-        let trees = [tree_of(0, first), tree_of(1, second)];
-        // The nearest triangle of a side within reach that looks along `against`.
-        let nearest = |side: usize, of: Side<'_>, point: Vec3, against: Vec3| {
-            let around = Bounds {
-                low: point.map(|x| x - reach),
-                high: point.map(|x| x + reach),
-            };
-            let mut best: Option<(f64, u32, bool)> = None;
-            trees[side].meeting(&around, |t| {
-                let corners = corners(side, of.surface, t);
-                if dot(normal(corners), against) < FACING {
-                    let found = closest(point, corners);
-                    let over = dot(found.away, normal(corners)).abs() > found.distance - 1e-9 * reach;
-                    let key = (found.distance, t);
-                    if found.distance <= reach && best.is_none_or(|(d, other, _)| key < (d, other)) {
-                        best = Some((found.distance, t, over));
-                    }
-                }
-            });
-            best
-        };
-        let mut areas = vec![0.0; points[0].len()];
-        let mut on = vec![None; points[0].len()];
-        let mut bonded = vec![false; first.surface.triangles.len()];
-        for (t, triangle) in first.surface.triangles.iter().enumerate() {
-            let at = corners(0, first.surface, t as u32);
-            let outward = normal(at);
-            let middle = scale(1.0 / 3.0, at.iter().fold([0.0; 3], |sum, x| add(sum, *x)));
-            let is_over = nearest(1, second, middle, outward).is_some_and(|(.., over)| over);
-            let each = at.map(|point| nearest(1, second, point, outward));
-            if !is_over || each.iter().any(Option::is_none) {
-                continue;
-            }
-            bonded[t] = true;
-            for (point, found) in triangle.iter().zip(each) {
-                areas[*point as usize] += area(at) / 3.0;
-                on[*point as usize] = found.map(|(_, t, _)| t);
-            }
-        }
-        let mut beside = Vec::new();
-        for (t, triangle) in second.surface.triangles.iter().enumerate() {
-            let outward = normal(corners(1, second.surface, t as u32));
-            for point in triangle {
-                let found = nearest(0, first, points[1][*point as usize], outward);
-                if found.is_some_and(|(_, t, _)| bonded[t as usize]) {
-                    beside.push(*point);
-                }
-            }
-        }
-        beside.sort_unstable();
-        beside.dedup();
         Self {
+            trees: [tree(0), tree(1)],
+            sides,
             points,
-            areas,
-            on,
-            beside,
+            reach,
         }
     }
 
-    fn ties(&self, first: Side<'_>, second: Side<'_>, rest: &[Vec3]) -> Vec<Tie> {
+    fn corners(&self, side: usize, triangle: u32) -> [Vec3; 3] {
+        let corners = self.sides[side].surface.triangles[triangle as usize];
+        corners.map(|p| self.points[side][p as usize])
+    }
+
+    /// The nearest triangle of a side within reach that looks against a direction.
+    fn nearest(&self, side: usize, point: Vec3, against: Vec3) -> Option<Near> {
+        let around = Bounds {
+            low: point.map(|x| x - self.reach),
+            high: point.map(|x| x + self.reach),
+        };
+        let mut best: Option<Near> = None;
+        self.trees[side].meeting(&around, |triangle| {
+            let corners = self.corners(side, triangle);
+            let outward = normal(corners);
+            if dot(outward, against) >= FACING {
+                return;
+            }
+            let found = closest(point, corners);
+            let distance = found.distance;
+            let nearer =
+                best.is_none_or(|best| (distance, triangle) < (best.distance, best.triangle));
+            if distance <= self.reach && nearer {
+                let straight = dot(found.away, outward).abs();
+                best = Some(Near {
+                    distance,
+                    triangle,
+                    is_over: straight > distance - ROUNDING * self.reach,
+                });
+            }
+        });
+        best
+    }
+
+    /// The triangles of the first surface that lie on the second one.
+    fn bonded(&self) -> Vec<bool> {
+        let all = 0..self.sides[0].surface.triangles.len() as u32;
+        let lies = |triangle: u32| {
+            let corners = self.corners(0, triangle);
+            let outward = normal(corners);
+            let middle = self.nearest(1, place(corners, [1.0 / 3.0; 3]), outward);
+            middle.is_some_and(|middle| middle.is_over)
+                && corners
+                    .iter()
+                    .all(|x| self.nearest(1, *x, outward).is_some())
+        };
+        all.map(lies).collect()
+    }
+
+    /// The points of the second surface that lie on those triangles.
+    fn beside(&self, bonded: &[bool]) -> BTreeSet<u32> {
+        let mut beside = BTreeSet::new();
+        for (t, triangle) in self.sides[1].surface.triangles.iter().enumerate() {
+            let outward = normal(self.corners(1, t as u32));
+            for point in triangle {
+                let found = self.nearest(0, self.points[1][*point as usize], outward);
+                if found.is_some_and(|near| bonded[near.triangle as usize]) {
+                    beside.insert(*point);
+                }
+            }
+        }
+        beside
+    }
+
+    fn ties(&self, rest: &[Vec3]) -> Vec<Tie> {
+        let [first, second] = self.sides;
         let carriers = match second.solid {
             Solid::Voxels(voxels) => Some(Carriers::new(voxels, rest)),
             Solid::Rigid(..) => None,
         };
+        let bonded = self.bonded();
         let mut drafts: BTreeMap<u32, Draft> = BTreeMap::new();
-        for (sample, (&area, on)) in self.areas.iter().zip(&self.on).enumerate() {
-            let Some(triangle) = *on else {
+        for (t, triangle) in first.surface.triangles.iter().enumerate() {
+            if !bonded[t] {
                 continue;
-            };
-            let point = self.points[0][sample];
-            let own = &first.surface.points[sample];
-            let there = match second.solid {
-                Solid::Rigid(frame, vertex) => frame.carry(point, vertex),
-                Solid::Voxels(_) => {
-                    let share = self.vertex_near(second, triangle, point, rest);
-                    carriers.as_ref().map_or_else(Carried::default, |c| c.carry(&share, point))
+            }
+            let corners = self.corners(0, t as u32);
+            let outward = normal(corners);
+            let part = area(corners) / f64::from(PARTS * PARTS);
+            for weights in parts() {
+                let point = place(corners, weights);
+                let Some(near) = self.nearest(1, point, outward) else {
+                    continue;
+                };
+                let own = mixed(triangle.map(|p| &first.surface.points[p as usize]), weights);
+                let there = match second.solid {
+                    Solid::Rigid(frame, vertex) => frame.carry(point, vertex),
+                    Solid::Voxels(_) => {
+                        let share = self.vertex_near(second, near.triangle, point, rest);
+                        let carry = |carriers: &Carriers<'_>| carriers.carry(&share, point);
+                        carriers.as_ref().map_or_else(Carried::default, carry)
+                    }
+                };
+                let share = match first.solid {
+                    // A rigid side has no vertices that share its points: each of them is tied.
+                    Solid::Rigid(..) => Carried {
+                        vertices: triangle.to_vec(),
+                        weights: weights.to_vec(),
+                    },
+                    Solid::Voxels(_) => {
+                        let of = |p: u32| {
+                            let own = &first.surface.points[p as usize];
+                            first.shares.get(p as usize).unwrap_or(own)
+                        };
+                        mixed(triangle.map(of), weights)
+                    }
+                };
+                for (vertex, weight) in share.vertices.iter().zip(&share.weights) {
+                    let draft = drafts.entry(*vertex).or_default();
+                    draft.take(weight * part, [&own, &there], near.triangle);
+                    draft.points.extend(triangle);
                 }
-            };
-            // A rigid side has no vertices that share its samples: each of them is tied.
-            let alone = Carried::vertex(sample as u32);
-            let share = match first.solid {
-                Solid::Rigid(..) => &alone,
-                Solid::Voxels(_) => first.shares.get(sample).unwrap_or(own),
-            };
-            for (vertex, weight) in share.vertices.iter().zip(&share.weights) {
-                let draft = drafts.entry(*vertex).or_default();
-                draft.take(weight * area, own, &there, sample as u32, triangle);
             }
         }
         let mut ties: Vec<Tie> = drafts.into_values().map(Draft::finish).collect();
         let places: Vec<Vec3> = ties.iter().map(|tie| tie.first.at(rest)).collect();
-        for &point in &self.beside {
+        for point in self.beside(&bonded) {
             let at = self.points[1][point as usize];
             let far = |place: &Vec3| norm(sub(*place, at));
-            let nearest = (0..ties.len()).min_by(|a, b| far(&places[*a]).total_cmp(&far(&places[*b])));
+            let nearest =
+                (0..ties.len()).min_by(|a, b| far(&places[*a]).total_cmp(&far(&places[*b])));
             if let Some(nearest) = nearest {
                 ties[nearest].points[1].push(point);
             }
+        }
+        let mut of_point: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+        for (number, tie) in ties.iter().enumerate() {
+            for point in &tie.points[0] {
+                of_point.entry(*point).or_default().push(number as u32);
+            }
+        }
+        for tie in &mut ties {
+            let each = tie.points[0].iter().flat_map(|point| &of_point[point]);
+            let patch: BTreeSet<u32> = each.copied().collect();
+            tie.patch = patch.into_iter().collect();
         }
         ties
     }
@@ -256,7 +309,9 @@ impl Meeting {
         let corners = side.surface.triangles[triangle as usize];
         let share = |corner: &u32| {
             let corner = *corner as usize;
-            side.shares.get(corner).unwrap_or(&side.surface.points[corner])
+            side.shares
+                .get(corner)
+                .unwrap_or(&side.surface.points[corner])
         };
         let vertices = corners.iter().flat_map(|corner| &share(corner).vertices);
         let far = |vertex: u32| norm(sub(rest[vertex as usize], point));
@@ -265,19 +320,51 @@ impl Meeting {
     }
 }
 
+/// A place in a triangle.
+fn place(corners: [Vec3; 3], weights: [f64; 3]) -> Vec3 {
+    let pairs = corners.iter().zip(weights);
+    pairs.fold([0.0; 3], |sum, (x, weight)| add(sum, scale(weight, *x)))
+}
+
+/// The middles of the parts of a triangle, as barycentric coordinates.
+fn parts() -> impl Iterator<Item = [f64; 3]> {
+    let third = 1.0 / 3.0;
+    let at = |i: u32, j: u32, offset: f64| {
+        let along = |k: u32| (f64::from(k) + offset) / f64::from(PARTS);
+        [1.0 - along(i) - along(j), along(i), along(j)]
+    };
+    let all = (0..PARTS).flat_map(|i| (0..PARTS - i).map(move |j| (i, j)));
+    all.flat_map(move |(i, j)| {
+        let turned = (i + j + 1 < PARTS).then(|| at(i, j, 2.0 * third));
+        std::iter::once(at(i, j, third)).chain(turned)
+    })
+}
+
+/// A weighted mean of what is carried.
+fn mixed(parts: [&Carried; 3], weights: [f64; 3]) -> Carried {
+    let mut sum: BTreeMap<u32, f64> = BTreeMap::new();
+    for (part, factor) in parts.iter().zip(weights) {
+        for (vertex, weight) in part.vertices.iter().zip(&part.weights) {
+            *sum.entry(*vertex).or_default() += factor * weight;
+        }
+    }
+    let (vertices, weights) = sum.into_iter().unzip();
+    Carried { vertices, weights }
+}
+
 /// A tie that is being summed up.
 #[derive(Default)]
 struct Draft {
     sides: [BTreeMap<u32, f64>; 2],
     area: f64,
-    /// The largest part of a sample in it, and the triangle below that.
+    /// The largest part of it, and the triangle below that.
     heaviest: (f64, u32),
-    points: Vec<u32>,
+    points: BTreeSet<u32>,
 }
 
 impl Draft {
-    fn take(&mut self, part: f64, own: &Carried, there: &Carried, sample: u32, triangle: u32) {
-        for (side, carried) in self.sides.iter_mut().zip([own, there]) {
+    fn take(&mut self, part: f64, ends: [&Carried; 2], triangle: u32) {
+        for (side, carried) in self.sides.iter_mut().zip(ends) {
             for (vertex, weight) in carried.vertices.iter().zip(&carried.weights) {
                 *side.entry(*vertex).or_default() += part * weight;
             }
@@ -286,7 +373,6 @@ impl Draft {
         if part > self.heaviest.0 {
             self.heaviest = (part, triangle);
         }
-        self.points.push(sample);
     }
 
     fn finish(self) -> Tie {
@@ -301,7 +387,8 @@ impl Draft {
             second: mean(second),
             area,
             triangle: self.heaviest.1,
-            points: [self.points, Vec::new()],
+            points: [self.points.into_iter().collect(), Vec::new()],
+            patch: Vec::new(),
         }
     }
 }
@@ -366,15 +453,19 @@ impl Touch {
     /// Lets go what is pulled harder than it holds; whether anything has.
     pub(super) fn break_ties(&self, state: &mut State, positions: &[Vec3]) -> bool {
         let mut loads = Vec::with_capacity(state.holds.len());
-        for ((bond, tie), hold) in self.ties().zip(&state.holds) {
-            let load = if hold.broken || bond.strength.is_infinite() {
-                0.0
-            } else {
-                let force = self.tie_force(tie, hold, positions);
-                let traction = scale(1.0 / tie.area, force);
-                self.pull(bond, tie, traction, positions) / bond.strength
-            };
-            loads.push(load);
+        let mut first = 0;
+        for bond in &self.description.bonds {
+            let holds = &state.holds[first..first + bond.ties.len()];
+            first += bond.ties.len();
+            for (tie, hold) in bond.ties.iter().zip(holds) {
+                let load = if hold.broken || bond.strength.is_infinite() {
+                    0.0
+                } else {
+                    let traction = self.traction(bond, tie, holds, positions);
+                    self.pull(bond, tie, traction, positions) / bond.strength
+                };
+                loads.push(load);
+            }
         }
         let worst = loads.iter().copied().fold(0.0, f64::max);
         if worst <= 1.0 {
@@ -384,6 +475,20 @@ impl Touch {
             hold.broken |= load >= f64::max(1.0, WORST * worst);
         }
         true
+    }
+
+    /// The traction on the first surface around a tie, Pa: multipliers of single ones, of which some have little area, go
+    /// up and down from one to the next.
+    fn traction(&self, bond: &Bond, tie: &Tie, holds: &[Hold], positions: &[Vec3]) -> Vec3 {
+        let (mut force, mut area) = ([0.0; 3], 0.0);
+        for &near in &tie.patch {
+            let (tie, hold) = (&bond.ties[near as usize], &holds[near as usize]);
+            if !hold.broken {
+                axpy(&mut force, 1.0, self.tie_force(tie, hold, positions));
+                area += tie.area;
+            }
+        }
+        scale(1.0 / area, force)
     }
 
     /// The size of a traction on the first surface without what of it presses, Pa.

@@ -27,12 +27,32 @@ pub struct PairReport {
     pub friction: Vec3,
     /// The most that friction can be: the sum of all pressures times their coefficients, N.
     pub bound: f64,
-    /// The area in contact in the unloaded body, m².
+    /// The area in contact in the unloaded body, m²; bonded area is part of it.
     pub area: f64,
+    /// The area that is bonded, m².
+    pub bonded: f64,
     /// The smallest gap in m.
     pub gap: f64,
     /// The part of the pressure under which the surfaces slip.
     pub slipping: f64,
+}
+
+impl PairReport {
+    /// Of surfaces that do not touch.
+    fn apart(of: [u32; 2]) -> Self {
+        Self {
+            of,
+            force: [0.0; 3],
+            pressed: 0.0,
+            pressure: 0.0,
+            friction: [0.0; 3],
+            bound: 0.0,
+            area: 0.0,
+            bonded: 0.0,
+            gap: f64::INFINITY,
+            slipping: 0.0,
+        }
+    }
 }
 
 impl Touch {
@@ -59,21 +79,8 @@ impl Touch {
                     slipping = 0.0;
                 }
             }
-            let entry = found.entry(of).or_insert_with(|| {
-                let report = PairReport {
-                    of,
-                    force: [0.0; 3],
-                    pressed: 0.0,
-                    pressure: 0.0,
-                    friction: [0.0; 3],
-                    bound: 0.0,
-                    area: 0.0,
-                    gap: f64::INFINITY,
-                    slipping: 0.0,
-                };
-                (report, [0.0; 2])
-            });
-            let (report, areas) = entry;
+            let entry = found.entry(of);
+            let (report, areas) = entry.or_insert_with(|| (PairReport::apart(of), [0.0; 2]));
             if of[0] != of[1] {
                 let sign = if sample.surface == of[0] { 1.0 } else { -1.0 };
                 axpy(&mut report.force, sign, force);
@@ -91,12 +98,25 @@ impl Touch {
                 areas[self.side(meeting)] += self.area_toward(meeting, points);
             }
         });
+        self.each_tie(&state, positions, |bond, tie, force| {
+            let mut of = bond.of;
+            of.sort_unstable();
+            let entry = found.entry(of);
+            let (report, _) = entry.or_insert_with(|| (PairReport::apart(of), [0.0; 2]));
+            let sign = if bond.of == of { 1.0 } else { -1.0 };
+            axpy(&mut report.force, sign, force);
+            report.pressed += norm(force);
+            report.bonded += tie.area;
+            report.gap = report.gap.min(0.0);
+        });
         let each = found.into_values().map(|(mut report, areas)| {
-            report.slipping /= report.pressure;
+            if report.pressure > 0.0 {
+                report.slipping /= report.pressure;
+            }
             // Both sides see the contact, the coarser one less sharply; a surface with itself counts twice.
             report.area = match report.of {
                 [a, b] if a == b => areas[1] / 2.0,
-                _ => areas[0].max(areas[1]),
+                _ => areas[0].max(areas[1]) + report.bonded,
             };
             report
         });
