@@ -17,7 +17,7 @@ from voxsoft.design import Contact, Design, History, Motion, Object
 from voxsoft.design.contact import names_of
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
-from voxsoft.shapes import voxelize
+from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.tracing import trace
 from voxsoft.simulation.apart import TOUCH, Surface, overlap_of, way_out
 from voxsoft.simulation.skin import skin_of, touches_with_skin
@@ -422,7 +422,7 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
     Raises
     ------
     DesignError
-        It has none that could be traced.
+        It has none that could be traced, or a file's that is open.
     """
     shape = design.shapes[each.shape] if isinstance(each.shape, str) else each.shape
     size = each.voxel_size or design.voxel_size

@@ -38,9 +38,6 @@ const OFF: f64 = 1e-6;
 const PARTS: u32 = 4;
 /// How far beside a triangle what lies on its edge may be, of the reach.
 const ROUNDING: f64 = 1e-9;
-/// Of the ties that are past their strength those let go together that are within this part of the worst one. What the
-/// others carry changes then.
-const WORST: f64 = 0.9;
 
 /// What moves with a body, also a little beside its surface.
 #[derive(Debug, Clone, Copy)]
@@ -467,14 +464,13 @@ impl Touch {
                 loads.push(load);
             }
         }
-        let worst = loads.iter().copied().fold(0.0, f64::max);
-        if worst <= 1.0 {
-            return false;
-        }
+        let mut any = false;
         for (hold, load) in state.holds.iter_mut().zip(loads) {
-            hold.broken |= load >= f64::max(1.0, WORST * worst);
+            if load > 1.0 {
+                (hold.broken, any) = (true, true);
+            }
         }
-        true
+        any
     }
 
     /// The traction on the first surface around a tie, Pa: multipliers of single ones, of which some have little area, go
