@@ -214,30 +214,34 @@ impl Path<'_, '_> {
         for _ in 0..STEPS {
             loose.dampers.set(rate, self.positions.clone());
             let mut trial = self.positions.clone();
-            let failure = match self.equilibrium.settle(&mut trial, point, settings, true, self.observer) {
-                Ok(found) => {
-                    let moved = farthest(&trial, &self.positions);
-                    let left = self.left_to_dampers(loose, &trial);
-                    rounded = if left <= 2.0 * found.residual {
-                        rounded + 1
-                    } else {
-                        0
-                    };
-                    if left <= settings.tolerance || rounded == ROUNDED {
-                        return self.rest(loose, trial, &found, known);
+            let failure =
+                match self
+                    .equilibrium
+                    .settle(&mut trial, point, settings, true, self.observer)
+                {
+                    Ok(found) => {
+                        let moved = farthest(&trial, &self.positions);
+                        let left = self.left_to_dampers(loose, &trial);
+                        rounded = if left <= 2.0 * found.residual {
+                            rounded + 1
+                        } else {
+                            0
+                        };
+                        if left <= settings.tolerance || rounded == ROUNDED {
+                            return self.rest(loose, trial, &found, known);
+                        }
+                        self.accept(trial, point, found.iterations, found.residual);
+                        if loose.is_gone(self.equilibrium.problem, &self.positions) {
+                            return self.lost(Status::NotAtRest);
+                        }
+                        if found.iterations <= FLIGHT && moved > reach / 2.0 {
+                            reach *= 2.0;
+                        }
+                        rate = (rate * (moved / reach).clamp(FALL, 1.0 / FALL)).max(LEAST_RATE);
+                        continue;
                     }
-                    self.accept(trial, point, found.iterations, found.residual);
-                    if loose.is_gone(self.equilibrium.problem, &self.positions) {
-                        return self.lost(Status::NotAtRest);
-                    }
-                    if found.iterations <= FLIGHT && moved > reach / 2.0 {
-                        reach *= 2.0;
-                    }
-                    rate = (rate * (moved / reach).clamp(FALL, 1.0 / FALL)).max(LEAST_RATE);
-                    continue;
-                }
-                Err(failure) => failure,
-            };
+                    Err(failure) => failure,
+                };
             if let Some(contact) = self.equilibrium.problem.contact() {
                 contact.go_back();
             }

@@ -425,6 +425,11 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
         It has none that could be traced, or a file's that is open.
     """
     shape = design.shapes[each.shape] if isinstance(each.shape, str) else each.shape
+    for part in shape.every(design.shapes):
+        if isinstance(part, TriangleMesh) and part.state().holes:
+            what = f'the object "{each.name}" has a surface that {part.state().opening}'
+            hint = "close it in the program that it came from: what is inside it is a guess"
+            raise DesignError(f"{where}.shape", what, hint)
     size = each.voxel_size or design.voxel_size
     voxels = voxelize(shape, size, names=design.shapes)
     traced = trace([shape.build(design.shapes)], voxels)

@@ -25,7 +25,7 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 use super::gap::{area, closest, normal};
 use super::rigid::Frame;
 use super::state::State;
-use super::{Carried, PENALTY, Surface, Touch};
+use super::{Carried, LEAST_AREA, PENALTY, Surface, Touch};
 use crate::bounds::Bounds;
 use crate::skin::Carriers;
 use crate::tree::Tree;
@@ -34,6 +34,8 @@ use crate::tree::Tree;
 const FACING: f64 = -0.5;
 /// How far a tie may be off at the end, in voxels: a hundredth of the clearance of contact.
 const OFF: f64 = 1e-6;
+/// The penalty of a tie over that of contact: it has no kinks, and what multipliers still have to learn shrinks by it.
+const STIFFER_THAN_CONTACT: f64 = 10.0;
 /// Into how many parts the edge of a triangle is divided for the integrals: functions of the other side have kinks in it.
 const PARTS: u32 = 4;
 /// How far beside a triangle what lies on its edge may be, of the reach.
@@ -81,6 +83,8 @@ pub(super) struct Tie {
     pub second: Carried,
     /// In the unloaded body, m².
     pub area: f64,
+    /// The area for which it has a penalty, m².
+    pub stiff: f64,
     /// A triangle of the second surface there, as it is numbered on it.
     pub triangle: u32,
     /// The points of the first surface in it, and those of the second one nearest to it.
@@ -287,6 +291,7 @@ impl<'a> Meeting<'a> {
                 ties[nearest].points[1].push(point);
             }
         }
+        let mean = ties.iter().map(|tie| tie.area).sum::<f64>() / ties.len().max(1) as f64;
         let mut of_point: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (number, tie) in ties.iter().enumerate() {
             for point in &tie.points[0] {
@@ -297,6 +302,8 @@ impl<'a> Meeting<'a> {
             let each = tie.points[0].iter().flat_map(|point| &of_point[point]);
             let patch: BTreeSet<u32> = each.copied().collect();
             tie.patch = patch.into_iter().collect();
+            // What has little area would take its multiplier on slowly.
+            tie.stiff = tie.area.max(LEAST_AREA * mean);
         }
         ties
     }
@@ -383,6 +390,7 @@ impl Draft {
             first: mean(first),
             second: mean(second),
             area,
+            stiff: area,
             triangle: self.heaviest.1,
             points: [self.points.into_iter().collect(), Vec::new()],
             patch: Vec::new(),
@@ -427,7 +435,7 @@ impl Touch {
 
     /// N/m.
     pub(super) fn tie_penalty(&self, tie: &Tie) -> f64 {
-        PENALTY * self.description.young / self.description.voxel * tie.area
+        STIFFER_THAN_CONTACT * PENALTY * self.description.young / self.description.voxel * tie.stiff
     }
 
     /// The multipliers that ties have at an equilibrium, and how far off they are, as a part of what they may.
