@@ -20,6 +20,8 @@ use crate::settings::Settings;
 /// How far the load of a loose component takes it in one step of the path, in lengths of contact: a path of twenty steps
 /// under a load that grows evenly takes what nothing touches half a length away.
 const SAG: f64 = 0.05;
+/// The step of a path for which that is.
+const USUAL: f64 = 0.05;
 /// The stiffness of dampers where no load says one, in forces of a unit strain over a length of contact.
 const SOFTEST: f64 = 1e-5;
 /// The least rate. What an equilibrium leaves out of balance, 10⁻⁸ of the load, moves a neutral component by less
@@ -82,9 +84,11 @@ impl Loose {
         })
     }
 
-    /// Holds everything loose to where it is, as stiffly as along a load path.
-    pub fn hold(&self, positions: &[Vec3]) {
-        self.dampers.set(1.0, positions.to_vec());
+    /// Holds everything loose to where it is for a step of the load path, a part of the load: as a viscosity does whose time is the
+    /// load, so that shorter steps move it less far.
+    pub fn hold(&self, positions: &[Vec3], step: f64) {
+        let rate = f64::max(USUAL / step, 1.0);
+        self.dampers.set(rate, positions.to_vec());
     }
 
     /// Takes all forces of dampers away.

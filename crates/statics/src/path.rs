@@ -271,7 +271,7 @@ impl Path<'_, '_> {
             let point = Point::all(next);
             let mut trial = self.positions.clone();
             contact.inspect(|contact| contact.extrapolate((next - now) / last));
-            loose.inspect(|loose| loose.hold(&self.positions));
+            loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
             let found = self
                 .equilibrium

@@ -260,7 +260,8 @@ class Touching:
 
     def _check_bonds(self, surfaces: Sequence[Surface]) -> None:
         """What is bonded must meet."""
-        everything = [self.body, *surfaces, *([] if self.floor is None else [self.floor])]
+        floor = self._floor_under(surfaces)
+        everything = [self.body, *surfaces, *([] if floor is None else [floor])]
         for bond in self.bonds:
             first, second = (everything[number] for number in bond.of)
             distance = -overlap_of(first, second, self.voxel_size).depth
@@ -305,9 +306,12 @@ class Touching:
     @cached_property
     def floor(self) -> Surface | None:
         """The floor under everything, a square."""
+        return self._floor_under(self.surfaces)
+
+    def _floor_under(self, surfaces: Sequence[Surface]) -> Surface | None:
         if self.design.floor is None:
             return None
-        all_points = [self.mesh.vertices, *(surface.vertices for surface in self.surfaces)]
+        all_points = [self.mesh.vertices, *(surface.vertices for surface in surfaces)]
         points = np.concatenate(all_points)
         low, high = points.min(axis=0), points.max(axis=0)
         reach = _FLOOR * float(np.linalg.norm(high - low))
