@@ -108,6 +108,30 @@ def test_a_body_that_nothing_holds_is_named():
 
 
 def test_what_balances_is_called_unstable():
+    # A traced ball on a rigid table stands on a vertex.
+    table = Object(
+        name="table",
+        shape=vs.Box(size=(20 * mm, 20 * mm, 4 * mm), center=(10 * mm, 10 * mm, 30 * mm)),
+    )
+    ball = Object(
+        name="ball",
+        shape=vs.Sphere(radius=6 * mm, center=(10 * mm, 10 * mm, 40 * mm)),
+        motion="free",
+        mass="10 g",
+        voxel_size=3 * mm,
+    )
+    found = statics(dropped(objects=[table, ball], contact=Contact()))
+    assert found.status == "ok", found.message
+    assert found.stable is False
+    assert "it is not stable" in found.message
+    assert any("not stable" in warning.what for warning in found.warnings)
+    (contact,) = (each for each in found.contacts if "ball" in each.of)
+    assert contact.of == ("table", "ball")
+    assert contact.force[2] == pytest.approx(-0.01 * GRAVITY, rel=1e-6)
+
+
+@pytest.mark.slow  # it may tip over, which takes long
+def test_a_pencil_on_its_tip_is_unstable_or_falls():
     pencil = Object(
         name="pencil",
         shape=vs.Capsule(
