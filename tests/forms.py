@@ -128,6 +128,8 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (ContactPair, "kind"): {"of": ("body", "plain")},
+    (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
     (Object, "mass"): {"motion": "free"},
 }

@@ -58,12 +58,12 @@ def farthest_loose(setup: Setup, answer: _core.Answer) -> Loose | None:
             position = np.array(poses[each.name].position)
             moved = float(np.linalg.norm(position - surface.middle))
             found.append(Loose(f'the object "{each.name}"', position, moved))
-    piece = setup.loose_piece
-    if piece is not None:
-        whole = len(piece) == len(setup.mesh.vertices)
-        position = answer.positions[piece].mean(axis=0)
-        moved = float(np.linalg.norm(position - setup.mesh.vertices[piece].mean(axis=0)))
-        name = "the body" if whole else f"a component of {len(piece)} vertices"
+    part = setup.loose_piece
+    if part is not None:
+        whole = len(part) == len(setup.mesh.vertices)
+        position = answer.positions[part].mean(axis=0)
+        moved = float(np.linalg.norm(position - setup.mesh.vertices[part].mean(axis=0)))
+        name = "the body" if whole else f"a component of {len(part)} vertices"
         found.append(Loose(name, position, moved))
     return max(found, key=lambda each: each.moved, default=None)
 

@@ -27,6 +27,7 @@ mod field;
 mod friction;
 pub(crate) mod gap;
 mod listing;
+mod mortar;
 mod path;
 mod predicted;
 mod report;
