@@ -26,7 +26,8 @@ impl Equilibrium<'_> {
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
         let mut loose = self.problem.contact().is_some();
-        for round in 0..ROUNDS {
+        let mut round = 0;
+        while round < ROUNDS {
             let tolerance = if loose {
                 let changed = self.forces(positions, point).relative();
                 settings.tolerance.max(LOOSE.min(LEFT * changed))
@@ -40,9 +41,14 @@ impl Equilibrium<'_> {
             let way = way_of(round, self.problem, safe);
             let found = self.newton(positions, point, &settings, way, observer)?;
             iterations += found.iterations;
+            round += 1;
             let floor_changed = self.update_floor(positions, point)?;
             let settled = !floor_changed && self.is_contact_settled(positions);
             if settled && !loose {
+                if self.lets_go(positions) {
+                    (round, loose) = (1, true);
+                    continue;
+                }
                 return Ok(Found {
                     iterations,
                     residual: found.residual,
@@ -51,6 +57,12 @@ impl Equilibrium<'_> {
             loose &= !settled;
         }
         Err(Failure::Lost)
+    }
+
+    /// Lets bonds go that an equilibrium, whose contact has settled, pulls too hard; whether any did.
+    fn lets_go(&self, positions: &[Vec3]) -> bool {
+        let contact = self.problem.contact();
+        contact.is_some_and(|contact| contact.let_go(positions))
     }
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.

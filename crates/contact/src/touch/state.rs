@@ -4,6 +4,8 @@ use std::collections::BTreeSet;
 
 use voxsoft_solid::vector::Vec3;
 
+use super::bonds::Hold;
+
 /// What a sample carries along a load path.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Memory {
@@ -42,6 +44,9 @@ pub(super) struct State {
     pub before: Vec<Memory>,
     /// What they carry now.
     pub now: Vec<Memory>,
+    /// What ties carried at the last accepted state, and what they carry now.
+    pub accepted_holds: Vec<Hold>,
+    pub holds: Vec<Hold>,
     /// The points when candidates were listed last.
     pub listed_points: Vec<Vec3>,
     /// Whether they were those of the accepted state then.
