@@ -144,6 +144,8 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (ContactPair, "kind"): {"of": ("body", "plain")},
+    (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
     (Body, "design"): {"parts": None},
     **{(Body, name): {"parts": None, "design": INNER} for name in ("set", "motion")},

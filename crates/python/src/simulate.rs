@@ -21,7 +21,7 @@ use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
-use crate::touch::{BodyPart, ObjectPart, TouchParts, Touching, Way};
+use crate::touch::{BodyPart, BondPart, ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -252,6 +252,17 @@ impl PyProblemParts {
             .map(|row| row.to_vec())
             .collect();
         self.touch.get_or_insert_default().friction = rows;
+    }
+
+    /// Two surfaces are bonded, the one with the smaller number first: where they are within `reach` (m) of each other,
+    /// until a traction of `strength` (Pa).
+    fn bond(&mut self, a: u32, b: u32, reach: f64, strength: f64) {
+        let bond = BondPart {
+            of: [a, b],
+            reach,
+            strength,
+        };
+        self.touch.get_or_insert_default().bonds.push(bond);
     }
 
     /// A membrane on triangles.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
+use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
 use voxsoft_solid::vector::Vec3;
@@ -82,6 +83,17 @@ pub(crate) struct TouchParts {
     pub bodies: Vec<BodyPart>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
+    pub bonds: Vec<BondPart>,
+}
+
+/// Two surfaces that are bonded where they are near each other at rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BondPart {
+    pub of: [u32; 2],
+    /// m
+    pub reach: f64,
+    /// Pa; infinite for a bond that does not let go.
+    pub strength: f64,
 }
 
 impl TouchParts {
@@ -150,7 +162,14 @@ impl TouchParts {
                 triangles: object.triangles.clone(),
             });
         }
+        let bonds = self.bonds.iter().map(|bond| {
+            let side = |surface: u32| self.side(surface, &surfaces, &shares, body, first);
+            let [a, b] = bond.of.map(side);
+            Bond::new(a, b, bond.reach, bond.strength, body.rest())
+        });
+        let bonds = bonds.collect::<Result<_, _>>()?;
         let description = Description {
+            bonds,
             surfaces,
             friction: self.friction.clone(),
             voxel: self.voxel(),
@@ -158,6 +177,42 @@ impl TouchParts {
         };
         let touch = Touch::new(description, body.rest())?;
         Ok(touch.with_bodies(self.bodies.len() as u32, shares))
+    }
+}
+
+impl TouchParts {
+    /// A surface with what is behind it, `shares` those of the points of all bodies. Bodies come before the objects, so that
+    /// of a bond with an object the first side is the soft one.
+    fn side<'a>(
+        &'a self,
+        number: u32,
+        surfaces: &'a [Surface],
+        shares: &'a [Carried],
+        body: &'a Body,
+        first: usize,
+    ) -> Side<'a> {
+        let number = number as usize;
+        let (solid, shares) = match number.checked_sub(self.bodies.len()) {
+            Some(object) => {
+                let at = first + 4 * object;
+                (
+                    Solid::Rigid(&self.objects[object].frame, at as u32),
+                    &[][..],
+                )
+            }
+            None => {
+                let points = |surfaces: &[Surface]| surfaces.iter().map(|s| s.points.len()).sum();
+                let (start, end): (usize, usize) =
+                    (points(&surfaces[..number]), points(&surfaces[..=number]));
+                (Solid::Voxels(body.voxels()), &shares[start..end])
+            }
+        };
+        Side {
+            number: number as u32,
+            surface: &surfaces[number],
+            shares,
+            solid,
+        }
     }
 }
 
@@ -182,8 +237,16 @@ pub struct PyContact {
     pub force: Vec3,
     /// The sum of the sizes of all forces, N.
     pub pressed: f64,
+    /// The sum of all pressures, N.
+    pub pressure: f64,
+    /// The part of the force that is friction, N.
+    pub friction: Vec3,
+    /// The most that friction can be, N.
+    pub bound: f64,
     /// In the unloaded body, m².
     pub area: f64,
+    /// The part of it that is bonded, m².
+    pub bonded: f64,
     /// The smallest, m.
     pub gap: f64,
     /// The part of the pressure under which the surfaces slip.
@@ -256,7 +319,11 @@ pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<
             b: pair.of[1],
             force: pair.force,
             pressed: pair.pressed,
+            pressure: pair.pressure,
+            friction: pair.friction,
+            bound: pair.bound,
             area: pair.area,
+            bonded: pair.bonded,
             gap: pair.gap,
             slipping: pair.slipping,
         };

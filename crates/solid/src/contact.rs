@@ -25,8 +25,14 @@ pub trait Contact: Term {
     /// default that is asked for, at most 1.
     fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
 
-    /// Whether the answer depends on the way to it.
-    fn has_friction(&self) -> bool;
+    /// A length by which things are near each other, in m: the size of a voxel.
+    fn length(&self) -> f64;
+
+    /// Lets bonds go that the forces at `positions`, an equilibrium, pass; whether any did. What others carry changes then.
+    fn let_go(&self, positions: &[Vec3]) -> bool;
+
+    /// Whether the answer depends on the way to it, as friction and bonds that may break make it.
+    fn depends_on_way(&self) -> bool;
 
     /// Takes `positions` as the state from which the path goes on.
     fn accept(&self, positions: &[Vec3]);

@@ -45,6 +45,7 @@ mod equilibrium;
 mod implicit;
 mod inertia;
 mod iterative;
+mod loose;
 mod multigrid;
 mod ordering;
 mod path;

@@ -1,10 +1,13 @@
 //! The load path: steps that grow and back off, and what to say when there is no way on.
 
+use std::sync::Arc;
+
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Observer, Problem, Progress, Status};
+use voxsoft_solid::{Observer, Problem, Progress, Status, Term};
 
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure};
+use crate::loose::Loose;
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::system::{FactorError, Means, System};
@@ -22,8 +25,8 @@ const SAFE_STEP: f64 = 0.05;
 const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
-/// The longest step along a path on which friction depends.
-const LONGEST_WITH_FRICTION: f64 = 0.05;
+/// The longest step along a path on which the answer depends: with friction, or bonds that may break.
+const LONGEST_OF_WAY: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
@@ -68,6 +71,27 @@ pub fn solve(
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Answer {
+    let loose = match settings.control {
+        Control::Load => Loose::find(problem),
+        Control::ArcLength { .. } | Control::Volume { .. } => None,
+    };
+    let Some(loose) = loose else {
+        return follow(problem, start, settings, observer, None);
+    };
+    let dampers = Arc::clone(&loose.dampers) as Arc<dyn Term>;
+    let damped = problem.clone().with_term(dampers);
+    let damped = damped.expect("dampers have the vertices of the body");
+    follow(&damped, start, settings, observer, Some(&loose))
+}
+
+/// Follows the path of a problem, in which dampers hold what is loose.
+fn follow(
+    problem: &Problem,
+    start: Option<&[Vec3]>,
+    settings: &Settings,
+    observer: &mut Observer<'_>,
+    loose: Option<&Loose>,
+) -> Answer {
     let rest = problem.body().rest();
     let positions = start.unwrap_or(rest).to_vec();
     let solver = match settings.control {
@@ -89,7 +113,10 @@ pub fn solve(
         Err(error) => return refused(positions, error),
     };
     let mut path = Path {
-        equilibrium,
+        equilibrium: Equilibrium {
+            has_loose: loose.is_some(),
+            ..equilibrium
+        },
         positions,
         point: Point::all(0.0),
         points: Vec::new(),
@@ -97,12 +124,13 @@ pub fn solve(
         looking: false,
     };
     let ending = match settings.control {
-        Control::Load => path.follow_load(settings, start.is_some()),
+        Control::Load => path.follow_load(settings, start.is_some(), loose),
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
             volume::follow_volume(&mut path, settings, ratio, steps)
         }
     };
+    loose.inspect(|loose| loose.let_go(&path.positions));
     path.answer(ending, settings)
 }
 
@@ -215,7 +243,7 @@ impl Path<'_, '_> {
     }
 
     /// Load control. From a given start the full load is tried first.
-    fn follow_load(&mut self, settings: &Settings, warm: bool) -> Ending {
+    fn follow_load(&mut self, settings: &Settings, warm: bool, loose: Option<&Loose>) -> Ending {
         let step = if warm {
             1.0
         } else {
@@ -224,7 +252,7 @@ impl Path<'_, '_> {
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
         let longest = match contact {
-            Some(contact) if contact.has_friction() => LONGEST_WITH_FRICTION,
+            Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
             _ => 1.0,
         };
         let easy = if contact.is_some() {
@@ -246,6 +274,7 @@ impl Path<'_, '_> {
             let point = Point::all(next);
             let mut trial = self.positions.clone();
             contact.inspect(|contact| contact.extrapolate((next - now) / last));
+            loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
             let found = self
                 .equilibrium
@@ -254,13 +283,17 @@ impl Path<'_, '_> {
                 Ok(found) => {
                     let stable = self.equilibrium.is_stable(&trial, point);
                     if stable || cuts == UNSTABLE_CUTS {
+                        self.looking = loose.is_some() && next == 1.0;
                         self.accept(trial, point, found.iterations, found.residual);
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
                         }
                         last = next - now;
                         if next == 1.0 {
-                            return Ending::new(Status::AtRest, None, 1.0);
+                            return match loose {
+                                Some(loose) => self.release(loose, settings),
+                                None => Ending::new(Status::AtRest, None, 1.0),
+                            };
                         }
                         if found.iterations <= easy {
                             step = (2.0 * step).min(longest);

@@ -27,7 +27,8 @@ impl Equilibrium<'_> {
         let mut iterations = 0;
         // Where more precision is asked for, anchors of friction must not depend on what an iteration has left.
         let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
-        for round in 0..ROUNDS {
+        let mut round = 0;
+        while round < ROUNDS {
             let tolerance = if loose {
                 let changed = self.forces(positions, point).relative();
                 settings.tolerance.max(LOOSE.min(LEFT * changed))
@@ -41,9 +42,14 @@ impl Equilibrium<'_> {
             let way = way_of(round, self.problem, safe);
             let found = self.newton(positions, point, &settings, way, observer)?;
             iterations += found.iterations;
+            round += 1;
             let floor_changed = self.update_floor(positions, point)?;
             let settled = !floor_changed && self.is_contact_settled(positions);
             if settled && !loose {
+                if self.lets_go(positions) {
+                    (round, loose) = (1, true);
+                    continue;
+                }
                 return Ok(Found {
                     iterations,
                     residual: found.residual,
@@ -52,6 +58,12 @@ impl Equilibrium<'_> {
             loose &= !settled;
         }
         Err(Failure::Lost)
+    }
+
+    /// Lets bonds go that an equilibrium, whose contact has settled, pulls too hard; whether any did.
+    fn lets_go(&self, positions: &[Vec3]) -> bool {
+        let contact = self.problem.contact();
+        contact.is_some_and(|contact| contact.let_go(positions))
     }
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final, Literal
+from typing import Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from voxsoft.design.object import Object
 from voxsoft.design.operands import Name
-from voxsoft.errors import ErrorDetail
+from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.records import Record, closest
+from voxsoft.units import PositivePressure
 
 #: What a pair calls the body of the design.
 BODY: Final = "body"
@@ -29,17 +30,44 @@ class ContactPair(Record):
     friction
         Coulomb's coefficient; default: that of :class:`Contact`.
     kind
-        ``"touching"`` (default), or ``"none"`` where they pass through each other.
+        ``"touching"`` (default), ``"none"`` where they pass through each other, or ``"bonded"``
+        where they are within half a voxel of each other in the unloaded design: there they pull
+        and push, and what lies between them at rest stays.
+    strength
+        The traction at which a bond lets go, by its pull and by what acts along it,
+        the root of the sum of their squares; then they touch. Default: it never does.
 
     Examples
     --------
     >>> ContactPair(of=("body", "plate"), friction=0.9).kind
     'touching'
+    >>> ContactPair(of=("body", "pad"), kind="bonded", strength="20 kPa").strength
+    20000.0
+    >>> ContactPair(of=("body", "pad"), strength="20 kPa")
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: strength: is that of a bond, and the kind is "touching". Try: \
+write kind = "bonded", or leave strength out
     """
 
     of: tuple[Name, Name]
     friction: float | None = Field(None, ge=0.0)
-    kind: Literal["touching", "none"] = "touching"
+    kind: Literal["touching", "none", "bonded"] = "touching"
+    strength: PositivePressure | None = None
+
+    @model_validator(mode="after")
+    def _uses_all(self) -> Self:
+        if self.strength is not None and self.kind != "bonded":
+            what = f'is that of a bond, and the kind is "{self.kind}"'
+            raise DesignError("strength", what, 'write kind = "bonded", or leave strength out')
+        slides = self.kind == "touching" or self.strength is not None
+        if self.friction is not None and not slides:
+            what = f'is not used by what does not slide, and the kind is "{self.kind}"'
+            hint = "leave friction out"
+            if self.kind == "bonded":
+                hint = "add a strength, beyond which it slides, or leave friction out"
+            raise DesignError("friction", what, hint)
+        return self
 
 
 class Contact(Record):
@@ -51,6 +79,9 @@ class Contact(Record):
         Coulomb's coefficient of all pairs; default 0.
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
+    separate
+        Whether objects that are in something in the unloaded design are moved out of it, along the
+        shortest way, with a warning; default False, which refuses them.
     surface
         What of the body touches: ``"smooth"`` (default) is the surface of its shapes, carried by
         the voxels, ``"voxels"`` their faces.
@@ -72,6 +103,7 @@ class Contact(Record):
 
     friction: float = Field(0.0, ge=0.0)
     pairs: tuple[ContactPair, ...] = ()
+    separate: bool = False
     surface: Literal["smooth", "voxels"] = "smooth"
 
     def table(
@@ -79,7 +111,8 @@ class Contact(Record):
     ) -> list[list[float]]:
         """The friction of the bodies, the objects and a floor with each other.
 
-        NaN stands where they do not touch: two things that are held or moved do not.
+        NaN stands where they do not touch: two things that are held or moved do not, nor do those
+        that are bonded for good.
 
         Examples
         --------
@@ -104,7 +137,8 @@ class Contact(Record):
         for pair in self.pairs:
             a, b = (names.index(name) for name in pair.of)
             friction = self.friction if pair.friction is None else pair.friction
-            table[a][b] = table[b][a] = none if pair.kind == "none" else friction
+            touches = pair.kind == "touching" or pair.strength is not None
+            table[a][b] = table[b][a] = friction if touches else none
         return table
 
 
@@ -134,9 +168,12 @@ def contact_problems(
             if name not in known:
                 hint = closest(name, known) or f'write "{some}" or the name of an object'
                 yield ErrorDetail(where, f'there is no object "{name}"', hint)
-        if pair.kind == "touching" and free.isdisjoint(pair.of):
+        if pair.kind != "none" and free.isdisjoint(pair.of):
             what = "are held or moved, both of them, and do not touch each other"
             yield ErrorDetail(where, what, f'name "{some}" or an object that is free')
+        elif pair.kind == "bonded" and pair.of[0] == pair.of[1]:
+            what = "is one thing, and is not bonded to itself"
+            yield ErrorDetail(where, what, "name two things")
         elif pair.kind == "touching" and pair.of[0] == pair.of[1] and pair.of[0] not in bodies:
             what = "is rigid, and does not touch itself"
             yield ErrorDetail(where, what, f'name "{some}" twice, or two things')

@@ -281,8 +281,8 @@ class Setup:
         return _loose_piece(self.mesh, held)
 
     def _check_support(self) -> None:
-        """Every component must be held, unless it may lie on a floor."""
-        if self.design.floor is not None:
+        """Every component must be held, unless it may come to lie on a floor or an object."""
+        if self.design.floor is not None or self.design.objects:
             return
         if not self.design.clamps:
             raise DesignError(

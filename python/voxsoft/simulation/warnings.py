@@ -22,6 +22,7 @@ from voxsoft.simulation.collapse import collapsed_voxels
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
+from voxsoft.simulation.separation import separations
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
@@ -47,6 +48,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     doubtful_surfaces,
     doubtful_thickness,
     overlap_warnings,
+    separations,
 )
 FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
 

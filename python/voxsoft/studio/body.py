@@ -24,7 +24,6 @@ from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.choice import method_of
-from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.loads import read
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
@@ -98,7 +97,7 @@ class StudioBody:
         refusal: VoxSoftError | None = None
         try:
             method = method_of(design, design.solver)
-            setup.check(allow_loose=not method.to_rest or may_lie(design, method))
+            setup.check(allow_loose=not method.to_rest)
             _ = setup.problem, setup.problem_alone
         except VoxSoftError as error:
             refusal = error

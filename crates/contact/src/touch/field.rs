@@ -154,6 +154,7 @@ mod tests {
             triangles: first.triangles.clone(),
         };
         let description = Description {
+            bonds: Vec::new(),
             surfaces: vec![first, second],
             friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
             voxel: 1.0,

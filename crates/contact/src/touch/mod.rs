@@ -21,11 +21,13 @@
 //! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
 //! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
+pub mod bonds;
 mod facing;
 mod field;
 mod friction;
 pub(crate) mod gap;
 mod listing;
+mod mortar;
 mod path;
 mod predicted;
 mod recording;
@@ -40,6 +42,7 @@ use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Contact, ProblemError};
 
+use bonds::Bond;
 pub use field::ContactField;
 use gap::normal;
 pub use report::PairReport;
@@ -88,6 +91,8 @@ pub struct Description {
     pub surfaces: Vec<Surface>,
     /// The coefficient of friction of each surface with each, symmetric; NaN where they pass through each other.
     pub friction: Vec<Vec<f64>>,
+    /// Surfaces that are bonded.
+    pub bonds: Vec<Bond>,
     /// The size of a voxel in m.
     pub voxel: f64,
     /// Young's modulus of what touches, or something of its size, in Pa.
@@ -113,6 +118,8 @@ pub struct Touch {
     surface_of: Vec<u32>,
     /// The triangles at each point.
     around: Vec<Vec<u32>>,
+    /// For each sample the ties that it is in, with the surface that they are to.
+    ties_at: Vec<Vec<(u32, u32)>>,
     state: RwLock<State>,
 }
 
@@ -156,6 +163,7 @@ impl Touch {
         }
         let (mut samples, mut points, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
         let (mut surface_of, mut least_area) = (Vec::new(), Vec::new());
+        let mut first_sample = Vec::new();
         for (number, surface) in description.surfaces.iter().enumerate() {
             surface.check(rest.len())?;
             let number = number as u32;
@@ -164,6 +172,7 @@ impl Touch {
             least_area.push(LEAST_AREA * area / own.len().max(1) as f64);
             samples.extend(own);
             let first = points.len() as u32;
+            first_sample.push(first);
             points.extend(surface.points.iter().cloned());
             triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
             surface_of.resize(triangles.len(), number);
@@ -174,7 +183,7 @@ impl Touch {
                 around[*point as usize].push(t as u32);
             }
         }
-        let touch = Self {
+        let mut touch = Self {
             description,
             samples,
             least_area,
@@ -184,8 +193,10 @@ impl Touch {
             triangles,
             surface_of,
             around,
+            ties_at: Vec::new(),
             state: RwLock::default(),
         };
+        touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());
         Contact::start(&touch, rest);
         Ok(touch)
     }
@@ -344,6 +355,7 @@ mod tests {
         };
         let surfaces = vec![tetrahedron(0), tetrahedron(4)];
         let description = Description {
+            bonds: Vec::new(),
             surfaces,
             friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
             voxel: 1.0,

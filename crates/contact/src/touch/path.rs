@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
+use super::bonds::Hold;
 use super::gap::{self, normal};
 use super::recording::Recording;
 use super::state::{Facing, Memory, State};
@@ -26,6 +27,7 @@ impl Contact for Touch {
         let points = self.points_at(positions);
         let samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         let nothing = vec![Memory::default(); self.samples.len()];
+        let untouched = vec![Hold::default(); self.ties().count()];
         let mut state = self.write();
         *state = State {
             accepted_points: points.clone(),
@@ -33,6 +35,8 @@ impl Contact for Touch {
             accepted: nothing.clone(),
             before: nothing.clone(),
             now: nothing,
+            accepted_holds: untouched.clone(),
+            holds: untouched,
             stick: STICK[0],
             crept: f64::INFINITY,
             recording: state.recording.is_some().then(Recording::default),
@@ -82,7 +86,8 @@ impl Contact for Touch {
             largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
             farthest = farthest.max(crept / CREEP);
         }
-        largest = largest.max(farthest);
+        let (holds, off) = self.corrected_ties(&state, positions);
+        largest = largest.max(farthest).max(off);
         let enough = if state.corrections <= PRECISE {
             precision
         } else {
@@ -98,14 +103,38 @@ impl Contact for Touch {
             state.settle_moment(enough <= precision);
         } else {
             state.now = now;
+            state.holds = holds;
             state.looks = u32::from(patient);
         }
         settled
     }
 
-    fn has_friction(&self) -> bool {
+    fn length(&self) -> f64 {
+        self.description.voxel
+    }
+
+    fn let_go(&self, positions: &[Vec3]) -> bool {
+        let mut state = self.write();
+        let any = self.break_ties(&mut state, positions);
+        if any {
+            // What held until now may touch.
+            let points = self.points_at(positions);
+            self.list(&mut state, points);
+            (state.listed_at_rest, state.corrections) = (false, 0);
+            state.looks = LOOKS;
+        }
+        any
+    }
+
+    fn depends_on_way(&self) -> bool {
         let table = self.description.friction.iter().flatten();
-        table.into_iter().any(|coefficient| *coefficient > 0.0)
+        let rough = table.into_iter().any(|coefficient| *coefficient > 0.0);
+        rough
+            || self
+                .description
+                .bonds
+                .iter()
+                .any(|bond| bond.strength.is_finite())
     }
 
     fn accept(&self, positions: &[Vec3]) {
@@ -122,6 +151,7 @@ impl Contact for Touch {
         state.accepted_points.clone_from(&points);
         state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
+        state.accepted_holds = state.holds.clone();
         (state.crept, state.corrections) = (f64::INFINITY, 0);
         self.list_from_accepted(&mut state, points);
     }
@@ -131,6 +161,15 @@ impl Contact for Touch {
         state.drop_step();
         state.extrapolated = None;
         state.now = state.accepted.clone();
+        if state
+            .holds
+            .iter()
+            .zip(&state.accepted_holds)
+            .any(|(a, b)| a.broken != b.broken)
+        {
+            state.listed_at_rest = false;
+        }
+        state.holds = state.accepted_holds.clone();
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
         self.list_from_accepted(&mut state, points);

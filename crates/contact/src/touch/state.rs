@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use voxsoft_solid::vector::Vec3;
 
+use super::bonds::Hold;
 use super::recording::Recording;
 
 /// What a sample carries along a load path.
@@ -48,6 +49,9 @@ pub(super) struct State {
     pub extrapolated: Option<f64>,
     /// What they carry now.
     pub now: Vec<Memory>,
+    /// What ties carried at the last accepted state, and what they carry now.
+    pub accepted_holds: Vec<Hold>,
+    pub holds: Vec<Hold>,
     /// The points when candidates were listed last.
     pub listed_points: Vec<Vec3>,
     /// Whether they were those of the accepted state then.

@@ -35,6 +35,9 @@ impl Term for Touch {
                 visit(vertices);
             });
         }
+        for (_, tie) in self.ties() {
+            self.visit_tie(tie, &mut |vertices, _| visit(vertices));
+        }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
@@ -44,6 +47,9 @@ impl Term for Touch {
             energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
         });
         self.each_friction(&state, positions, |_, friction| energy += friction.energy);
+        self.each_tie(&state, positions, |_, tie, force| {
+            energy += dot(force, force) / (2.0 * self.tie_penalty(tie));
+        });
         energy
     }
 
@@ -56,6 +62,10 @@ impl Term for Touch {
         });
         self.each_friction(&state, positions, |sample, friction| {
             self.add_force(friction.force, sample, friction.anchor, forces);
+        });
+        self.each_tie(&state, positions, |_, tie, force| {
+            tie.first.add_force(1.0, force, forces);
+            tie.second.add_force(-1.0, force, forces);
         });
     }
 
@@ -104,6 +114,7 @@ impl Touch {
             };
             self.visit_local(sample, friction.anchor.0, block, visit);
         });
+        self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
     /// Hands over a matrix on the sample and the corners of a triangle as one on the vertices that carry them.
