@@ -8,7 +8,7 @@ use crate::point::Point;
 use crate::settings::Settings;
 
 /// How often the floor or contact may change their minds at one point.
-const ROUNDS: usize = 40;
+const ROUNDS: usize = 100;
 /// How good an equilibrium must be for contact to be corrected by it, and how much of what the last correction has changed
 /// may be left; at the end corrections are checked at the tolerance that was asked for.
 const LOOSE: f64 = 1e-3;

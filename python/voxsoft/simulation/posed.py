@@ -10,7 +10,8 @@ from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.records import closest
 from voxsoft.simulation.apart import Surface, distances_to
-from voxsoft.simulation.touching import Pose, surface_of
+from voxsoft.simulation.rigid import surface_of
+from voxsoft.simulation.touching import Pose
 
 
 def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:
