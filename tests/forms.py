@@ -14,11 +14,13 @@ import pint
 from pydantic import StringConstraints, WithJsonSchema
 
 from voxsoft.design import Design, Parameter, Region
+from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.object import Object
+from voxsoft.design.part import Part
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
@@ -104,6 +106,20 @@ SPECIAL: dict[tuple[type, str], tuple[Any, ...]] = {
 # The one name that every contact may have: that of the body.
 SPECIAL[ContactPair, "of"] = (("body", "body"), ["body", "body"])
 
+#: A design within a design, whose formulas are of its own parameters.
+INNER = {
+    "name": "inner",
+    "voxel_size": "5 mm",
+    "parameters": {"r": {"value": "20 mm", "max": "1 km"}, "many": 2},
+    "parts": [{"shape": {"kind": "sphere", "radius": "= r"}, "material": "ecoflex-00-30"}],
+    "clamps": [{"region": {"z": ["-inf", 0]}}],
+    "probes": {"top": {"point": [0, 0, 0]}},
+}
+SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
+SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
+#: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.
+ELSEWHERE = {(Region, "body"), (Part, "body")}
+
 #: What a record needs beside what its fields require.
 NEEDS: dict[type, dict[str, Any]] = {
     Region: {"x": (0, "10 mm")},
@@ -128,7 +144,11 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (ContactPair, "kind"): {"of": ("body", "plain")},
+    (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
+    (Body, "design"): {"parts": None},
+    **{(Body, name): {"parts": None, "design": INNER} for name in ("set", "motion")},
     (Object, "mass"): {"motion": "free"},
 }
 
@@ -268,6 +288,8 @@ def records(model: type[Record]) -> tuple[list[dict[str, Any]], list[str]]:
     found, barren = [base(model)], []
     for name, info in model.model_fields.items():
         key = info.alias or name
+        if any((each, name) in ELSEWHERE for each in model.__mro__):
+            continue
         if get_origin(info.annotation) is Literal and len(get_args(info.annotation)) == 1:
             continue
         taken = [

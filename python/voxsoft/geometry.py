@@ -6,7 +6,7 @@ Plain functions of arrays; :mod:`voxsoft.metrics` says which of them a design ma
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 
 def mean_displacement(
@@ -98,3 +98,36 @@ def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]
     (ax, bx, cx), (ay, by, cy), (az, bz, cz) = corners
     six_volumes = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
     return -float(six_volumes.sum()) / 6.0
+
+
+def rotation_matrix(axis: ArrayLike, angle: float) -> NDArray[np.float64]:
+    """The matrix of a right-handed turn about an axis through the origin.
+
+    Rodrigues' formula. What is 0 or 1 up to rounding is exact, so that quarter turns are.
+
+    Parameters
+    ----------
+    axis
+        Its direction, (3,), of any length but zero.
+    angle
+        In rad.
+
+    Returns
+    -------
+    ndarray of shape (3, 3)
+
+    Examples
+    --------
+    >>> rotation_matrix((0, 0, 2), np.pi / 2).tolist()
+    [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+    """
+    x, y, z = np.asarray(axis, dtype=np.float64) / np.linalg.norm(axis)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix = np.eye(3) + np.sin(angle) * across + (1.0 - np.cos(angle)) * across @ across
+    whole = np.rint(matrix)
+    exact: NDArray[np.float64] = np.where(np.abs(matrix - whole) < _ROUNDING, whole + 0.0, matrix)
+    return exact
+
+
+#: What a turn by a right angle leaves of a zero, with room.
+_ROUNDING = 1e-15

@@ -39,6 +39,8 @@ class MeshCavity:
         than it has room for.
     name : str
         What the design calls it; empty where it has no name.
+    body : str
+        The name of the body that it is in; empty where there is only one.
     """
 
     triangles: NDArray[np.int32] = field(repr=False)
@@ -49,6 +51,7 @@ class MeshCavity:
     )
     void_parts: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0), repr=False)
     name: str = ""
+    body: str = ""
 
     def __post_init__(self) -> None:
         for name in ("triangles", "void_tets"):
@@ -62,7 +65,7 @@ class MeshCavity:
         if not isinstance(other, MeshCavity):
             return NotImplemented
         arrays = ("triangles", "void_tets", "void_parts")
-        mine, its = ((each.volume, each.area, each.name) for each in (self, other))
+        mine, its = ((each.volume, each.area, each.name, each.body) for each in (self, other))
         return mine == its and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
         )
@@ -90,6 +93,64 @@ class MeshCavity:
         if len(self.void_tets) == 0:
             return enclosed
         return enclosed + float(self.void_parts @ _tet_volumes(positions, self.void_tets))
+
+
+@dataclass(frozen=True, eq=False)
+class BodyMesh:
+    """One body of a mesh: its own mesh, and where in the joined one it is.
+
+    Attributes
+    ----------
+    name : str
+        Of the body.
+    mesh : Mesh
+        In the frame of the body, before it is turned and moved.
+    rotation : ndarray of float64, shape (3, 3)
+    position : ndarray of float64, shape (3,)
+        From there to the joined mesh [m]: ``x = rotation @ own + position``.
+    first_vertex, first_tet : int
+        Its first vertex and tet among those of the joined mesh; the others follow.
+    """
+
+    name: str
+    mesh: Mesh
+    rotation: NDArray[np.float64] = field(repr=False)
+    position: NDArray[np.float64] = field(repr=False)
+    first_vertex: int = 0
+    first_tet: int = 0
+
+    @property
+    def vertices(self) -> slice:
+        """Its vertices among those of the joined mesh."""
+        return slice(self.first_vertex, self.first_vertex + len(self.mesh.vertices))
+
+    @property
+    def is_along_axes(self) -> bool:
+        """Whether it is moved without a turn."""
+        return bool((self.rotation == np.eye(3)).all())
+
+    def placed(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the frame of the body where the joined mesh has them [m], (n, 3)."""
+        moved: NDArray[np.float64] = points @ self.rotation.T + self.position
+        return moved
+
+    def own(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the joined mesh in the frame of the body [m], (n, 3)."""
+        back: NDArray[np.float64] = (points - self.position) @ self.rotation
+        return back
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, BodyMesh):
+            return NotImplemented
+        return (
+            (self.name, self.first_vertex, self.first_tet)
+            == (other.name, other.first_vertex, other.first_tet)
+            and self.mesh == other.mesh
+            and np.array_equal(self.rotation, other.rotation)
+            and np.array_equal(self.position, other.position)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 @dataclass(frozen=True)
@@ -160,6 +221,9 @@ class Mesh:
     moments : ndarray of float64, shape (v, 6), or None
         Where in each voxel the material is, in halves of an edge: its center along x, y, z, counted
         from that of the voxel, and √3 times its standard deviation from there (1 if full).
+    bodies : tuple of BodyMesh
+        What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
+        Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
     """
 
     vertices: NDArray[np.float64]
@@ -172,6 +236,7 @@ class Mesh:
     cavities: tuple[MeshCavity, ...]
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
+    bodies: tuple[BodyMesh, ...] = ()
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -282,6 +347,19 @@ class Mesh:
         return replace(self, fractions=values, moments=where, cavities=tuple(cavities))
 
     @property
+    def each_body(self) -> tuple[BodyMesh, ...]:
+        """Its bodies; itself where there is only one.
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> mesh = Voxels.from_array([[[1]]], voxel_size=0.5).mesh()
+        >>> mesh.each_body[0].mesh is mesh
+        True
+        """
+        return self.bodies or (BodyMesh("", self, np.eye(3), np.zeros(3)),)
+
+    @property
     def volume(self) -> float:
         """Volume of the material [m³]: of the tets, each as far as its voxel is filled."""
         volumes = self.tet_volumes
@@ -298,6 +376,7 @@ class Mesh:
         return (
             self.voxel_size == other.voxel_size
             and self.cavities == other.cavities
+            and self.bodies == other.bodies
             and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _DTYPES)
         )
 

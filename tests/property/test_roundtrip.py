@@ -49,6 +49,8 @@ def world(names=NAMES, **entries):
     for key, value in entries.items():
         before = given.get(key)
         given[key] = {**before, **value} if isinstance(before, dict) else value
+    if "bodies" in entries:  # they have the parts, and their names are not those of objects
+        given |= {"parts": [], "objects": []}
     if len(names) == 1:  # one entry at a time: a small world does, and is quicker
         used = {name for name in PARAMETERS if name in str(entries)}
         given["parameters"] = {name: PARAMETERS[name] for name in used}
@@ -80,7 +82,7 @@ def _entries(name, info, tables):
     for start in range(0, len(tables), AT_ONCE):
         some = tables[start : start + AT_ONCE]
         if text.startswith("tuple"):
-            yield {name: list(_of_own_names(some)) if name == "objects" else some}
+            yield {name: list(_of_own_names(some)) if name in ("objects", "bodies") else some}
         elif "Mapping" in text[:30]:
             yield {name: {f"e{index}": table for index, table in enumerate(some)}}
         else:
@@ -191,6 +193,28 @@ def test_roundtrip_of_every_form(model, tmp_path, monkeypatch, record_property):
         tried += count_of(given)
     assert tried
     record_property("forms", tried)
+
+
+def test_roundtrip_of_places_of_bodies(tmp_path, record_property):
+    """Bodies of every name, and all that may be of one: parts, regions, points, contact."""
+    shape, names = Sphere(radius=0.01), [name for name in NAMES if name not in ("body", "floor")]
+    at = {"point": (0, 0, 0)}
+    design = Design(
+        **world(
+            bodies=[{"name": name, "position": (i, 0, 0)} for i, name in enumerate(names)],
+            clamps=[{"region": {"body": name}} for name in names],
+            layers=[
+                {"region": {"body": n, "z": (0, 0)}, "young": 1e6, "thickness": 1e-4} for n in names
+            ],
+            loads=[{"kind": "force", "region": {"body": n}, "value": (1, 0, 0)} for n in names],
+            probes={name: {"body": name, **at} for name in names},
+            chambers={name: {"body": name, **at} for name in names},
+            contact={"pairs": [{"of": [name, names[0]], "kind": "none"} for name in names]},
+        )
+        | {"parts": [{"shape": shape, "material": "plain", "body": name} for name in names]}
+    )
+    check(design, tmp_path, many=True)
+    record_property("forms", len(names))
 
 
 def test_roundtrip_of_every_form_of_a_card(tmp_path, record_property):

@@ -128,8 +128,8 @@ def test_a_plate_presses_live_as_hard_as_statics_says(pressed):
     playback.do(commands.Play(seq=1))
     moments = []
     for _ in range(200):
-        told = playback.advance(1 / 60, 10.0)
-        moments += [event.moment for event in told if isinstance(event, events.MomentNews)]
+        reported = playback.advance(1 / 60, 10.0)
+        moments += [event.moment for event in reported if isinstance(event, events.MomentNews)]
         if not playback.moving:
             break
     assert playback.state == "at-rest"

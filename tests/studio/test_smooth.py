@@ -100,6 +100,6 @@ def test_what_has_no_voxels_is_not_shown():
 
 def test_a_body_that_is_too_large_has_none_rather_than_a_coarse_one(monkeypatch):
     design = families.sphere()
-    assert pack_smooth(design, voxels_of(design), 1) is not None
+    assert pack_smooth(design, {"": voxels_of(design)}, 1) is not None
     monkeypatch.setattr("voxsoft.shapes.tracing.MOST_SAMPLES", 1000)
-    assert pack_smooth(design, voxels_of(design), 1) is None
+    assert pack_smooth(design, {"": voxels_of(design)}, 1) is None

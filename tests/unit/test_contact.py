@@ -8,9 +8,9 @@ from voxsoft.comparison.bricks import BrickModel
 from voxsoft.design import Contact, ContactPair, Object, Solver
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.files import load, save
-from voxsoft.simulation import Setup, gradient, simulate
+from voxsoft.simulation import Setup, simulate
+from voxsoft.simulation.rigid import surface_of
 from voxsoft.simulation.state import result_at
-from voxsoft.simulation.touching import surface_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.html import page_of_body
 from voxsoft.units import kPa, mm
@@ -180,8 +180,6 @@ def test_methods_that_know_no_contact_refuse_it(settings):
 
 
 def test_what_knows_no_contact_says_so(result):
-    with pytest.raises(DesignError, match="objects: is not known to gradients yet"):
-        gradient(result, "max_displacement", ["clamps.0.region"])
     with pytest.raises(DesignError, match="objects: is not known to outside codes yet"):
         BrickModel.of(Setup.of(pressed()))
     with pytest.raises(DesignError, match="objects: is not known to states"):

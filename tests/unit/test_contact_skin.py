@@ -128,7 +128,7 @@ def test_bodies_that_no_shape_filled_have_the_faces_of_their_voxels():
     design = pressed_ball("smooth")
     assert skin_of(design, mesh_of(design)) is not None
     assert skin_of(design, mesh_of(design, refine=2)) is None
-    assert Setup.of(pressed_ball("voxels")).touching.skin is None
+    assert Setup.of(pressed_ball("voxels")).touching.skins == (None,)
 
 
 def test_the_surface_is_saved_and_read_back(tmp_path):

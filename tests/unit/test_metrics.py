@@ -38,7 +38,7 @@ def test_a_name_that_is_no_metric_is_refused(pressed):
         pressed.metric("curvature")
 
 
-#: Those of contact have no value where a design has none; gradients refuse one that has it.
+#: Those of contact have no value where a design has none.
 WITHOUT_CONTACT = sorted(name for name in BUILT_IN if "object" not in METRICS[name].needs)
 
 

@@ -1,5 +1,5 @@
 use voxsoft_solid::ProblemError;
-use voxsoft_solid::vector::{Vec3, add, scale, sub};
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 
 use crate::pack::{FrameHead, TopologyFlag, pack_frame, pack_topology};
 
@@ -8,6 +8,9 @@ const SHRINK: f64 = 0.85;
 
 /// An edge moves along an axis where it moves by more than this part of a voxel.
 const ALONG: f64 = 1e-3;
+
+/// The edges of a voxel are shorter than this part of the diagonal of a face, 0.71 of it.
+const SHORTER: f64 = 0.8;
 
 /// What of a mesh is drawn, whatever it is made of.
 #[derive(Debug, Clone)]
@@ -37,17 +40,27 @@ impl Outline {
             .iter()
             .map(|t| t.map(|v| place[v as usize]))
             .collect();
+        let at = |place: u32| rest[vertices[place as usize] as usize];
+        let is_along_axis = |[a, b]: [u32; 2]| {
+            let (a, b) = (at(a), at(b));
+            let moves = |axis: &usize| (a[*axis] - b[*axis]).abs() > ALONG * voxel_size;
+            (0..3).filter(moves).count() == 1
+        };
+        let drawn = |&[a, b, c]: &[u32; 3]| {
+            let sides = [[a, b], [b, c], [c, a]];
+            let lengths = sides.map(|[a, b]| norm(sub(at(a), at(b))));
+            let longest = lengths.into_iter().fold(0.0, f64::max);
+            // Of a voxel that is turned only the lengths tell: half a square has its diagonal as the longest side.
+            let is_edge = |(side, length): ([u32; 2], f64)| {
+                voxel_size <= 0.0 || is_along_axis(side) || length < SHORTER * longest
+            };
+            let each = sides.into_iter().zip(lengths).filter(move |s| is_edge(*s));
+            each.map(|(side, _)| side).collect::<Vec<_>>()
+        };
         let mut edges: Vec<[u32; 2]> = triangles
             .iter()
-            .flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+            .flat_map(drawn)
             .map(|[a, b]| [a.min(b), a.max(b)])
-            .filter(|edge| {
-                voxel_size <= 0.0 || {
-                    let [a, b] = edge.map(|place| rest[vertices[place as usize] as usize]);
-                    let moves = |axis: &usize| (a[*axis] - b[*axis]).abs() > ALONG * voxel_size;
-                    (0..3).filter(moves).count() == 1
-                }
-            })
             .collect();
         edges.sort_unstable();
         edges.dedup();

@@ -189,8 +189,8 @@ impl Player {
         self.recording.clear();
         self.plots.clear();
         self.stand(Mode::Paused, String::new());
-        let told = [Event::Plot(self.whole_plot()), Event::Stat(self.stat())];
-        self.moment().into_iter().chain(told).collect()
+        let reported = [Event::Plot(self.whole_plot()), Event::Stat(self.stat())];
+        self.moment().into_iter().chain(reported).collect()
     }
 
     fn on_pace(&mut self, factor: Option<f64>) -> Result<(), Refusal> {

@@ -48,14 +48,19 @@ pub fn adjoint<'py>(
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
     })?
-    .map_err(|error| match error {
-        AdjointError::OutOfMemory(bytes) => PyMemoryError::new_err(bytes),
-        AdjointError::Singular | AdjointError::Cancelled => {
-            PyArithmeticError::new_err(error.to_string())
-        }
-    })?;
+    .map_err(to_python)?;
     let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
     PyArray1::from_vec(py, flat).reshape([states.len(), count, 3])
+}
+
+/// A `MemoryError` carries the bytes that it takes.
+pub(crate) fn to_python(error: AdjointError) -> PyErr {
+    match error {
+        AdjointError::OutOfMemory(bytes) => PyMemoryError::new_err(bytes),
+        AdjointError::Singular | AdjointError::Unsettled | AdjointError::Cancelled => {
+            PyArithmeticError::new_err(error.to_string())
+        }
+    }
 }
 
 /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);

@@ -7,11 +7,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
-use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::matrix::Mat3;
+use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
     Attachment, Body, Clamp, Contact, Filling, Floor, Gravity, History, Load, LoadKind, Material,
     Membrane, MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State,
-    elastic,
+    Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -20,7 +21,7 @@ use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
-use crate::touch::{ObjectPart, TouchParts, Touching, Way};
+use crate::touch::{BodyPart, BondPart, ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -85,6 +86,7 @@ pub struct PyProblemParts {
     membranes: Vec<(Vec<[u32; 3]>, MembraneMaterial)>,
     block_fraction: Vec<f64>,
     block_filling: Vec<Filling>,
+    block_axes: Vec<Mat3>,
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
 }
@@ -172,22 +174,34 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// The body touches itself and objects: its boundary, voxel size in m, and into how many parts the edge of a
-    /// voxel is divided by the points that are looked at; its smooth surface takes the place of the voxels'.
-    #[pyo3(signature = (surface, voxel_size, refine, skin=None))]
+    /// The directions of the edges of each block, three unit vectors one after the other, (v, 9).
+    fn axes(&mut self, axes: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+        let rows: Vec<[f64; 9]> = rows("axes", &axes)?;
+        let matrix =
+            |row: &[f64; 9]| std::array::from_fn(|i| std::array::from_fn(|j| row[3 * i + j]));
+        self.block_axes = rows.iter().map(matrix).collect();
+        Ok(())
+    }
+
+    /// A body touches itself, others and objects: its boundary, voxel size in m, and into how many parts the edge of
+    /// a voxel is divided by the points that are looked at; its smooth surface, which numbers the vertices of the body
+    /// from 0, takes the place of the voxels'. Bodies come in the order of their vertices.
+    #[pyo3(signature = (surface, voxel_size, refine, skin=None, first=0, count=None))]
     fn touch(
         &mut self,
         surface: PyReadonlyArray2<'_, u32>,
         voxel_size: f64,
         refine: u32,
         skin: Option<PyRef<'_, PySkin>>,
+        first: u32,
+        count: Option<u32>,
     ) -> PyResult<()> {
-        self.touch = Some(TouchParts {
+        self.touch.get_or_insert_default().bodies.push(BodyPart {
             surface: rows("surface", &surface)?,
             voxel: voxel_size,
             refine,
             skin: skin.map(|skin| Arc::clone(&skin.0)),
-            ..TouchParts::default()
+            vertices: first..count.map_or(u32::MAX, |count| first + count),
         });
         Ok(())
     }
@@ -229,7 +243,7 @@ impl PyProblemParts {
         self.add_object(rows("points", &points)?, &triangles, frame, Way::Free(mass))
     }
 
-    /// The friction of the body (0) and the objects with each other; NaN where they do not touch.
+    /// The friction of the bodies and the objects after them with each other; NaN where they do not touch.
     fn friction(&mut self, table: PyReadonlyArray2<'_, f64>) {
         let rows = table
             .as_array()
@@ -238,6 +252,17 @@ impl PyProblemParts {
             .map(|row| row.to_vec())
             .collect();
         self.touch.get_or_insert_default().friction = rows;
+    }
+
+    /// Two surfaces are bonded, the one with the smaller number first: where they are within `reach` (m) of each other,
+    /// until a traction of `strength` (Pa).
+    fn bond(&mut self, a: u32, b: u32, reach: f64, strength: f64) {
+        let bond = BondPart {
+            of: [a, b],
+            reach,
+            strength,
+        };
+        self.touch.get_or_insert_default().bonds.push(bond);
     }
 
     /// A membrane on triangles.
@@ -340,6 +365,7 @@ impl PyProblem {
             tet_block: tet_block.as_array().to_vec(),
             block_fraction: parts.block_fraction.clone(),
             block_filling: parts.block_filling.clone(),
+            block_axes: parts.block_axes.clone(),
             membranes: Vec::new(),
             attachments: parts.attachments.clone(),
             point_masses: Vec::new(),
@@ -369,6 +395,7 @@ impl PyProblem {
             membranes: Vec::new(),
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
+            block_axes: Vec::new(),
             attachments: Vec::new(),
             touch: None,
         };
@@ -423,10 +450,15 @@ impl PyProblem {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
-        Ok((
-            elastic::energy(self.problem.body(), &positions),
-            from_rows(py, &forces[..self.own()]),
-        ))
+        if let Some(touching) = &self.touching {
+            let mut others = vec![[0.0; 3]; positions.len()];
+            touching.touch.add_forces(&positions, &mut others);
+            for (force, other) in forces.iter_mut().zip(others) {
+                *force = sub(*force, other);
+            }
+        }
+        let energy = self.elastic_energy(&positions);
+        Ok((energy, from_rows(py, &forces[..self.own()])))
     }
 
     /// Elastic plus external force (N) on every vertex under the final values of all loads.
@@ -560,6 +592,13 @@ impl PyProblem {
         .map_err(to_python)
     }
 
+    /// That of the material, J: what multipliers of contact have of it is none.
+    fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
+        let of_contact = |touching: &Touching| touching.touch.energy(positions);
+        let all = elastic::energy(self.problem.body(), positions);
+        all - self.touching.as_ref().map_or(0.0, of_contact)
+    }
+
     /// How many vertices the body has, those of objects left out.
     pub(crate) fn own(&self) -> usize {
         let all = self.problem.body().rest().len();
@@ -626,7 +665,7 @@ impl PyProblem {
             reaction_moment: balance.total_moment(positions),
             load,
             load_moment,
-            elastic_energy: elastic::energy(self.problem.body(), positions),
+            elastic_energy: self.elastic_energy(positions),
             record_times: PyArray1::from_vec(py, watch.times).unbind(),
             records: PyArray1::from_vec(py, watch.records)
                 .reshape([watch.recorded, sensors, 3])?

@@ -1,10 +1,12 @@
 //! Contact of a body with itself and with rigid objects, as Python describes it and is told of it.
+use std::ops::Range;
 use std::sync::Arc;
 
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
+use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Description, PairReport, Surface, Touch};
+use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
 use voxsoft_player::Placed;
 use voxsoft_scene::Touching as Played;
 use voxsoft_solid::vector::Vec3;
@@ -34,17 +36,66 @@ impl ObjectPart {
     }
 }
 
-/// Everything that contact is made of.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct TouchParts {
-    /// The body's boundary; used where it is not made of voxels.
+/// A body that touches.
+#[derive(Debug, Clone)]
+pub(crate) struct BodyPart {
+    /// Its boundary; used where it is not made of voxels.
     pub surface: Vec<[u32; 3]>,
     pub voxel: f64,
     pub refine: u32,
-    /// The smooth surface of a body of voxels, where it has one.
+    /// The smooth surface of a body of voxels, where it has one; its vertices count from the first of the body.
     pub skin: Option<Arc<Skin>>,
+    /// Its vertices among all.
+    pub vertices: Range<u32>,
+}
+
+impl BodyPart {
+    /// Its surface, and what stands for each point of it.
+    fn surface(&self, all: &[[u32; 8]]) -> (Surface, Vec<Carried>) {
+        let moved = |point: &Carried| Carried {
+            vertices: point
+                .vertices
+                .iter()
+                .map(|v| v + self.vertices.start)
+                .collect(),
+            weights: point.weights.clone(),
+        };
+        if let Some(skin) = &self.skin {
+            let surface = Surface {
+                points: skin.surface.points.iter().map(moved).collect(),
+                triangles: skin.surface.triangles.clone(),
+            };
+            return (surface, skin.shares.iter().map(moved).collect());
+        }
+        let own = all.iter().filter(|v| self.vertices.contains(&v[0]));
+        let voxels: Vec<[u32; 8]> = own.copied().collect();
+        let surface = if voxels.is_empty() {
+            Surface::of_triangles(&self.surface)
+        } else {
+            Surface::of_voxels(&voxels, self.refine)
+        };
+        let shares = surface.points.clone();
+        (surface, shares)
+    }
+}
+
+/// Everything that contact is made of.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TouchParts {
+    pub bodies: Vec<BodyPart>,
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
+    pub bonds: Vec<BondPart>,
+}
+
+/// Two surfaces that are bonded where they are near each other at rest.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BondPart {
+    pub of: [u32; 2],
+    /// m
+    pub reach: f64,
+    /// Pa; infinite for a bond that does not let go.
+    pub strength: f64,
 }
 
 impl TouchParts {
@@ -76,11 +127,17 @@ impl TouchParts {
             .enumerate()
             .filter(|(_, object)| object.is_free());
         let springs = free.flat_map(|(number, object)| {
-            let stiffness = object.frame.stiffness(&object.points, young, self.voxel);
+            let stiffness = object.frame.stiffness(&object.points, young, self.voxel());
             object.frame.springs((first + 4 * number) as u32, stiffness)
         });
         let springs: Vec<_> = springs.collect();
         (!springs.is_empty()).then_some(Springs(springs))
+    }
+
+    /// The size of the smallest voxels in m: right for all, as it is a bound of what may be deep, or be near.
+    fn voxel(&self) -> f64 {
+        let sizes = self.bodies.iter().map(|body| body.voxel);
+        sizes.fold(f64::INFINITY, f64::min)
     }
 
     /// How many objects clamps hold.
@@ -93,12 +150,12 @@ impl TouchParts {
 
     /// The contact of a body whose objects have their vertices from `first` on.
     pub(crate) fn contact(&self, body: &Body, first: usize) -> Result<Touch, ProblemError> {
-        let own = match &self.skin {
-            Some(skin) => skin.surface.clone(),
-            None if body.voxels().is_empty() => Surface::of_triangles(&self.surface),
-            None => Surface::of_voxels(body.voxels(), self.refine),
-        };
-        let mut surfaces = vec![own];
+        let (mut surfaces, mut shares) = (Vec::new(), Vec::new());
+        for part in &self.bodies {
+            let (surface, of_points) = part.surface(body.voxels());
+            surfaces.push(surface);
+            shares.extend(of_points);
+        }
         for (number, object) in self.objects.iter().enumerate() {
             let at = first + 4 * number;
             let carried = |point: &Vec3| object.frame.carry(*point, at as u32);
@@ -107,17 +164,57 @@ impl TouchParts {
                 triangles: object.triangles.clone(),
             });
         }
+        let bonds = self.bonds.iter().map(|bond| {
+            let side = |surface: u32| self.side(surface, &surfaces, &shares, body, first);
+            let [a, b] = bond.of.map(side);
+            Bond::new(a, b, bond.reach, bond.strength, body.rest())
+        });
+        let bonds = bonds.collect::<Result<_, _>>()?;
         let description = Description {
+            bonds,
             surfaces,
             friction: self.friction.clone(),
-            voxel: self.voxel,
+            voxel: self.voxel(),
             young: mean_modulus(body),
         };
         let touch = Touch::new(description, body.rest())?;
-        Ok(match &self.skin {
-            Some(skin) => touch.with_shares(skin.shares.clone()),
-            None => touch,
-        })
+        Ok(touch.with_bodies(self.bodies.len() as u32, shares))
+    }
+}
+
+impl TouchParts {
+    /// A surface with what is behind it, `shares` those of the points of all bodies. Bodies come before the objects, so that
+    /// of a bond with an object the first side is the soft one.
+    fn side<'a>(
+        &'a self,
+        number: u32,
+        surfaces: &'a [Surface],
+        shares: &'a [Carried],
+        body: &'a Body,
+        first: usize,
+    ) -> Side<'a> {
+        let number = number as usize;
+        let (solid, shares) = match number.checked_sub(self.bodies.len()) {
+            Some(object) => {
+                let at = first + 4 * object;
+                (
+                    Solid::Rigid(&self.objects[object].frame, at as u32),
+                    &[][..],
+                )
+            }
+            None => {
+                let points = |surfaces: &[Surface]| surfaces.iter().map(|s| s.points.len()).sum();
+                let (start, end): (usize, usize) =
+                    (points(&surfaces[..number]), points(&surfaces[..=number]));
+                (Solid::Voxels(body.voxels()), &shares[start..end])
+            }
+        };
+        Side {
+            number: number as u32,
+            surface: &surfaces[number],
+            shares,
+            solid,
+        }
     }
 }
 
@@ -135,15 +232,23 @@ fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {
 /// What contact comes to where two surfaces touch.
 #[pyclass(frozen, get_all, name = "Contact", module = "voxsoft._core")]
 pub struct PyContact {
-    /// The body is 0, objects count from 1.
+    /// Bodies come first, then objects.
     pub a: u32,
     pub b: u32,
     /// On the first, N.
     pub force: Vec3,
     /// The sum of the sizes of all forces, N.
     pub pressed: f64,
+    /// The sum of all pressures, N.
+    pub pressure: f64,
+    /// The part of the force that is friction, N.
+    pub friction: Vec3,
+    /// The most that friction can be, N.
+    pub bound: f64,
     /// In the unloaded body, m².
     pub area: f64,
+    /// The part of it that is bonded, m².
+    pub bonded: f64,
     /// The smallest, m.
     pub gap: f64,
     /// The part of the pressure under which the surfaces slip.
@@ -238,7 +343,11 @@ pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<
             b: pair.of[1],
             force: pair.force,
             pressed: pair.pressed,
+            pressure: pair.pressure,
+            friction: pair.friction,
+            bound: pair.bound,
             area: pair.area,
+            bonded: pair.bonded,
             gap: pair.gap,
             slipping: pair.slipping,
         };

@@ -270,6 +270,7 @@ impl TryFrom<Mesh> for solid::Mesh {
             membranes: membranes?,
             attachments: form.attachments,
             point_masses: form.point_masses,
+            block_axes: Vec::new(),
             vertices: form.vertices,
             tets: form.tets,
             tet_part: form.tet_part,

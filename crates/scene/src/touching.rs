@@ -82,6 +82,7 @@ impl From<&Touching> for Form {
             friction,
             voxel,
             young,
+            bonds: _, // Live motion knows none.
         } = &touching.description;
         Self {
             surfaces: surfaces.iter().map(surface).collect(),
@@ -118,6 +119,7 @@ impl Form {
             description: Description {
                 surfaces: self.surfaces.into_iter().map(surface).collect(),
                 friction: self.friction,
+                bonds: Vec::new(),
                 voxel: self.voxel,
                 young: self.young,
             },

@@ -44,6 +44,7 @@ fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Tou
         description: Description {
             surfaces: vec![Surface::of_triangles(body), ball],
             friction: vec![vec![0.1, 0.2], vec![0.2, 0.0]],
+            bonds: vec![],
             voxel: SIDE,
             young: 6e4,
         },
@@ -94,6 +95,7 @@ fn full() -> Scene {
             stiffness: 4.0,
         }]))],
         point_masses: (first..first + 4).map(|vertex| (vertex, 0.01)).collect(),
+        block_axes: vec![],
     };
     let fiber = Fiber {
         direction: [0.0, 0.6, 0.8],

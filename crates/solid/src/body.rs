@@ -17,6 +17,7 @@ use std::sync::Arc;
 
 use crate::color::{color_order, interleave};
 use crate::lattice::LatticeConstants;
+use crate::matrix::Mat3;
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{
@@ -54,6 +55,8 @@ pub struct Mesh {
     /// Where in each block its material is; empty means all over. Hyperelastic voxels bend accordingly;
     /// lattices and masses do not heed it.
     pub block_filling: Vec<Filling>,
+    /// The directions of each block's edges, unit vectors row by row; empty means x, y and z.
+    pub block_axes: Vec<Mat3>,
     /// Membranes on triangles.
     pub membranes: Vec<Membrane>,
     /// What else is attached.
@@ -89,7 +92,7 @@ pub struct Body {
 impl Body {
     /// Builds the body; `materials[mesh.tet_part[t]]` is the material of tetrahedron `t`.
     ///
-    /// Blocks of a hyperelastic material must be voxels, cubes of five tetrahedra along the axes.
+    /// Blocks of a hyperelastic material must be voxels, cubes of five tetrahedra along [`Mesh::block_axes`].
     pub fn new<M: Clone + Into<Material>>(
         mesh: &Mesh,
         materials: &[M],
@@ -129,7 +132,7 @@ impl Body {
                 let side = libm::cbrt(block.iter().map(|&t| volumes[t]).sum());
                 let fraction = fraction_of(mesh, block);
                 let mut constraints = Vec::with_capacity(block.len());
-                let cube = cube::corners(mesh, block);
+                let cube = cube::corners(mesh, block, axes_of(mesh, block).as_ref());
                 for &t in block {
                     let Material::Lattice(material) = materials[usize::from(mesh.tet_part[t])]
                     else {
@@ -449,12 +452,15 @@ fn check(mesh: &Mesh, materials: usize) -> Result<(), ProblemError> {
             return Err(ProblemError::NotPositive { what, value });
         }
     }
-    if !mesh.block_fraction.is_empty() {
-        let blocks = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
-        if mesh.block_fraction.len() != blocks {
+    let blocks = mesh.tet_block.iter().max().map_or(0, |&b| b as usize + 1);
+    for (what, got) in [
+        ("filled parts of blocks", mesh.block_fraction.len()),
+        ("directions of blocks", mesh.block_axes.len()),
+    ] {
+        if got != 0 && got != blocks {
             return Err(ProblemError::Length {
-                what: "filled parts of blocks",
-                got: mesh.block_fraction.len(),
+                what,
+                got,
                 expected: blocks,
             });
         }
@@ -498,6 +504,12 @@ fn fraction_of(mesh: &Mesh, block: &[usize]) -> f64 {
 }
 
 /// Where the material of a block is, given by its tetrahedra.
+/// The directions of the edges of a block; `None` where they are those of the axes.
+fn axes_of(mesh: &Mesh, block: &[usize]) -> Option<Mat3> {
+    let index = mesh.tet_block[block[0]] as usize;
+    mesh.block_axes.get(index).copied()
+}
+
 fn filling_of(mesh: &Mesh, block: &[usize]) -> Filling {
     let index = mesh.tet_block[block[0]] as usize;
     *mesh.block_filling.get(index).unwrap_or(&Filling::FULL)

@@ -20,12 +20,19 @@ pub trait Contact: Term {
     /// only where it was left.
     fn look_anew(&self);
 
-    /// Brings the multipliers up to the forces at `positions`, an equilibrium; how far off they are. At most 1 is
-    /// good enough, and nothing changes. Forces of the size `negligible` (N) do not matter.
-    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64;
+    /// Brings the multipliers up to the forces at `positions`, an equilibrium; whether they were there already, and nothing
+    /// has changed. Forces of the size `negligible` (N) do not matter. `precision` is the part of what contact may be off by
+    /// default that is asked for, at most 1.
+    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
 
-    /// Whether the answer depends on the way to it.
-    fn has_friction(&self) -> bool;
+    /// A length by which things are near each other, in m: the size of a voxel.
+    fn length(&self) -> f64;
+
+    /// Lets bonds go that the forces at `positions`, an equilibrium, pass; whether any did. What others carry changes then.
+    fn let_go(&self, positions: &[Vec3]) -> bool;
+
+    /// Whether the answer depends on the way to it, as friction and bonds that may break make it.
+    fn depends_on_way(&self) -> bool;
 
     /// Takes `positions` as the state from which the path goes on.
     fn accept(&self, positions: &[Vec3]);
@@ -50,4 +57,49 @@ pub trait Contact: Term {
 
     /// Forgets what happened since the last accepted state.
     fn go_back(&self);
+
+    /// Lets the multipliers of the last accepted state go on as they changed in the step to it: a start for one that is
+    /// `ratio` times as long. The answer does not depend on it.
+    fn extrapolate(&self, ratio: f64);
+}
+
+/// An equilibrium on the way of a load path, under what contact held before a correction.
+#[derive(Debug, Clone)]
+pub struct Moment<M> {
+    /// All vertices, m.
+    pub positions: Vec<Vec3>,
+    /// Whether contact had settled: a step of the path ends here.
+    pub settled: bool,
+    /// What contact held.
+    pub memory: M,
+}
+
+/// Contact that can go over its path again, which derivatives along the path need.
+///
+/// The contact of a problem that differs by a little follows at the same moments: it faces what the recorded one faced, and
+/// takes its own multipliers and anchors along.
+pub trait RecordedContact: Contact {
+    /// What it holds at a moment.
+    type Memory: Clone + Send + Sync;
+
+    /// Records from now on, from the next [`start`](Contact::start).
+    fn record(&self);
+
+    /// Takes what was recorded of the accepted path, and records no more.
+    fn take_recorded(&self) -> Vec<Moment<Self::Memory>>;
+
+    /// Goes back to a moment of its own; whether there is no room for its stiffness yet.
+    fn recall(&self, moment: &Moment<Self::Memory>) -> bool;
+
+    /// Faces what another one faced at a moment.
+    fn face_as(&self, moment: &Moment<Self::Memory>);
+
+    /// Brings the multipliers and anchors of contacts along from a moment to the `next`, with their vertices at `positions`. The
+    /// contacts are those of values around the recorded one, whose mean it is.
+    fn follow_on(
+        group: &[&Self],
+        positions: &[Vec<Vec3>],
+        moment: &Moment<Self::Memory>,
+        next: Option<&Moment<Self::Memory>>,
+    );
 }

@@ -1,21 +1,29 @@
 //! Finding the cube that a block of five tetrahedra fills.
 
 use crate::Mesh;
+use crate::matrix::{Mat3, apply};
 
 /// How far a corner may be from its place, in sides: lattice positions are products of integers and
 /// the voxel size, exact to rounding.
 const SLACK: f64 = 1e-6;
 
 /// The corners of a block, corner `c` at `(c >> 2 & 1, c >> 1 & 1, c & 1)`, and its side in m; `None` if
-/// it is no cube along the axes.
-pub(crate) fn corners(mesh: &Mesh, block: &[usize]) -> Option<([u32; 8], f64)> {
+/// it is no cube along `axes` (unit vectors row by row, x, y and z where there are none), by which its corners are named.
+pub(crate) fn corners(
+    mesh: &Mesh,
+    block: &[usize],
+    axes: Option<&Mat3>,
+) -> Option<([u32; 8], f64)> {
     let mut vertices: Vec<u32> = block.iter().flat_map(|&t| mesh.tets[t]).collect();
     vertices.sort_unstable();
     vertices.dedup();
     if vertices.len() != 8 || block.len() != 5 {
         return None;
     }
-    let points = || vertices.iter().map(|&v| mesh.vertices[v as usize]);
+    let points = || {
+        let each = vertices.iter().map(|&v| mesh.vertices[v as usize]);
+        each.map(|p| axes.map_or(p, |axes| apply(axes, p)))
+    };
     let low = points().fold([f64::INFINITY; 3], |m, p| {
         std::array::from_fn(|i| m[i].min(p[i]))
     });

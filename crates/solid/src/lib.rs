@@ -74,7 +74,7 @@ pub use body::{Body, Mesh};
 pub use breakdown::Breakdown;
 pub use brick::{Brick, Filling};
 pub use clamp::{Clamp, Motion};
-pub use contact::Contact;
+pub use contact::{Contact, Moment, RecordedContact};
 pub use error::ProblemError;
 pub use floor::Floor;
 pub use hands::{Grab, Hands};

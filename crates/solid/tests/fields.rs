@@ -386,3 +386,74 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(all(1), all(4));
     assert_eq!(state(1), state(3));
 }
+
+#[test]
+fn turned_voxels_measure_along_their_own_edges() {
+    let (axis, angle) = ([0.6, 0.0, 0.8], 0.9);
+    let turn = |x: Vec3| rotate(x, axis, angle);
+    let model = Model::NeoHookean { c10: C10 };
+    let stiff = voxsoft_solid::Fiber {
+        direction: [1.0, 0.0, 0.0],
+        modulus: 4.0 * C10,
+        compression: true,
+    };
+    let rubber = HyperelasticMaterial::new(model, BULK, 1000.0).unwrap();
+    let material: Material = rubber.with_fibers(vec![stiff]).unwrap().into();
+    let mut grid = Grid::empty([3, 3, 2], [0.0; 3], SIDE, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [3.0 * SIDE, 3.0 * SIDE, 2.0 * SIDE], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let blocks = tets.tets.len() / 5;
+    let cut = Filling {
+        shift: [0.2, 0.0, -0.1],
+        spread: [0.9, 1.0, 0.8],
+    };
+    let upright = Mesh {
+        tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
+        tet_part: vec![0; 5 * blocks],
+        tet_block: (0..5 * blocks as u32).map(|t| t / 5).collect(),
+        vertices: tets.vertices,
+        block_fraction: vec![0.8; blocks],
+        block_filling: vec![cut; blocks],
+        ..Mesh::default()
+    };
+    let turned = Mesh {
+        vertices: upright.vertices.iter().map(|x| turn(*x)).collect(),
+        // The rows are where x, y and z of the body point.
+        block_axes: vec![[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(turn); blocks],
+        ..upright.clone()
+    };
+    let [first, second] =
+        [&upright, &turned].map(|mesh| Body::new(mesh, std::slice::from_ref(&material)).unwrap());
+    // Not affine, and far from small.
+    let moved: Vec<Vec3> = first
+        .rest()
+        .iter()
+        .map(|[x, y, z]| [x + 20.0 * x * z, 1.1 * y + 0.2 * x, z - 30.0 * x * x])
+        .collect();
+    let also: Vec<Vec3> = moved.iter().map(|x| turn(*x)).collect();
+    let energy =
+        |body: &Body, at: &[Vec3]| -> f64 { body.terms().map(|term| term.energy(at)).sum() };
+    let (one, other) = (energy(&first, &moved), energy(&second, &also));
+    assert!((one / other - 1.0).abs() < 1e-12, "{one} {other}");
+    let forces = |body: &Body, at: &[Vec3]| {
+        let mut forces = vec![[0.0; 3]; at.len()];
+        body.terms()
+            .for_each(|term| term.add_forces(at, &mut forces));
+        forces
+    };
+    let (one, other) = (forces(&first, &moved), forces(&second, &also));
+    let largest = one.iter().flatten().fold(0.0f64, |m, f| m.max(f.abs()));
+    for (a, b) in one.iter().zip(&other) {
+        // Rounding: sums of some dozen terms.
+        let off = (0..3)
+            .map(|i| (turn(*a)[i] - b[i]).abs())
+            .fold(0.0, f64::max);
+        assert!(off < 1e-12 * largest, "{a:?} {b:?}");
+    }
+    // Without its axes a turned voxel is no voxel.
+    let lost = Mesh {
+        block_axes: vec![],
+        ..turned
+    };
+    assert!(Body::new(&lost, &[material]).is_err());
+}

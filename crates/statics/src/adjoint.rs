@@ -25,6 +25,8 @@ pub enum AdjointError {
     Singular,
     /// The tangent takes more memory than there is, in bytes; 0 where that is not known.
     OutOfMemory(u64),
+    /// What contact holds does not settle to the first order.
+    Unsettled,
     /// The caller asked to stop.
     Cancelled,
 }
@@ -34,6 +36,7 @@ impl fmt::Display for AdjointError {
         f.write_str(match self {
             Self::Singular => "the tangent is singular at this state, so it has no derivative",
             Self::OutOfMemory(_) => "the factorized tangent does not fit in memory",
+            Self::Unsettled => "contact does not settle to the first order",
             Self::Cancelled => "the solution was cancelled",
         })
     }

@@ -7,7 +7,7 @@ use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::axial;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Body, Brick, Contact, Observer, Problem, Progress, elastic};
+use voxsoft_solid::{Body, Brick, Observer, Problem, Progress, elastic};
 
 use crate::inertia::Inertia;
 use crate::point::Point;
@@ -54,17 +54,6 @@ pub(crate) enum Way {
     Again,
 }
 
-impl Way {
-    /// The one for a round of corrections, the first of which has number 0.
-    pub fn of_round(round: usize, problem: &Problem, safe: bool) -> Self {
-        match (problem.contact(), safe) {
-            (Some(_), _) if round > 0 => Self::Again,
-            (_, true) => Self::Safe,
-            (_, false) => Self::Quick,
-        }
-    }
-}
-
 /// An equilibrium.
 pub(crate) struct Found {
     pub iterations: u32,
@@ -104,16 +93,18 @@ pub(crate) struct Equilibrium<'a> {
     pub inertia: Option<&'a Inertia>,
     /// Forces in N that do not matter.
     pub negligible: f64,
+    /// The part of what contact may be off by default that is asked for.
+    pub precision: f64,
     /// The farthest that a clamp carries a vertex.
     pub largest_motion: f64,
+    /// Whether rigid objects move freely: how far they go says nothing of what is rounding in their stiff springs.
+    pub has_loose: bool,
 }
 
 /// Iterations with strains carried along: most steps take less than ten.
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
 pub(crate) const PATIENCE: u32 = 8;
-/// The same with contact: what friction lets go sends such iterations astray, and they do not come back.
-const PATIENCE_WITH_CONTACT: u32 = 3;
 /// How far a vertex may move in an iteration, in sizes of the body; beyond it that is lost.
 const FARTHEST: f64 = 20.0;
 /// The same with contact. What may meet on such a way would be listed, and is of no use.
@@ -125,6 +116,8 @@ const SUFFICIENT: f64 = 1e-4;
 /// What an iterative solution of a step leaves of its error, in energy. Slender bodies, whose first
 /// steps go far, take twice the steps with 1e-3, and none fewer with 1e-5.
 const LINEAR_TOLERANCE: f64 = 1e-4;
+/// The same with contact, whose penalties take most of that energy.
+const LINEAR_TOLERANCE_WITH_CONTACT: f64 = 1e-6;
 /// How often a step may be halved.
 const HALVINGS: u32 = 12;
 /// Potentials are sums of many terms and known to about this part of their size.
@@ -154,7 +147,9 @@ impl<'a> Equilibrium<'a> {
             largest_turn: None,
             inertia: None,
             negligible: 0.0,
+            precision: 1.0,
             largest_motion: largest_motion(problem),
+            has_loose: false,
         })
     }
 
@@ -246,31 +241,41 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let start = positions.clone();
-        if way == Way::Again {
-            return match self.newton_searched(positions, point, settings, observer) {
-                Err(Failure::Lost | Failure::Singular) => {
-                    *positions = start;
-                    self.newton_mixed(positions, point, settings, observer)
-                }
-                outcome => outcome,
-            };
-        }
-        let mut outcome = self.newton_mixed(positions, point, settings, observer);
+        let mut outcome = self.newton_by(way, positions, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
             // From here on directly, if that fits in memory.
             self.means.solver = LinearSolver::Direct;
             self.system = System::new(self.problem, &self.held, self.means)?;
             positions.clone_from(&start);
-            outcome = self.newton_mixed(positions, point, settings, observer);
+            outcome = self.newton_by(way, positions, point, settings, observer);
         }
         if outcome.is_err() {
             *positions = start;
         }
-        match outcome {
-            Err(Failure::Lost | Failure::Singular) if way == Way::Safe => {
-                self.newton_searched(positions, point, settings, observer)
-            }
-            outcome => outcome,
+        outcome
+    }
+
+    fn newton_by(
+        &mut self,
+        way: Way,
+        positions: &mut Vec<Vec3>,
+        point: Point,
+        settings: &Settings,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let start = positions.clone();
+        let outcome = match way {
+            Way::Quick | Way::Safe => self.newton_mixed(positions, point, settings, observer),
+            Way::Again => self.newton_searched(positions, point, settings, observer),
+        };
+        if !matches!(outcome, Err(Failure::Lost | Failure::Singular)) || way == Way::Quick {
+            return outcome;
+        }
+        *positions = start;
+        if way == Way::Again {
+            self.newton_mixed(positions, point, settings, observer)
+        } else {
+            self.newton_searched(positions, point, settings, observer)
         }
     }
 
@@ -285,9 +290,9 @@ impl<'a> Equilibrium<'a> {
         let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
-        let (patience, farthest) = match self.problem.contact() {
-            Some(_) => (PATIENCE_WITH_CONTACT, FARTHEST_WITH_CONTACT),
-            None => (PATIENCE, FARTHEST),
+        let farthest = match self.problem.contact() {
+            Some(_) => FARTHEST_WITH_CONTACT,
+            None => FARTHEST,
         };
         for iteration in 0..=MIXED_ITERATIONS {
             self.follow_contact(positions)?;
@@ -302,11 +307,14 @@ impl<'a> Equilibrium<'a> {
             if let Some(strains) = &strains {
                 forces.free = self.predicted_forces(strains, positions, point);
             }
-            since_lowest += 1;
-            if relative < 0.5 * lowest {
-                (lowest, since_lowest) = (relative, 0);
+            // While clamps have yet to move, the residual is that of the last equilibrium.
+            if jump.is_none() {
+                since_lowest += 1;
+                if relative < 0.5 * lowest {
+                    (lowest, since_lowest) = (relative, 0);
+                }
             }
-            if since_lowest > patience {
+            if since_lowest > PATIENCE {
                 return Err(Failure::Lost);
             }
             self.iterations += 1;
@@ -322,7 +330,7 @@ impl<'a> Equilibrium<'a> {
             let side = &mut forces.free;
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
             self.system
-                .solve(&factor, side, false, LINEAR_TOLERANCE, &mut stop)?;
+                .solve(&factor, side, false, self.linear_tolerance(), &mut stop)?;
             let mut moves = self.system.spread(&forces.free);
             if let Some(jump) = &jump {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
@@ -398,11 +406,13 @@ impl<'a> Equilibrium<'a> {
     /// Whether a step of the size `largest` (m) is nothing but rounding.
     fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
         let body = self.problem.body();
-        let moved = positions
-            .iter()
-            .zip(body.rest())
-            .map(|(x, rest)| norm(sub(*x, *rest)))
-            .fold(0.0, f64::max);
+        let moved = if self.has_loose {
+            0.0
+        } else {
+            let pairs = positions.iter().zip(body.rest());
+            let moved = pairs.map(|(x, rest)| norm(sub(*x, *rest)));
+            moved.fold(0.0, f64::max)
+        };
         is_standstill(relative, largest, body.size(), moved)
     }
 
@@ -462,8 +472,13 @@ impl<'a> Equilibrium<'a> {
             let mut step = forces.free.clone();
             let factor = self.descending(&mut shift)?;
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
-            self.system
-                .solve(&factor, &mut step, false, LINEAR_TOLERANCE, &mut stop)?;
+            self.system.solve(
+                &factor,
+                &mut step,
+                false,
+                self.linear_tolerance(),
+                &mut stop,
+            )?;
             if !step.iter().all(|x| x.is_finite()) {
                 return Err(Failure::Singular);
             }
@@ -486,6 +501,13 @@ impl<'a> Equilibrium<'a> {
             }
         }
         Err(Failure::Lost)
+    }
+
+    fn linear_tolerance(&self) -> f64 {
+        match self.problem.contact() {
+            Some(_) => LINEAR_TOLERANCE_WITH_CONTACT,
+            None => LINEAR_TOLERANCE,
+        }
     }
 
     /// A factor for an iteration with strains carried along. Far from equilibrium the tangent may be indefinite, and
@@ -585,12 +607,6 @@ impl<'a> Equilibrium<'a> {
             &mut unused,
         );
         !self.problem.is_conservative() || self.system.is_positive_definite()
-    }
-
-    /// Corrects the forces of contact by an equilibrium; whether they have settled.
-    pub fn is_contact_settled(&self, positions: &[Vec3]) -> bool {
-        let settled = |contact: &dyn Contact| contact.correct(positions, self.negligible) <= 1.0;
-        self.problem.contact().is_none_or(settled)
     }
 
     /// Lets the floor catch what fell below it and let go what it pulls; whether anything changed.

@@ -66,6 +66,10 @@ impl Term for Inertia {
         true
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         (0..self.masses.len() as u32).for_each(|vertex| visit(&[vertex]));
     }

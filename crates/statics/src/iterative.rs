@@ -5,7 +5,7 @@
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
-use voxsoft_solid::{Load, Problem, elastic};
+use voxsoft_solid::{Load, Problem, Term, elastic};
 
 use crate::multigrid::{
     BlockMatrix, Factors, Hierarchy, Workspace, cells_of, color, for_each, sum,
@@ -50,7 +50,7 @@ enum End {
 }
 
 impl IterativeSystem {
-    /// The pattern and its hierarchy; `None` where the body is not made of equal voxels only, or the
+    /// The pattern and its hierarchy; `None` where a component of the body is not made of equal voxels only, or the
     /// tangent not symmetric.
     pub fn new(
         problem: &Problem,
@@ -59,14 +59,21 @@ impl IterativeSystem {
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.bricks().len();
-        // Coarser levels join nothing farther apart than the corners of a voxel.
-        let attached = body.attached().next().is_some();
-        if !whole || attached || !problem.is_conservative() {
+        let local = body.attached().all(Term::is_local);
+        if !whole || !local || !problem.is_conservative() {
             return Ok(None);
         }
         let Some(mut cells) = cells_of(body) else {
             return Ok(None);
         };
+        // Coarser levels know nothing of vertices that are no corners, as free objects have.
+        let mut known: Vec<bool> = held.iter().map(|held| held.iter().all(|h| *h)).collect();
+        for node in cells.iter().flat_map(|cell| cell.nodes) {
+            known[node as usize] = true;
+        }
+        if !known.into_iter().all(|known| known) {
+            return Ok(None);
+        }
         means.allow(BYTES_PER_VERTEX * body.rest().len() as u64)?;
         let draft = pattern(problem);
         let (coloring, places) = color(&draft);

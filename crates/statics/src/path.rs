@@ -1,10 +1,13 @@
 //! The load path: steps that grow and back off, and what to say when there is no way on.
 
+use std::sync::Arc;
+
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Observer, Problem, Progress, Status};
+use voxsoft_solid::{Observer, Problem, Progress, Status, Term};
 
 use crate::control;
-use crate::equilibrium::{Equilibrium, Failure, Found, Way};
+use crate::equilibrium::{Equilibrium, Failure};
+use crate::loose::Loose;
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::system::{FactorError, Means, System};
@@ -22,12 +25,10 @@ const SAFE_STEP: f64 = 0.05;
 const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
-/// The longest step along a path on which friction depends.
-const LONGEST_WITH_FRICTION: f64 = 0.05;
+/// The longest step along a path on which the answer depends: with friction, or bonds that may break.
+const LONGEST_OF_WAY: f64 = 0.05;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
-/// How often the floor or contact may change their minds at one point.
-pub(crate) const ROUNDS: usize = 40;
 
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.
@@ -70,6 +71,27 @@ pub fn solve(
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Answer {
+    let loose = match settings.control {
+        Control::Load => Loose::find(problem),
+        Control::ArcLength { .. } | Control::Volume { .. } => None,
+    };
+    let Some(loose) = loose else {
+        return follow(problem, start, settings, observer, None);
+    };
+    let dampers = Arc::clone(&loose.dampers) as Arc<dyn Term>;
+    let damped = problem.clone().with_term(dampers);
+    let damped = damped.expect("dampers have the vertices of the body");
+    follow(&damped, start, settings, observer, Some(&loose))
+}
+
+/// Follows the path of a problem, in which dampers hold what is loose.
+fn follow(
+    problem: &Problem,
+    start: Option<&[Vec3]>,
+    settings: &Settings,
+    observer: &mut Observer<'_>,
+    loose: Option<&Loose>,
+) -> Answer {
     let rest = problem.body().rest();
     let positions = start.unwrap_or(rest).to_vec();
     let solver = match settings.control {
@@ -84,11 +106,17 @@ pub fn solve(
         contact.start(&positions);
     }
     let equilibrium = match Equilibrium::new(problem, means) {
-        Ok(equilibrium) => equilibrium,
+        Ok(equilibrium) => Equilibrium {
+            precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
+            ..equilibrium
+        },
         Err(error) => return refused(positions, error),
     };
     let mut path = Path {
-        equilibrium,
+        equilibrium: Equilibrium {
+            has_loose: loose.is_some(),
+            ..equilibrium
+        },
         positions,
         point: Point::all(0.0),
         points: Vec::new(),
@@ -96,12 +124,13 @@ pub fn solve(
         looking: false,
     };
     let ending = match settings.control {
-        Control::Load => path.follow_load(settings, start.is_some()),
+        Control::Load => path.follow_load(settings, start.is_some(), loose),
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
             volume::follow_volume(&mut path, settings, ratio, steps)
         }
     };
+    loose.inspect(|loose| loose.let_go(&path.positions));
     path.answer(ending, settings)
 }
 
@@ -171,35 +200,11 @@ impl Path<'_, '_> {
         safe: bool,
     ) -> Result<(), Failure> {
         let mut positions = trial;
-        let found = self.find(&mut positions, point, settings, safe)?;
+        let found =
+            self.equilibrium
+                .settle(&mut positions, point, settings, safe, self.observer)?;
         self.accept(positions, point, found.iterations, found.residual);
         Ok(())
-    }
-
-    /// The same without going there.
-    fn find(
-        &mut self,
-        positions: &mut Vec<Vec3>,
-        point: Point,
-        settings: &Settings,
-        safe: bool,
-    ) -> Result<Found, Failure> {
-        let mut iterations = 0;
-        for round in 0..ROUNDS {
-            let way = Way::of_round(round, self.equilibrium.problem, safe);
-            let found = self
-                .equilibrium
-                .newton(positions, point, settings, way, self.observer)?;
-            iterations += found.iterations;
-            let floor_changed = self.equilibrium.update_floor(positions, point)?;
-            if !floor_changed && self.equilibrium.is_contact_settled(positions) {
-                return Ok(Found {
-                    iterations,
-                    residual: found.residual,
-                });
-            }
-        }
-        Err(Failure::Lost)
     }
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
@@ -238,7 +243,7 @@ impl Path<'_, '_> {
     }
 
     /// Load control. From a given start the full load is tried first.
-    fn follow_load(&mut self, settings: &Settings, warm: bool) -> Ending {
+    fn follow_load(&mut self, settings: &Settings, warm: bool, loose: Option<&Loose>) -> Ending {
         let step = if warm {
             1.0
         } else {
@@ -247,7 +252,7 @@ impl Path<'_, '_> {
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
         let longest = match contact {
-            Some(contact) if contact.has_friction() => LONGEST_WITH_FRICTION,
+            Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
             _ => 1.0,
         };
         let easy = if contact.is_some() {
@@ -257,6 +262,7 @@ impl Path<'_, '_> {
         };
         let mut step = step.min(longest);
         let mut cuts = 0;
+        let mut last = f64::INFINITY;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let now = self.point.pressure;
@@ -267,17 +273,27 @@ impl Path<'_, '_> {
             };
             let point = Point::all(next);
             let mut trial = self.positions.clone();
-            let found = self.find(&mut trial, point, settings, step <= SAFE_STEP);
+            contact.inspect(|contact| contact.extrapolate((next - now) / last));
+            loose.inspect(|loose| loose.hold(&self.positions, next - now));
+            let safe = step <= SAFE_STEP;
+            let found = self
+                .equilibrium
+                .settle(&mut trial, point, settings, safe, self.observer);
             let failure = match found {
                 Ok(found) => {
                     let stable = self.equilibrium.is_stable(&trial, point);
                     if stable || cuts == UNSTABLE_CUTS {
+                        self.looking = loose.is_some() && next == 1.0;
                         self.accept(trial, point, found.iterations, found.residual);
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
                         }
+                        last = next - now;
                         if next == 1.0 {
-                            return Ending::new(Status::AtRest, None, 1.0);
+                            return match loose {
+                                Some(loose) => self.release(loose, settings),
+                                None => Ending::new(Status::AtRest, None, 1.0),
+                            };
                         }
                         if found.iterations <= easy {
                             step = (2.0 * step).min(longest);

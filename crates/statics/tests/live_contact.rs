@@ -78,6 +78,7 @@ impl Scene {
                 .map(|i| (0..count).map(|j| table(i, j)).collect())
                 .collect(),
             surfaces,
+            bonds: vec![],
             voxel: SIDE,
             young: YOUNG,
         };

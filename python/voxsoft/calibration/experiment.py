@@ -20,6 +20,7 @@ from voxsoft.records import closest
 from voxsoft.simulation import Place, Setup
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import place_of, voxel_size
+from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.units import format_quantity
 
 # Real bodies neither stretch nor travel farther than this many of their own lengths at rest.
@@ -84,6 +85,7 @@ class Experiment(Shown):
     @cached_property
     def setup(self) -> Setup:
         """The design made ready for the solver."""
+        refuse_bodies(self.design, "calibrations")
         return Setup.of(self.design)
 
     @cached_property

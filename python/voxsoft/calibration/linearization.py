@@ -11,6 +11,7 @@ from voxsoft.materials import Material
 from voxsoft.materials.constants import with_constants
 from voxsoft.simulation.differences import derivative
 from voxsoft.simulation.gradient import adjoint_states
+from voxsoft.simulation.touching import refuse_contact
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ def seen_slopes(
     positions
         Its equilibrium, (v, 3), m.
     """
+    refuse_contact(experiment.design, "calibration along gradients")
     setup, parts = experiment.setup, len(experiment.design.parts)
     problem = setup.problem_with([material] * parts)
     axes, places = experiment.measurement.axes, experiment.places

@@ -23,7 +23,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loads import LoadReceiver
-from voxsoft.simulation.touching import refuse_contact
+from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -154,6 +154,7 @@ class BrickModel:
                 "floor", "cannot be given to an outside code", "clamp the foot instead"
             )
         refuse_contact(setup.design, "outside codes")
+        refuse_bodies(setup.design, "outside codes")
         if setup.design.layers:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"

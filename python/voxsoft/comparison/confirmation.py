@@ -15,6 +15,7 @@ from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import card_names
 from voxsoft.simulation import Result, simulate
+from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.study import StudyResult, Trial
 
 #: How a card of the paper's material ends; without it stands the rubber of the same silicone.
@@ -196,6 +197,7 @@ def confirm(
     >>> again.sentence
     'the ranking is the same'
     """
+    refuse_bodies(design, "the confirmation of a study")
     rubber, materials = as_rubber(design)
     first = next(iter(study.objectives))
     trials = [trial for trial in study.ranking if trial.same_as is None][:count]

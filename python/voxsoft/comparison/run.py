@@ -25,6 +25,7 @@ from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
 from voxsoft.simulation.choice import given_settings
+from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.units import format_quantity, si_value
 
 OUTSIDE: Final[tuple[Outside, ...]] = get_args(Outside)
@@ -99,7 +100,7 @@ def compare(
     >>> found.estimates[0].runs
     ('xpbd, 10 mm', 'xpbd, 5 mm')
     """
-    require_design(design)
+    refuse_bodies(require_design(design), "comparisons")
     limit = si_value(time_limit, "time", "time_limit", positive=True)
     splits = [int(split) for split in splits]
     if not solvers:

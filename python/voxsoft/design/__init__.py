@@ -1,6 +1,7 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
 from voxsoft.design.assignment import set_values
+from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.contact import Contact, ContactPair
@@ -19,6 +20,7 @@ from voxsoft.design.target import Constraint, Objective
 
 __all__ = [
     "AnyLoad",
+    "Body",
     "Chamber",
     "Clamp",
     "Constraint",

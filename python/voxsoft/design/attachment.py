@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Iterator
-from typing import Any, ClassVar, Protocol
+from collections.abc import Callable, Iterator
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design.operands import Name
-from voxsoft.design.region import Probe
+from voxsoft.design.region import Probe, Region
 from voxsoft.records import Record
 from voxsoft.units import Point
 
@@ -60,6 +60,21 @@ class Attachment(Record):
     @abstractmethod
     def summary(self) -> str:
         """What it is, in a few words with its size, for pictures and lists."""
+
+    def placed(self, region: Callable[[Region], Region], point: Callable[[Point], Point]) -> Self:
+        """Return the same for a body in another frame.
+
+        Parameters
+        ----------
+        region, point
+            What becomes of places on the body, and of points in space.
+
+        Notes
+        -----
+        A kind with points in space places these itself.
+        """
+        places = {name: region(each) for name, each in self if isinstance(each, Region)}
+        return self.replace(**places)
 
     @abstractmethod
     def element(self, body: AttachingBody, where: str) -> dict[str, Any]:

@@ -63,7 +63,8 @@ def chosen_cavities(choice: str | int | None, mesh: Mesh, where: str) -> tuple[i
     Parameters
     ----------
     choice
-        ``"all"`` or None for all of them, the name of a chamber, or an index.
+        ``"all"`` or None for all of them, the name of a chamber, or an index. Of a body of several
+        ``"left.all"`` are all of its cavities, and ``"left.0"`` is its largest one.
     mesh
         A mesh whose cavities have the names of the design's chambers.
     where
@@ -83,6 +84,12 @@ def chosen_cavities(choice: str | int | None, mesh: Mesh, where: str) -> tuple[i
         return (choice,)
     names = [cavity.name for cavity in cavities]
     if choice not in names:
+        body, _, which = choice.rpartition(".")
+        own = [i for i, each in enumerate(cavities) if f"{each.body}.".startswith(f"{body}.")]
+        if body and own and which == _ALL:
+            return tuple(own)
+        if body and which.isdecimal() and int(which) < len(own):
+            return (own[int(which)],)
         hint = closest(choice, [name for name in names if name]) or "name it under [chambers]"
         raise NoCavityError(where, f'there is no chamber "{choice}"', hint)
     return (names.index(choice),)

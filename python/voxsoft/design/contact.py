@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final, Literal
+from typing import Final, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from voxsoft.design.object import Object
 from voxsoft.design.operands import Name
-from voxsoft.errors import ErrorDetail
+from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.records import Record, closest
+from voxsoft.units import PositivePressure
 
 #: What a pair calls the body of the design.
 BODY: Final = "body"
@@ -24,25 +25,53 @@ class ContactPair(Record):
     Parameters
     ----------
     of
-        Names of objects, ``"body"`` or ``"floor"``; the body twice for contact with itself.
+        Names of objects, ``"body"`` or ``"floor"``; the body twice for contact with itself. In a
+        design of several bodies these have their own names.
     friction
         Coulomb's coefficient; default: that of :class:`Contact`.
     kind
-        ``"touching"`` (default), or ``"none"`` where they pass through each other.
+        ``"touching"`` (default), ``"none"`` where they pass through each other, or ``"bonded"``
+        where they are within half a voxel of each other in the unloaded design: there they pull
+        and push, and what lies between them at rest stays.
+    strength
+        The traction at which a bond lets go, by its pull and by what acts along it,
+        the root of the sum of their squares; then they touch. Default: it never does.
 
     Examples
     --------
     >>> ContactPair(of=("body", "plate"), friction=0.9).kind
     'touching'
+    >>> ContactPair(of=("body", "pad"), kind="bonded", strength="20 kPa").strength
+    20000.0
+    >>> ContactPair(of=("body", "pad"), strength="20 kPa")
+    Traceback (most recent call last):
+    ...
+    voxsoft.errors.DesignError: strength: is that of a bond, and the kind is "touching". Try: \
+write kind = "bonded", or leave strength out
     """
 
     of: tuple[Name, Name]
     friction: float | None = Field(None, ge=0.0)
-    kind: Literal["touching", "none"] = "touching"
+    kind: Literal["touching", "none", "bonded"] = "touching"
+    strength: PositivePressure | None = None
+
+    @model_validator(mode="after")
+    def _uses_all(self) -> Self:
+        if self.strength is not None and self.kind != "bonded":
+            what = f'is that of a bond, and the kind is "{self.kind}"'
+            raise DesignError("strength", what, 'write kind = "bonded", or leave strength out')
+        slides = self.kind == "touching" or self.strength is not None
+        if self.friction is not None and not slides:
+            what = f'is not used by what does not slide, and the kind is "{self.kind}"'
+            hint = "leave friction out"
+            if self.kind == "bonded":
+                hint = "add a strength, beyond which it slides, or leave friction out"
+            raise DesignError("friction", what, hint)
+        return self
 
 
 class Contact(Record):
-    """What touches: by default the body with itself, and all objects with it and with each other.
+    """What touches: by default bodies with themselves, each other and all objects, and those too.
 
     Parameters
     ----------
@@ -50,6 +79,9 @@ class Contact(Record):
         Coulomb's coefficient of all pairs; default 0.
     pairs
         Pairs that differ; of two entries for one pair the later one counts.
+    separate
+        Whether objects that are in something in the unloaded design are moved out of it, along the
+        shortest way, with a warning; default False, which refuses them.
     surface
         What of the body touches: ``"smooth"`` (default) is the surface of its shapes, carried by
         the voxels, ``"voxels"`` their faces.
@@ -58,9 +90,9 @@ class Contact(Record):
     -----
     Voxels that are cut into smaller ones (``refine``) touch with their faces.
 
-    A design has contact where it has this table or objects. It is found in equilibrium, with
-    ``method = "statics"`` and ``control = "load"``, and over time, with ``method = "dynamics"``.
-    Its floor is one of the objects then, with the friction of all.
+    A design has contact where it has this table, objects or several bodies. It is found in
+    equilibrium, with ``method = "statics"`` and ``control = "load"``, and over time, with
+    ``method = "dynamics"``. Its floor is one of the objects then, with the friction of all.
 
     Examples
     --------
@@ -71,12 +103,16 @@ class Contact(Record):
 
     friction: float = Field(0.0, ge=0.0)
     pairs: tuple[ContactPair, ...] = ()
+    separate: bool = False
     surface: Literal["smooth", "voxels"] = "smooth"
 
-    def table(self, objects: Sequence[Object], floor: bool = False) -> list[list[float]]:
-        """The friction of the body, the objects and a floor with each other.
+    def table(
+        self, objects: Sequence[Object], floor: bool = False, bodies: Sequence[str] = (BODY,)
+    ) -> list[list[float]]:
+        """The friction of the bodies, the objects and a floor with each other.
 
-        NaN stands where they do not touch: two things that are held or moved do not.
+        NaN stands where they do not touch: two things that are held or moved do not, nor do those
+        that are bonded for good.
 
         Examples
         --------
@@ -84,12 +120,16 @@ class Contact(Record):
         >>> Contact(friction=0.5).table([plate])
         [[0.5, 0.5], [0.5, nan]]
         """
-        names = names_of(objects, floor)
-        moves = [True, *(each.is_free for each in objects), *([False] if floor else [])]
+        names = names_of(objects, floor, bodies)
+        moves = [
+            *(True for _ in bodies),
+            *(each.is_free for each in objects),
+            *([False] if floor else []),
+        ]
         none = float("nan")
         table = [
             [
-                self.friction if (moves[a] or moves[b]) and (a != b or a == 0) else none
+                self.friction if (moves[a] or moves[b]) and (a != b or a < len(bodies)) else none
                 for b in range(len(names))
             ]
             for a in range(len(names))
@@ -97,35 +137,43 @@ class Contact(Record):
         for pair in self.pairs:
             a, b = (names.index(name) for name in pair.of)
             friction = self.friction if pair.friction is None else pair.friction
-            table[a][b] = table[b][a] = none if pair.kind == "none" else friction
+            touches = pair.kind == "touching" or pair.strength is not None
+            table[a][b] = table[b][a] = friction if touches else none
         return table
 
 
-def names_of(objects: Sequence[Object], floor: bool) -> list[str]:
-    """What touches: the body, the objects, and a floor if there is one."""
-    return [BODY, *(each.name for each in objects), *([FLOOR] if floor else [])]
+def names_of(objects: Sequence[Object], floor: bool, bodies: Sequence[str] = (BODY,)) -> list[str]:
+    """What touches: the bodies, the objects, and a floor if there is one."""
+    return [*bodies, *(each.name for each in objects), *([FLOOR] if floor else [])]
 
 
 def contact_problems(
-    objects: Sequence[Object], contact: Contact | None, floor: bool
+    objects: Sequence[Object],
+    contact: Contact | None,
+    floor: bool,
+    bodies: Sequence[str] = (BODY,),
 ) -> Iterator[ErrorDetail]:
     """Find names that are there twice or not at all, and pairs that cannot be."""
     names = [each.name for each in objects]
     for index, name in enumerate(names):
-        if name in (BODY, FLOOR) or name in names[:index]:
+        if name in (BODY, FLOOR, *bodies) or name in names[:index]:
             what = f'the name "{name}" is taken'
             yield ErrorDetail(f"objects[{index}].name", what, "give it another name")
-    known = names_of(objects, floor)
-    free = {BODY, *(each.name for each in objects if each.is_free)}
+    known = names_of(objects, floor, bodies)
+    some = bodies[0]
+    free = {*bodies, *(each.name for each in objects if each.is_free)}
     for index, pair in enumerate(contact.pairs if contact else ()):
         where = f"contact.pairs[{index}].of"
         for name in pair.of:
             if name not in known:
-                hint = closest(name, known) or f'write "{BODY}" or the name of an object'
+                hint = closest(name, known) or f'write "{some}" or the name of an object'
                 yield ErrorDetail(where, f'there is no object "{name}"', hint)
-        if pair.kind == "touching" and free.isdisjoint(pair.of):
+        if pair.kind != "none" and free.isdisjoint(pair.of):
             what = "are held or moved, both of them, and do not touch each other"
-            yield ErrorDetail(where, what, f'name "{BODY}" or an object that is free')
-        elif pair.kind == "touching" and pair.of[0] == pair.of[1] != BODY:
+            yield ErrorDetail(where, what, f'name "{some}" or an object that is free')
+        elif pair.kind == "bonded" and pair.of[0] == pair.of[1]:
+            what = "is one thing, and is not bonded to itself"
+            yield ErrorDetail(where, what, "name two things")
+        elif pair.kind == "touching" and pair.of[0] == pair.of[1] and pair.of[0] not in bodies:
             what = "is rigid, and does not touch itself"
-            yield ErrorDetail(where, what, f'name "{BODY}" twice, or two things')
+            yield ErrorDetail(where, what, f'name "{some}" twice, or two things')

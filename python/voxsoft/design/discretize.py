@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.joined import joined
 from voxsoft.design.model import Design
 from voxsoft.design.require import require_design
+from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes import voxelize
 from voxsoft.voxels import Voxels
@@ -38,6 +41,10 @@ def voxels_of(design: Design) -> Voxels:
     >>> voxels_of(families.beam()).count
     80
     """
+    if require_design(design).bodies:
+        names = ", ".join(design.body_names)
+        what = f"has several bodies, each with voxels of its own: {names}"
+        raise DesignError("bodies", what, "take one of them by design.alone(name)")
     return filled(design).voxels
 
 
@@ -48,19 +55,27 @@ class Filled:
     Attributes
     ----------
     voxels
-        Its cells; of full ones those before they are refined.
+        Its cells; of full ones those before they are refined. Of several bodies those of the first.
     count
         How many voxels the mesh will have.
     lost
         Volume of the material that found no voxel [m³].
     mesh
         Makes the mesh.
+    bodies
+        Each body for itself, by name, in its own frame; empty where there is only one.
     """
 
     voxels: Voxels
     count: int
     lost: float
     mesh: Callable[[], Mesh]
+    bodies: Mapping[str, Filled] = field(default_factory=dict)
+
+    @property
+    def each(self) -> Mapping[str, Filled]:
+        """Each body for itself, by name; one without a name where there is only one."""
+        return self.bodies or {"": self}
 
 
 def filled(design: Design, refine: int = 1) -> Filled:
@@ -73,12 +88,35 @@ def filled(design: Design, refine: int = 1) -> Filled:
     >>> cells.voxels.count, cells.count, len(cells.mesh().tets)
     (80, 640, 3200)
     """
-    if require_design(design).fill == "fraction":
+    if require_design(design).bodies:
+        return _filled_bodies(design.assembled, refine)
+    if design.fill == "fraction":
         cut = CutVoxels.of(design, refine)
         return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)
     voxels = _full_voxels(design)
     mesh = (lambda: voxels.refine(refine).mesh()) if refine > 1 else voxels.mesh
     return Filled(voxels, voxels.count * refine**3, 0.0, mesh)
+
+
+def _filled_bodies(design: Design, refine: int) -> Filled:
+    """Fill a grid for each body."""
+    own = {body.name: filled(design.alone(body.name), refine) for body in design.bodies}
+
+    def mesh() -> Mesh:
+        return joined(
+            (body.name, own[body.name].mesh(), body.pose, _numbers(design, body.name))
+            for body in design.bodies
+        )
+
+    first = next(iter(own.values()))
+    count, lost = (sum(each.count for each in own.values()), sum(e.lost for e in own.values()))
+    return Filled(first.voxels, count, lost, mesh, own)
+
+
+def _numbers(design: Design, body: str) -> NDArray[np.uint8]:
+    """What the parts of a body, counted from 1, are called among all."""
+    own = [index + 1 for index, part in enumerate(design.parts) if part.body == body]
+    return np.array([0, *own], dtype=np.uint8)
 
 
 def _full_voxels(design: Design) -> Voxels:

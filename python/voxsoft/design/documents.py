@@ -10,10 +10,13 @@ from typing import Any, Final
 from voxsoft.design.resolution import Document, formulas
 from voxsoft.materials import is_card_path
 
+#: Keys and indices that lead to a value.
+Steps = tuple[str | int, ...]
+
 #: What a user may type in Python in place of the names in a file.
 _WRITTEN: Final = {"schema_": "schema", "young_modulus": "young"}
 #: Entries that may hold such names.
-_HOLDERS: Final = frozenset({"materials", "parts"})
+_HOLDERS: Final = frozenset({"materials", "parts", "bodies"})
 
 
 def plain_document(
@@ -70,13 +73,11 @@ def written_path(path: tuple[str | int, ...]) -> tuple[str | int, ...]:
 
 
 def with_absolute_paths(document: Mapping[str, Any], folder: Path) -> Document:
-    """Complete the relative paths of meshes and cards, which are meant from the file's folder."""
+    """Complete the relative paths of files, which are meant from the folder of the design's."""
     whole: Document = _with_whole_meshes(document, folder)
-    parts = whole.get("parts")
-    for part in parts if isinstance(parts, list) else ():
-        material = part.get("material") if isinstance(part, dict) else None
-        if isinstance(material, str) and is_card_path(material):
-            part["material"] = str(folder.absolute() / material)
+    for steps, path in [*_cards(whole, ()), *included_files(whole)]:
+        # A path that is absolute already stays as it is.
+        _put(whole, steps, str(folder.absolute() / path))
     return whole
 
 
@@ -87,16 +88,12 @@ def _with_whole_meshes(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a doc
         return value
     table = {key: _with_whole_meshes(entry, folder) for key, entry in value.items()}
     if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
-        # A path that is absolute already stays as it is.
         table["path"] = str(folder.absolute() / table["path"])
     return table
 
 
-Steps = tuple[str | int, ...]
-
-
 def file_references(document: Mapping[str, Any]) -> Iterator[tuple[Steps, str]]:
-    """Find the files that a document names: meshes, and cards by their path.
+    """Find the files that a document names: meshes, cards by their path, and designs of bodies.
 
     Returns
     -------
@@ -110,11 +107,44 @@ def file_references(document: Mapping[str, Any]) -> Iterator[tuple[Steps, str]]:
     [(('parts', 0, 'material'), 'mine.toml')]
     """
     yield from _mesh_references(document, ())
-    parts = document.get("parts")
-    for index, part in enumerate(parts if isinstance(parts, list) else ()):
-        material = part.get("material") if isinstance(part, dict) else None
+    yield from _cards(document, ())
+    yield from included_files(document)
+
+
+def included_files(document: Mapping[str, Any], steps: Steps = ()) -> Iterator[tuple[Steps, str]]:
+    """Find the files of designs that the bodies of a document name.
+
+    Examples
+    --------
+    >>> list(included_files({"bodies": [{"name": "left", "design": "finger.toml"}]}))
+    [(('bodies', 0, 'design'), 'finger.toml')]
+    """
+    for way, body in _tables(document, "bodies"):
+        design = body.get("design")
+        if isinstance(design, str):
+            yield (*steps, *way, "design"), design
+        elif isinstance(design, Mapping):
+            yield from included_files(design, (*steps, *way, "design"))
+
+
+def _cards(document: Mapping[str, Any], steps: Steps) -> Iterator[tuple[Steps, str]]:
+    """Find the paths of cards, of designs within designs too."""
+    for way, part in _tables(document, "parts"):
+        material = part.get("material")
         if isinstance(material, str) and is_card_path(material):
-            yield ("parts", index, "material"), material
+            yield (*steps, *way, "material"), material
+    for way, body in _tables(document, "bodies"):
+        yield from _cards({"parts": body.get("parts")}, (*steps, *way))
+        if isinstance(body.get("design"), Mapping):
+            yield from _cards(body["design"], (*steps, *way, "design"))
+
+
+def _tables(document: Mapping[str, Any], key: str) -> Iterator[tuple[Steps, Mapping[str, Any]]]:
+    """The tables of a list in a document; what else may stand there is passed over."""
+    entries = document.get(key)
+    for index, entry in enumerate(entries if isinstance(entries, (list, tuple)) else ()):
+        if isinstance(entry, Mapping):
+            yield (key, index), entry
 
 
 def _mesh_references(value: object, steps: Steps) -> Iterator[tuple[Steps, str]]:
@@ -127,6 +157,13 @@ def _mesh_references(value: object, steps: Steps) -> Iterator[tuple[Steps, str]]
             yield (*steps, "path"), path
         for key, entry in value.items():
             yield from _mesh_references(entry, (*steps, key))
+
+
+def with_path(document: Mapping[str, Any], steps: Steps, path: str) -> Document:
+    """Put another path where a document names a file, see :func:`file_references`."""
+    written = copy.deepcopy(dict(document))
+    _put(written, steps, path)
+    return written
 
 
 def with_paths_from(document: Mapping[str, Any], folder: Path) -> Document:

@@ -1,4 +1,7 @@
-"""The design: all it takes to build and load one robot."""
+"""The design: all it takes to build and load one robot.
+
+Long because all entries, and all ways to read, change and write them, are of this one class.
+"""
 
 from __future__ import annotations
 
@@ -18,10 +21,18 @@ from pydantic import (
 )
 from pydantic_core import PydanticSerializationError
 
+from voxsoft.design.assembly import (
+    Assembly,
+    body_problems,
+    entries_alone,
+    is_assembled,
+    nothing_built,
+)
 from voxsoft.design.assignment import set_values
+from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber, ChamberName
 from voxsoft.design.clamp import Clamp
-from voxsoft.design.contact import Contact, contact_problems
+from voxsoft.design.contact import BODY, Contact, contact_problems
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
@@ -32,14 +43,14 @@ from voxsoft.design.object import Object
 from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
-from voxsoft.design.references import dangling_references
+from voxsoft.design.references import Included, dangling_references
 from voxsoft.design.region import Probe
 from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.target import Constraint, Objective
-from voxsoft.errors import DesignError, FormulaError
+from voxsoft.errors import DesignError, ErrorDetail, FormulaError, VoxSoftError
 from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
 from voxsoft.records import FrozenDict, Record, Table, plain_error, plain_values, problems_of
 from voxsoft.shapes import AnyShape
@@ -71,7 +82,11 @@ class Design(Record):
     shapes
         Named shapes, to be used by parts and by other shapes.
     parts
-        What is made of which material; the first one wins where parts overlap.
+        What is made of which material; the first one wins where parts overlap. In a design of
+        several bodies each names its own.
+    bodies
+        Several bodies, each on a grid of its own and in a pose of its own; default: the parts are
+        one body.
     description
         Free text.
     parameters
@@ -127,7 +142,8 @@ class Design(Record):
     parameters: Table[ParameterName, Parameter] = Field(default_factory=FrozenDict, max_length=200)
     shapes: Table[Name, AnyShape] = Field(default_factory=FrozenDict)
     materials: Table[MaterialName, AnyMaterial] = Field(default_factory=FrozenDict)
-    parts: tuple[Part, ...] = Field(min_length=1, max_length=250)
+    parts: tuple[Part, ...] = Field((), max_length=250)
+    bodies: tuple[Body, ...] = Field((), max_length=250)
     layers: tuple[Layer, ...] = Field((), max_length=250)
     springs: tuple[Spring, ...] = ()
     clamps: tuple[Clamp, ...] = ()
@@ -144,6 +160,9 @@ class Design(Record):
     _source: Document = PrivateAttr(default_factory=dict)
     _typed: frozenset[str] = PrivateAttr(default=frozenset())
     _empty_shapes: tuple[str, ...] = PrivateAttr(default=())
+    _assembled: Any = PrivateAttr(default=None)
+    _origins: dict[str, str] = PrivateAttr(default_factory=dict)
+    _left_out: tuple[ErrorDetail, ...] = PrivateAttr(default=())
 
     @classmethod
     def from_document(
@@ -213,15 +232,19 @@ class Design(Record):
             return handler(with_stand_ins(found.document))
         document, empty = without_empty_shapes(found.document)
         problems, only_formulas = found.problems, bool(found.problems)
+        included: Included | None = None
         try:
             design = handler(document)
         except ValidationError as error:
-            wrong = problems_of(error, cls, document, found.reported)
-            problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
+            wrong = [*problems_of(error, cls, document, found.reported), *nothing_built(document)]
         else:
-            wrong = list(contact_problems(design.objects, design.contact, design.floor is not None))
-            problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
-        dangling = list(dangling_references(document, empty))
+            wrong = [*nothing_built(document), *design._assemble(empty)]
+            if not wrong:
+                whole = design.assembled
+                tables = frozenset(whole.chambers), frozenset(whole.probes)
+                included = Included(design.body_names, *tables)
+        problems, only_formulas = [*problems, *wrong], only_formulas and not wrong
+        dangling = list(dangling_references(document, empty, included))
         if problems or dangling:
             error_type = FormulaError if only_formulas and not dangling else DesignError
             raise error_type.listing(dict.fromkeys([*problems, *dangling]))
@@ -229,6 +252,67 @@ class Design(Record):
         is_file = context.get("source") == "file"
         design._typed = frozenset() if is_file else context.get("typed", frozenset(source))
         return design
+
+    def _assemble(self, empty: tuple[str, ...]) -> list[ErrorDetail]:
+        """Gather what the designs of bodies say; return what is wrong."""
+        wrong = list(body_problems(self))
+        if not wrong and not is_assembled(self):
+            try:
+                found = Assembly.of(self)
+                entries = {**self._entries(), **found.entries}
+                whole = self._read(entries, {}, frozenset(entries))
+            except VoxSoftError as error:
+                return [*error.problems]
+            whole._empty_shapes = (*empty, *found.empty_shapes)
+            whole._origins, whole._left_out = found.origins, tuple(found.left_out)
+            self._assembled = whole
+            return []  # what contact and references lack is found in the whole
+        floor = self.floor is not None
+        wrong += contact_problems(self.objects, self.contact, floor, self.body_names)
+        return wrong
+
+    @property
+    def assembled(self) -> Self:
+        """The design with all that the designs of its bodies say in lists of its own.
+
+        What is of a body has its name: the parts and regions by ``body``, chambers and probes by
+        the beginning of their names. The same design where that is so already.
+        """
+        return self if self._assembled is None else self._assembled
+
+    @property
+    def body_names(self) -> tuple[str, ...]:
+        """What contact calls the bodies: ``"body"`` where there is but one without a name."""
+        return tuple(body.name for body in self.assembled.bodies) or (BODY,)
+
+    def alone(self, body: str) -> Self:
+        """Return a design of one body, in its own frame: its parts and its grid, and no more.
+
+        Parameters
+        ----------
+        body
+            The name of a body, of :attr:`body_names`.
+
+        Examples
+        --------
+        >>> from voxsoft.design import Body, families
+        >>> beam = Body(name="left", design=families.beam(), position=(0, 0, 1))
+        >>> pair = Design(name="one", voxel_size=0.01, bodies=[beam])
+        >>> pair.alone("left").voxel_size
+        0.005
+        """
+        entries = entries_alone(self.assembled, body)
+        return type(self)(**entries) if entries else self
+
+    def origin_of(self, where: str) -> str:
+        """Where in which file an entry of an assembled design stands; the same for its own."""
+        head, dot, rest = where.partition(".")
+        return self._origins.get(head, head) + dot + rest
+
+    @property
+    def left_out(self) -> tuple[ErrorDetail, ...]:
+        """What of the designs of bodies is left out although it decides how they behave alone."""
+        return self._left_out
 
     def __str__(self) -> str:
         try:
@@ -291,7 +375,7 @@ class Design(Record):
         """Formulas by their path; one that is all of a parameter is that of its value."""
         found = {written_path(path): formula for path, formula in formulas(self._source)}
         return {
-            (*path, "value") if path[0] == "parameters" and len(path) == 2 else path: formula
+            (*path, "value") if path[-2:-1] in (("parameters",), ("set",)) else path: formula
             for path, formula in found.items()
         }
 
@@ -320,7 +404,7 @@ class Design(Record):
         DesignError
             A shape is made of a Python function: such a design has no document and no hash.
         """
-        return self._dumped(cards=True)
+        return self.assembled._dumped(cards=True)
 
     def _dumped(
         self,
@@ -351,7 +435,7 @@ class Design(Record):
         Name, description, parameters, objectives and constraints do not count; values that
         formulas gave do. Numbers are rounded to 12 significant digits.
         """
-        return hash_of(self._dumped(NOT_PHYSICS, cards=True))
+        return hash_of(self.assembled._dumped(NOT_PHYSICS, cards=True))
 
     def with_parameters(self, **values: float | str) -> Self:
         """Return the design with other values of its parameters.

@@ -24,7 +24,7 @@ class Object(Record):
         Name of a shape of the design, or a shape. It is not part of the body.
     motion
         ``"fixed"`` (default), ``"free"``, or the way that it goes, as a clamp does. What is free
-        moves as its weight and what it touches let it, over time.
+        moves as its weight and what it touches let it, over time or to where it is in equilibrium.
     density, mass
         Of a free object, either of them. Its moments of inertia are those of a solid of one
         density.

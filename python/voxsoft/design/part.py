@@ -51,6 +51,8 @@ class Part(Record):
         hyperelastic one. Default: none.
     name
         What results call it; default: the shape's name.
+    body
+        The body that it is of, in a design that has several.
 
     Examples
     --------
@@ -65,3 +67,4 @@ class Part(Record):
     ]
     fibers: tuple[Fiber, ...] = Field((), max_length=10)
     name: Name | None = None
+    body: Name | None = None

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from voxsoft.design.contact import BODY, FLOOR
+from voxsoft.design.resolution import is_inner_design
 from voxsoft.errors import ErrorDetail, MaterialError, VoxSoftError
 from voxsoft.materials import card_names, is_card_path, load_card
 from voxsoft.records import Record, closest, place
@@ -13,8 +15,17 @@ from voxsoft.records import Record, closest, place
 Path = tuple[str | int, ...]
 
 
+@dataclass(frozen=True)
+class Included:
+    """Names of a design that come from those of its bodies: of bodies, chambers and probes."""
+
+    bodies: tuple[str, ...] = (BODY,)
+    chambers: frozenset[str] = frozenset()
+    probes: frozenset[str] = frozenset()
+
+
 def dangling_references(
-    document: Mapping[str, Any], empty: Collection[str]
+    document: Mapping[str, Any], empty: Collection[str], included: Included | None = None
 ) -> Iterator[ErrorDetail]:
     """Find every name in a design that leads nowhere, and shapes made of themselves.
 
@@ -25,6 +36,8 @@ def dangling_references(
         is passed over: reading the tables tells it.
     empty
         Names of subtracted shapes of which the parameters leave nothing.
+    included
+        Names that come from the designs of bodies; None where these could not be read.
 
     Yields
     ------
@@ -39,14 +52,18 @@ def dangling_references(
             yield _unknown(path, "shape", name, shapes)
     yield from _circles(shapes)
     yield from _materials(document)
-    yield from _chambers(document)
-    probes = _table(document, "probes")
+    known = included or Included()
+    yield from _chambers(document, known)
+    probes = {*_table(document, "probes"), *known.probes}
     for table in ("objectives", "constraints"):
         for key, target in _table(document, table).items():
             probe = entry_of(target, "probe")
-            if isinstance(probe, str) and probe not in probes:
+            if isinstance(probe, str) and probe not in probes and (included or "." not in probe):
                 yield _unknown((table, key, "probe"), "probe", probe, probes)
-    yield from _objects(document)
+    if included is not None or not document.get("bodies"):
+        yield from _objects(document, known)
+    if included is not None:
+        yield from _bodies(document, included)
 
 
 def entry_of(table: object, key: str) -> Any:  # noqa: ANN401 - a document holds anything
@@ -69,9 +86,17 @@ def _unknown(path: Path, what: str, name: str, known: Iterable[str]) -> ErrorDet
     return ErrorDetail(place(path), f'there is no {what} "{name}"', closest(name, map(str, known)))
 
 
+def _parts(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
+    """The parts of a design and of its bodies."""
+    yield from _list(document, "parts")
+    for path, body in _list(document, "bodies"):
+        for way, part in _list({"parts": entry_of(body, "parts")}, "parts"):
+            yield (*path, *way), part
+
+
 def _materials(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
     known = {*_table(document, "materials"), *card_names()}
-    for path, part in _list(document, "parts"):
+    for path, part in _parts(document):
         material, where = entry_of(part, "material"), (*path, "material")
         if not isinstance(material, str) or material in known:
             continue
@@ -87,28 +112,39 @@ def _materials(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
             yield ErrorDetail(place(where), f"{error.where}: {error.what}", error.hint)
 
 
-def _chambers(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
-    known = _table(document, "chambers")
+def _chambers(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:
+    known = {*_table(document, "chambers"), *included.chambers}
     users = list(_list(document, "loads"))
     for table in ("objectives", "constraints"):
         users += [((table, name), each) for name, each in _table(document, table).items()]
     for path, user in users:
         choice = entry_of(user, "cavity")
-        if isinstance(choice, str) and choice != "all" and choice not in known:
+        of_a_body = isinstance(choice, str) and "." in choice  # found on the mesh
+        if isinstance(choice, str) and choice != "all" and choice not in known and not of_a_body:
             hint = closest(choice, map(str, known))
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
             yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
 
 
-def _objects(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
+def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:
     names = [entry_of(each, "name") for _, each in _list(document, "objects")]
-    known = [BODY, *(name for name in names if isinstance(name, str))]
+    known = [*included.bodies, *(name for name in names if isinstance(name, str))]
     known += [FLOOR] if document.get("floor") is not None else []
     for table in ("objectives", "constraints"):
         for key, target in _table(document, table).items():
             name = entry_of(target, "object")
             if isinstance(name, str) and name not in known:
                 yield _unknown((table, key, "object"), "object", name, known)
+
+
+def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:
+    """Regions and parts that are of a body which there is not."""
+    known = [] if included.bodies == (BODY,) else included.bodies
+    parts = ((path, part) for path, part in _list(document, "parts"))
+    for path, table in (*_regions(document), *parts):
+        name = entry_of(table, "body")
+        if isinstance(name, str) and name not in known:
+            yield _unknown((*path, "body"), "body", name, known)
 
 
 def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
@@ -129,6 +165,8 @@ def _regions(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
 
 
 def _tables_in(value: object, path: Path) -> Iterator[tuple[Path, Any]]:
+    if is_inner_design(path):
+        return
     if isinstance(value, (list, tuple)):
         for index, entry in enumerate(value):
             yield from _tables_in(entry, (*path, index))

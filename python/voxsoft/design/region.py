@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import model_validator
 
-from voxsoft.design.operands import ShapeOrName
+from voxsoft.design.operands import Name, ShapeOrName
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
 from voxsoft.units import ExtendedLength, Point, PositiveLength, format_quantity
@@ -24,6 +24,9 @@ class Region(Record):
         A ball.
     shape
         The inside of a shape: its name, or the shape itself.
+    body
+        The name of a body, in whose own frame all this is then meant, before it is turned and
+        moved; alone: all of that body. Default: all bodies, in the frame of the design.
 
     Notes
     -----
@@ -47,6 +50,7 @@ class Region(Record):
     center: Point | None = None
     radius: PositiveLength | None = None
     shape: ShapeOrName | None = None
+    body: Name | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Region:
@@ -58,7 +62,7 @@ class Region(Record):
         return self
 
     def _check_conditions(self) -> None:
-        if not self._conditions():
+        if not self._conditions() and self.body is None:
             hint = "give x, y or z ranges, center and radius, or a shape"
             raise DesignError("", "says nowhere", hint)
 
@@ -85,7 +89,8 @@ class Probe(Spot):
     Parameters
     ----------
     point
-        A point in the undeformed body; values are interpolated in the voxel that holds it.
+        A point in the undeformed body; values are interpolated in the voxel that holds it. With
+        `body` it is in the own frame of that.
 
     Examples
     --------

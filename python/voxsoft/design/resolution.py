@@ -86,6 +86,17 @@ class Resolution:
         return found
 
 
+def is_inner_design(path: Path) -> bool:
+    """Whether a path of a document leads to a design within it, which has names of its own.
+
+    Examples
+    --------
+    >>> is_inner_design(("bodies", 0, "design")), is_inner_design(("bodies", 0, "set"))
+    (True, False)
+    """
+    return path[-3:-2] == ("bodies",) and path[-1] == "design"
+
+
 class _Unread:
     """No value that any field takes."""
 
@@ -234,6 +245,8 @@ def _resolve(value: object, path: Path, parameters: _Parameters, found: Resoluti
         if not is_formula(value) or (path and path[-1] in _PROSE):
             return value
         return _evaluated(value, path, parameters, found)
+    if is_inner_design(path):
+        return value  # its formulas are of parameters of its own
     if isinstance(value, Mapping):
         return {k: _resolve(v, (*path, k), parameters, found) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
@@ -262,7 +275,9 @@ def _within(formula: str, what: str) -> str:
 
 
 def formulas(document: object, path: Path = ()) -> Iterator[tuple[Path, str]]:
-    """Find every formula of a document with its path."""
+    """Find every formula of a document with its path; those of designs within it are left out."""
+    if is_inner_design(path):
+        return
     if isinstance(document, Mapping):
         for key, value in document.items():
             yield from formulas(value, (*path, key))

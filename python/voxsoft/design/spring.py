@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import ConfigDict, model_validator
 
 from voxsoft.design.attachment import AttachingBody, Attachment
-from voxsoft.design.region import Probe
+from voxsoft.design.region import Probe, Region
 from voxsoft.errors import DesignError
 from voxsoft.units import NonNegativeLength, Point, UnitOf, format_quantity
 
@@ -85,6 +86,11 @@ class Spring(Attachment):
     def summary(self) -> str:
         """Its stiffness."""
         return f"spring of {format_quantity(self.stiffness, 'stiffness')}"
+
+    def placed(self, region: Callable[[Region], Region], point: Callable[[Point], Point]) -> Self:
+        """Return the same for a body in another frame; see :meth:`Attachment.placed`."""
+        placed = super().placed(region, point)
+        return placed if self.anchor is None else placed.replace(anchor=point(self.anchor))
 
     def element(self, body: AttachingBody, where: str) -> dict[str, Any]:
         """Return the core's `Spring`; see :meth:`Attachment.element`."""

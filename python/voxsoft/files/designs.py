@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import with_absolute_paths
+from voxsoft.design.included import is_outside, placed_document
 from voxsoft.errors import DesignError, ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
-from voxsoft.files.toml_text import line_of
+from voxsoft.files.toml_text import line_of, write_toml
 from voxsoft.records import steps_of
 
 if TYPE_CHECKING:
@@ -63,8 +63,8 @@ def load(path: FilePath, *, assignments: Iterable[str] = (), **parameters: float
     document = read_document(text, Path(path).name)
     _refuse_card(document, path)
     try:
-        changed = with_absolute_paths(set_values(document, assignments), Path(path).parent)
-        return Design.from_document(changed, parameters)
+        changed = set_values(document, assignments)
+        return Design.from_document(placed_document(changed, Path(path).parent), parameters)
     except DesignError as error:
         raise type(error).listing(_with_lines(error.problems, text, Path(path).name)) from None
 
@@ -81,6 +81,9 @@ def _refuse_card(document: Document, path: FilePath) -> None:
 def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
     """Write a design to a TOML file, whole or not at all.
 
+    Designs of bodies whose files are not in the folder, from which they could not be read again,
+    are written into it.
+
     Parameters
     ----------
     design
@@ -95,7 +98,20 @@ def save(design: Design, path: FilePath, *, resolved: bool = False) -> None:
     FileError
         The file cannot be written.
     """
-    write_atomically(path, design.to_toml(resolved=resolved))
+    document = design.resolved if resolved else _movable(design, Path(path).parent)
+    write_atomically(path, write_toml(document))
+
+
+def _movable(design: Design, folder: Path) -> Document:
+    """The document of a design with those of bodies that are not in a folder as tables."""
+    document = design.document
+    for table, body in zip(document.get("bodies", ()), design.bodies, strict=True):
+        if isinstance(body.design, Design):
+            table["design"] = _movable(body.design, folder)
+        elif body.design is not None and is_outside(body.design, folder):
+            assert body.included is not None  # it has a design
+            table["design"] = _movable(body.included, folder)
+    return document
 
 
 def read_text(path: FilePath) -> str:

@@ -45,7 +45,8 @@ def write(path: Path, content: MeshFile) -> None:
         arrays["cavity"] = [np.zeros(len(mesh.tets), np.int32), cavity]
     if mesh.tet_voxel is not None and mesh.voxel_size is not None:
         arrays["voxel"] = per_cell(mesh.tet_voxel)
-        arrays["voxel_size"] = per_cell(np.full(len(mesh.tets), mesh.voxel_size))
+        sizes = [np.full(len(b.mesh.tets), b.mesh.voxel_size) for b in mesh.each_body]
+        arrays["voxel_size"] = per_cell(np.concatenate(sizes))
         if mesh.fractions is not None:
             arrays["fraction"] = per_cell(mesh.fractions[mesh.tet_voxel])
         if mesh.moments is not None:
@@ -78,7 +79,7 @@ def read(path: Path) -> MeshFile:
     tets = np.concatenate([data.cells[block].data for block in blocks])
     mesh = Mesh.from_tets(data.points, tets, per_tet.get("part"))
     if "voxel" in per_tet and "voxel_size" in per_tet:
-        voxel_size = float(per_tet["voxel_size"][0])
+        voxel_size = float(per_tet["voxel_size"].min())
         mesh = replace(mesh, tet_voxel=per_tet["voxel"], voxel_size=voxel_size)
         if "fraction" in per_tet:
             moments = per_tet["moments"][::5] if "moments" in per_tet else None

@@ -1,14 +1,19 @@
-"""Copies of the meshes and cards that a design names, so that a folder can be moved."""
+"""Copies of the meshes, cards and designs that a design names, so that a folder can be moved."""
 
 from __future__ import annotations
 
 import hashlib
+import tomllib
 from pathlib import Path
 from typing import Final, TypeVar
 
 from voxsoft._folders import folder_name
+from voxsoft.design.documents import file_references, with_path
+from voxsoft.design.included import refuse_outside
+from voxsoft.design.resolution import is_inner_design
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
+from voxsoft.files.toml_text import write_toml
 from voxsoft.jobs.spec import JobSpec
 
 #: The folder of the copies in that of a job.
@@ -43,13 +48,27 @@ def with_copies(spec: AnySpec, folder: Path) -> AnySpec:
     """
     copies = {}
     for steps, file in spec.design.files().items():
-        try:
-            content = file.read_bytes()
-        except OSError:
-            continue
-        copies[steps] = _copied(content, file, folder / INPUTS)
+        copy = _copy_of(file, folder / INPUTS, is_inner_design(steps))
+        if copy is not None:
+            copies[steps] = copy
     place = (folder / design_file(spec.kind)).parent
     return spec.replace(design=spec.design.with_files(copies, place))
+
+
+def _copy_of(file: Path, inputs: Path, is_design: bool = False) -> Path | None:
+    """Copy a file, and the files that a design names with it; None where it cannot be read."""
+    try:
+        content = file.read_bytes()
+        document = tomllib.loads(content.decode("utf-8-sig")) if is_design else {}
+    except (OSError, ValueError, RecursionError):
+        return None
+    refuse_outside(document, file.parent)
+    for steps, path in file_references(document):
+        inner = _copy_of(Path(file.parent, path), inputs, is_inner_design(steps))
+        if inner is not None:
+            document = with_path(document, steps, inner.name)
+            content = write_toml(document).encode()
+    return _copied(content, file, inputs)
 
 
 def _copied(content: bytes, file: Path, inputs: Path) -> Path:

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from voxsoft.design import Design, set_values
-from voxsoft.design.documents import Steps, file_references, with_absolute_paths
+from voxsoft.design.documents import Steps, file_references
+from voxsoft.design.included import placed_document, refuse_outside
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.files.designs import FilePath, read_document, read_text
 from voxsoft.files.toml_edits import with_document, with_value
@@ -70,11 +71,17 @@ class DesignSource(Record):
         DesignError
             It is no valid design.
         """
-        return Design.from_document(with_absolute_paths(self._document(), Path(self.folder)))
+        document = self._document()
+        return Design.from_document(
+            placed_document(document, Path(self.folder)) if self.folder else document
+        )
 
     def files(self) -> dict[Steps, Path]:
         """The meshes and cards that the design names, by the keys that lead to their paths."""
-        return {steps: Path(self.folder, path) for steps, path in file_references(self._document())}
+        document = self._document()
+        if self.folder:
+            refuse_outside(document, Path(self.folder))
+        return {steps: Path(self.folder, path) for steps, path in file_references(document)}
 
     def with_files(self, files: dict[Steps, Path], folder: Path) -> Self:
         """Return the same for a folder, with other files in place of those it names.

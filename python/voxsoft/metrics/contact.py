@@ -10,7 +10,7 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY, names_of
 from voxsoft.errors import DesignError, ErrorDetail
-from voxsoft.metrics.definition import Metric, State, Target, Touch
+from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target, Touch
 from voxsoft.metrics.vectors import component
 from voxsoft.records import closest
 
@@ -20,19 +20,27 @@ def object_problems(metric: Metric, target: Target, design: Design) -> Iterator[
     if "object" not in metric.needs | metric.takes:
         return
     names, name = [each.name for each in design.objects], target.object
-    if design.contact is None and not names:
+    bodies = design.body_names
+    if design.contact is None and not names and len(bodies) == 1:
         if name is not None or "object" in metric.needs:
             what = f"nothing touches in this design, and {metric.name} asks what does"
             yield ErrorDetail("object", what, "add [[objects]], or [contact] for the body alone")
         return
     if name is None and "object" in metric.needs and len(names) > 1:
-        some = ", ".join([*names, BODY])
+        some = ", ".join([*names, *bodies])
         yield ErrorDetail("object", f"is missing: what does {metric.name} ask of?", f"name {some}")
-    known = names_of(design.objects, design.floor is not None)
+    known = names_of(design.objects, design.floor is not None, bodies)
+    if name is None and "object" in metric.needs and not names and len(bodies) > 1:
+        what = f"is missing: what does {metric.name} ask of?"
+        yield ErrorDetail("object", what, f"name {', '.join(bodies)}")
     if name is not None and name not in known:
-        hint = closest(name, known) or f'write "{BODY}" or the name of an object'
+        hint = closest(name, known) or f'write "{bodies[0]}" or the name of an object'
         yield ErrorDetail("object", f'there is no object "{name}"', hint)
-    if _named(target, design) == BODY:
+    if _named(target, design) in bodies and len(bodies) > 1:
+        if metric.name == CONTACT_GAP.name:
+            what = "the gap of two bodies is not measured yet"
+            yield ErrorDetail("object", what, "name an object, or ask for contact_area")
+    elif _named(target, design) == BODY:
         if metric.name == CONTACT_GAP.name:
             what = "a body has no gap to itself: what is beside a place is at no distance"
             yield ErrorDetail("object", what, "name an object, or ask for contact_area")
@@ -58,27 +66,44 @@ def object_of_target(metric: Metric, target: Target, design: Design) -> str:
 def _named(target: Target, design: Design) -> str:
     if target.object is not None:
         return target.object
-    return design.objects[0].name if design.objects else BODY
+    return design.objects[0].name if design.objects else design.body_names[0]
 
 
-def _contact(metric: Metric, state: State, target: Target) -> Touch | None:
-    """The contact that a target asks for; None while both are apart."""
+def _contacts(metric: Metric, state: State, target: Target) -> list[Touch]:
+    """The contacts that a target asks for; empty while all are apart.
+
+    Of an object those with every body; of one body of several those with the others.
+    """
     name = object_of_target(metric, target, state.design)
-    return next((each for each in state.contacts if each.of == (BODY, name)), None)
+    bodies = state.design.body_names
+    if name in bodies and len(bodies) > 1:
+        return [
+            each
+            for each in state.contacts
+            if name in each.of and each.of[0] != each.of[1] and {*each.of} <= {*bodies}
+        ]
+    return [each for each in state.contacts if each.of[0] in bodies and each.of[1] == name]
 
 
 def _force(state: State, target: Target) -> float:
-    contact = _contact(CONTACT_FORCE, state, target)
-    if contact is None:
-        return 0.0
-    if contact.of == (BODY, BODY):  # what it presses itself with; each pair of forces cancels
-        return contact.pressed
-    return component(np.asarray(contact.force), target)
+    contacts = _contacts(CONTACT_FORCE, state, target)
+    if any(each.of == (BODY, BODY) for each in contacts):
+        return contacts[0].pressed  # what it presses itself with; each pair of forces cancels
+    bodies, total = state.design.body_names, np.zeros(3)
+    for each in contacts:
+        # On the named one of two bodies, on the bodies else.
+        turned = target.object in bodies and each.of[0] != target.object
+        total += np.asarray(each.force) * (-1.0 if turned else 1.0)
+    return component(total, target) if contacts else 0.0
+
+
+def _slope_at_given_forces(state: SlopeState, target: Target) -> Floats:
+    """None by the positions: forces of contact are unknowns of their own beside them."""
+    return np.zeros_like(state.positions)
 
 
 def _area(state: State, target: Target) -> float:
-    contact = _contact(CONTACT_AREA, state, target)
-    return 0.0 if contact is None else contact.area
+    return sum(each.area for each in _contacts(CONTACT_AREA, state, target))
 
 
 def _gap(state: State, target: Target) -> float:
@@ -86,14 +111,24 @@ def _gap(state: State, target: Target) -> float:
 
 
 def _sticking(state: State, target: Target) -> float:
-    contact = _contact(STICKING, state, target)
-    return 0.0 if contact is None else 1.0 - contact.slipping
+    contacts = _contacts(STICKING, state, target)
+    pressed = sum(each.pressed for each in contacts)
+    if pressed == 0.0:
+        return 0.0
+    return 1.0 - sum(each.pressed * each.slipping for each in contacts) / pressed
 
 
-# Without slopes: gradients know no contact.
 CONTACT_FORCE: Final = Metric(
-    "contact_force", "force", _force, None, frozenset({"object"}), frozenset({"axis"})
+    "contact_force",
+    "force",
+    _force,
+    _slope_at_given_forces,
+    frozenset({"object"}),
+    frozenset({"axis"}),
 )
+CONTACT_GAP: Final = Metric(
+    "contact_gap", "length", _gap, _slope_at_given_forces, frozenset({"object"})
+)
+# Without slopes: they change in jumps, where a point comes into contact or begins to slip.
 CONTACT_AREA: Final = Metric("contact_area", "area", _area, None, frozenset({"object"}))
-CONTACT_GAP: Final = Metric("contact_gap", "length", _gap, None, frozenset({"object"}))
 STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}))

@@ -62,6 +62,18 @@ class Touch(Protocol):
         """The sum of the sizes of all forces, N."""
 
     @property
+    def pressure(self) -> float:
+        """The sum of all pressures, N."""
+
+    @property
+    def friction(self) -> tuple[float, float, float]:
+        """The part of the force that is friction, N."""
+
+    @property
+    def bound(self) -> float:
+        """The most that friction can be, N."""
+
+    @property
     def area(self) -> float:
         """In the unloaded body, m²."""
 

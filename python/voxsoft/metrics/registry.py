@@ -11,6 +11,7 @@ from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
 from voxsoft.metrics.contact import CONTACT_AREA, CONTACT_FORCE, CONTACT_GAP, STICKING
 from voxsoft.metrics.definition import Metric
 from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
+from voxsoft.metrics.grip import BLOCKED_FORCE, GRIP_FORCE, HOLD_MARGIN
 from voxsoft.metrics.penetration import PENETRATION
 from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
@@ -39,6 +40,9 @@ _ALL: Final[dict[str, Metric]] = {
         CONTACT_AREA,
         CONTACT_GAP,
         STICKING,
+        GRIP_FORCE,
+        HOLD_MARGIN,
+        BLOCKED_FORCE,
     )
 }
 

@@ -12,8 +12,8 @@ from voxsoft.plot.boundary import Axis
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.raster import Raster, rasterize
 from voxsoft.simulation import Result
+from voxsoft.simulation.apart import Surface
 from voxsoft.simulation.posed import posed_surface
-from voxsoft.simulation.touching import Surface
 
 Floats = NDArray[np.float64]
 

@@ -140,8 +140,13 @@ def _cavity_of(chamber: Chamber, mesh: Mesh, shapes: Mapping[str, Shape], where:
     if not mesh.cavities:
         what = "there is no enclosed cavity to name"
         raise NoCavityError(where, what, "`voxsoft check` shows where a chamber leaks")
+    own = next((body for body in mesh.bodies if body.name == chamber.body), None)
+    if own is not None and not any(each.body == own.name for each in mesh.cavities):
+        what = f'there is no enclosed cavity in the body "{own.name}" to name'
+        raise NoCavityError(where, what, "`voxsoft check` shows where a chamber leaks")
     if chamber.point is not None:
-        return _around(np.asarray(chamber.point), mesh, where)
+        point = np.asarray(chamber.point)
+        return _around(point if own is None else own.placed(point), mesh, where)
     shares = [_share_inside(chamber, cavity, mesh, shapes) for cavity in mesh.cavities]
     held = [index for index, share in enumerate(shares) if share > 0.5]
     if len(held) > 1:
@@ -191,10 +196,17 @@ def _distance(point: Floats, corners: Floats) -> float:
 def _share_inside(
     chamber: Chamber, cavity: MeshCavity, mesh: Mesh, shapes: Mapping[str, Shape]
 ) -> float:
+    if chamber.body not in (None, cavity.body):
+        return 0.0
     corners = mesh.vertices[cavity.triangles]
+    reach = 0.5 * voxel_size(mesh)
+    for body in mesh.bodies:
+        if body.name == cavity.body:
+            reach = 0.5 * voxel_size(body.mesh)
+            if chamber.body is not None:
+                corners = body.own(corners)
     a, b, c = corners.transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    reach = 0.5 * voxel_size(mesh)
     held = inside_region(chamber, corners.mean(axis=1), shapes, reach)
     return float(areas[held].sum() / areas.sum())
 

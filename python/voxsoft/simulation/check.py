@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -15,12 +16,12 @@ from voxsoft.design.discretize import filled
 from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
-from voxsoft.mesh import Mesh
+from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.choice import unused_settings
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
-from voxsoft.simulation.layers import chambers
+from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
 from voxsoft.simulation.plausible import implausible_numbers
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
@@ -31,6 +32,8 @@ from voxsoft.voxels.regions import Cell
 
 #: Walls bend as they should from two voxels of thickness on.
 GOOD_WALL = 2
+
+Point = tuple[float, float, float]
 
 # Bytes of the core's tables for one constraint, as measured.
 _BYTES_PER_CONSTRAINT = 120
@@ -64,6 +67,11 @@ class CheckReport(Shown):
         Seconds that one run is likely to take, as the design's solver has it; None without loads.
     memory
         In bytes: an order of magnitude.
+    leak_points
+        Where each leak is open [m].
+    bodies
+        Voxels of each body by its name, where there are several; places are then said in the own
+        frame of a body.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -77,6 +85,8 @@ class CheckReport(Shown):
     thinnest_wall: int | None = None
     cost: Cost | None = None
     memory: float = 0.0
+    bodies: Mapping[str, int] = field(default_factory=dict)
+    leak_points: tuple[Point, ...] = field(default=(), repr=False)
 
     @property
     def valid(self) -> bool:
@@ -96,6 +106,7 @@ class CheckReport(Shown):
         ]
         yield ", ".join(["valid" if self.valid else "not valid", *reported])
         yield f"{counted(self.voxels, 'voxel')}, mass {format_quantity(rounded(self.mass), 'mass')}"
+        yield from (f"body {name}: {counted(n, 'voxel')}" for name, n in self.bodies.items())
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"
             yield f"{called} of {format_quantity(rounded(cavity.volume), 'volume')}"
@@ -128,6 +139,7 @@ class CheckReport(Shown):
             "seconds": None if self.cost is None else self.cost.seconds,
             "seconds_range": None if self.cost is None else [self.cost.low, self.cost.high],
             "memory": self.memory,
+            "bodies": [{"name": name, "voxels": n} for name, n in self.bodies.items()],
         }
 
 
@@ -153,16 +165,20 @@ def check(body: Design | Voxels) -> CheckReport:
     (True, 80, 2)
     """
     if not isinstance(body, Voxels):
-        require_design(body, "body")
+        body = require_design(body, "body").assembled
     try:
         voxels, mesh, lost = _discretized(body)
     except VoxSoftError as error:
-        return CheckReport(tuple(_errors(error)))
+        return CheckReport(tuple(_errors(error, body)))
     return examine(body, voxels, mesh, lost)
 
 
 def examine(
-    body: Design | Voxels, voxels: Voxels, mesh: Mesh, lost: float = 0.0, setup: Setup | None = None
+    body: Design | Voxels,
+    voxels: Mapping[str, Voxels],
+    mesh: Mesh,
+    lost: float = 0.0,
+    setup: Setup | None = None,
 ) -> CheckReport:
     """Do what :func:`check` does for a body that is meshed already.
 
@@ -171,7 +187,7 @@ def examine(
     body
         What was meshed.
     voxels, mesh
-        Its voxels, and their mesh.
+        The voxels of each of its bodies by name, and their mesh.
     lost
         Volume of the material that found no voxel [m³].
     setup
@@ -179,61 +195,119 @@ def examine(
     """
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
-    cavities, leaks = _cavities(voxels, mesh), voxels.leaks
+    each = [
+        _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ()) for of in mesh.each_body
+    ]
     is_held = False
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
-            cavities, leaks = _closed_by_layers(setup, voxels)
+            each = [one.closed(setup.layers) for one in each]
             setup.check()
             is_held = setup.loose_piece is None
             mass = setup.problem.mass
         except VoxSoftError as error:
-            findings += [_placed(found, body, mesh) for found in _errors(error)]
+            findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
         findings += _findings_of_settings(body)
+        findings += [Diagnostic("warning", *problem) for problem in body.left_out]
     if isinstance(body, Design) and setup is not None:
         findings += ambiguous_indices(body, setup.mesh)
     findings += implausible_numbers(body, mesh, mass)
-    findings += [*_findings_of_voxels(body, voxels, leaks, is_held), *_findings_of_mesh(mesh)]
+    for one in each:
+        findings += one.findings(is_held)
+    findings += _findings_of_mesh(mesh)
     constraints = len(mesh.edges) + len(mesh.tets)
-    thinnest = _thinnest_wall(voxels)
+    walls = [(wall.thickness, one) for one in each if (wall := _thinnest_wall(one.voxels))]
+    thinnest = min((thickness for thickness, _ in walls), default=None)
     cost = None
     if isinstance(body, Design) and setup is not None:
-        wall = None if thinnest is None else thinnest.thickness * voxels.voxel_size
-        cost = cost_of(body, setup.mesh, wall, mass)
+        lengths = [thickness * one.voxels.voxel_size for thickness, one in walls]
+        cost = cost_of(body, setup.mesh, min(lengths, default=None), mass)
+    cavities = [cavity for one in each for cavity in one.cavities]
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
-        voxels=voxels.count,
+        voxels=sum(one.voxels.count for one in each),
         vertices=len(mesh.vertices),
         tets=len(mesh.tets),
-        cavities=cavities,
-        leaks=leaks,
+        cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
+        leaks=tuple(leak for one in each for leak in one.leaks),
         chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
         mass=mass,
-        thinnest_wall=None if thinnest is None else thinnest.thickness,
+        thinnest_wall=thinnest,
         cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
+        bodies={one.of.name: one.voxels.count for one in each if mesh.bodies},
+        leak_points=tuple(
+            one.placed(_middle(one.voxels, leak.openings[0])) for one in each for leak in one.leaks
+        ),
     )
 
 
-def _discretized(body: Design | Voxels) -> tuple[Voxels, Mesh, float]:
-    """Voxels, their mesh, and the volume [m³] of material that found no voxel."""
+def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, float]:
+    """Voxels by body, their mesh, and the volume [m³] of material that found no voxel."""
     if not isinstance(body, Design):
-        return body, body.mesh(), 0.0
+        return {"": body}, body.mesh(), 0.0
     cells = filled(body)
-    return cells.voxels, cells.mesh(), cells.lost
+    return {name: own.voxels for name, own in cells.each.items()}, cells.mesh(), cells.lost
 
 
-def _errors(error: VoxSoftError) -> Iterator[Diagnostic]:
+def _errors(error: VoxSoftError, body: Design | Voxels) -> Iterator[Diagnostic]:
     for problem in error.problems:
-        yield Diagnostic("error", problem.where, problem.what, problem.hint)
+        where = body.origin_of(problem.where) if isinstance(body, Design) else problem.where
+        yield Diagnostic("error", where, problem.what, problem.hint)
+
+
+def _alone(body: Design | Voxels, of: BodyMesh) -> Design | Voxels:
+    return body.alone(of.name) if isinstance(body, Design) else body
+
+
+@dataclass(frozen=True)
+class _ExaminedBody:
+    """One body: its voxels, what filled them, its own mesh with the cavities that layers close."""
+
+    of: BodyMesh
+    voxels: Voxels
+    design: Design | Voxels
+    mesh: Mesh
+    layers: tuple[LayerTriangles, ...]
+
+    def closed(self, layers: tuple[LayerTriangles, ...]) -> _ExaminedBody:
+        """The same with the layers of the whole."""
+        own = layers_on(self.of, layers)
+        return replace(self, mesh=sealed(self.of.mesh, own), layers=own)
+
+    @property
+    def cavities(self) -> tuple[Cavity, ...]:
+        return self._closed_by_layers[0]
+
+    @property
+    def leaks(self) -> tuple[Leak, ...]:
+        return self._closed_by_layers[1]
+
+    @cached_property
+    def _closed_by_layers(self) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
+        return _closed_by_layers(self.mesh, self.layers, self.voxels)
+
+    def findings(self, is_held: bool) -> Iterator[Diagnostic]:
+        """What is doubtful about its voxels; with its name where it has one."""
+        for found in _findings_of_voxels(self.design, self.voxels, self.leaks, is_held):
+            if not self.of.name:
+                yield found
+                continue
+            at = None if found.at is None else self.placed(found.at)
+            yield replace(found, where=f'body "{self.of.name}", {found.where}', at=at)
+
+    def placed(self, point: Point) -> Point:
+        """A point of its frame [m] in that of the design."""
+        x, y, z = self.of.placed(np.array([point]))[0].tolist()
+        return x, y, z
 
 
 def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:
     """The same with the place of the region that it is about, if it is about one."""
     match = _OF_A_REGION.match(found.where)
-    if match is None:
+    if match is None or mesh.bodies:
         return found
     section, name = match["section"], match["name"]
     owner: Any = getattr(design, section)
@@ -270,15 +344,17 @@ def _findings_of_loss(lost: float, mesh: Mesh) -> list[Diagnostic]:
     return [Diagnostic("warning", "parts", what, "make the voxels smaller")]
 
 
-def _closed_by_layers(setup: Setup, voxels: Voxels) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
-    """Cavities and leaks once the layers of a design close what they span."""
-    if not any(len(layer.openings) for layer in setup.layers):
-        return _cavities(voxels, setup.mesh), voxels.leaks
+def _closed_by_layers(
+    mesh: Mesh, layers: tuple[LayerTriangles, ...], voxels: Voxels
+) -> tuple[tuple[Cavity, ...], tuple[Leak, ...]]:
+    """Cavities and leaks of a body once its layers close what they span."""
+    if not any(len(layer.openings) for layer in layers):
+        return _cavities(voxels, mesh), voxels.leaks
     size, origin = voxels.voxel_size, np.asarray(voxels.origin)
-    shift = np.rint((setup.mesh.vertices.min(axis=0) - origin) / size).astype(np.int64)
+    shift = np.rint((mesh.vertices.min(axis=0) - origin) / size).astype(np.int64)
     cavities = []
     closed: set[tuple[int, ...]] = set()
-    for chamber in chambers(setup.mesh, setup.layers):
+    for chamber in chambers(mesh, layers):
         cells = chamber.cells + shift
         closed.update(map(tuple, cells.tolist()))
         runs = np.column_stack([cells, cells[:, 2]]).astype(np.int32)  # each a run of one cell

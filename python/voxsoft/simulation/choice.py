@@ -94,6 +94,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     >>> kind_of(families.beam(), Solver(end_time="1 s")).title
     'dynamics to an end time'
     """
+    design = design.assembled
     given = set(given_settings(solver))
     timed = DynamicsToEnd if solver.is_timed else DynamicsToRest
     controlled = _CONTROLS[solver.control or "load"]
@@ -182,11 +183,6 @@ def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iter
         what = f"means {title}, and contact is found by load control and by implicit dynamics"
         hint = 'write method = "statics" and control = "load", or method = "dynamics"'
         yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
-    free = [index for index, each in enumerate(design.objects) if each.is_free]
-    if kind is LoadControl and free:
-        what = 'is "free", and statics knows only objects that are held or moved'
-        hint = 'write method = "dynamics", or motion = "fixed"'
-        yield ErrorDetail(f"objects[{free[0]}].motion", what, hint)
     for index, part in enumerate(design.parts):
         material = design.material_of(part)
         if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:

@@ -106,7 +106,8 @@ def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost
     materials = [design.material_of(part) for part in design.parts]
     soft = [each for each in materials if not isinstance(each, Rigid)] or materials
     rubber = any(isinstance(each, Hyperelastic) for each in materials) or bool(design.layers)
-    cells, size = refine**3, design.voxel_size / refine
+    own = mesh.voxel_size if mesh.bodies and mesh.voxel_size else design.voxel_size
+    cells, size = refine**3, own / refine
     iteration = _ITERATION * (cells * len(mesh.vertices)) ** _GROWTH
     iteration *= 1.0 if rubber else _OF_A_LATTICE
     iterations = newton_iterations(design, mesh, wall, mass)

@@ -10,7 +10,6 @@ from pydantic import Field
 from voxsoft import _core
 from voxsoft._core import Status
 from voxsoft._memory import memory_limit
-from voxsoft.design import Design
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.equilibrium import too_large_a_tangent
@@ -109,11 +108,6 @@ class Dynamics(Method):
                 "record after whole steps, or shorten the step",
             )
         return self.time_step
-
-
-def may_lie(design: Design, method: Method) -> bool:
-    """Whether nothing needs to clamp a body, because it may come to lie on an object."""
-    return isinstance(method, Dynamics) and bool(design.objects)
 
 
 class DynamicsToRest(Dynamics):

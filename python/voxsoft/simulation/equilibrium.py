@@ -164,6 +164,10 @@ def sentence(
                 words += f"; the path has a limit at {limit}"
             if path.stable:
                 return words
+            if touches:
+                return (
+                    f"{words}; it is not stable: the slightest push lets it buckle, tip or roll on"
+                )
             if way == "load":
                 words += ", and shorter load steps led past a point where the body can buckle"
             return f"{words}; under constant loads it is not stable"

@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Design, Layer
+from voxsoft.design.joined import of_body
 from voxsoft.errors import DesignError
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import BodyMesh, Mesh, MeshCavity
 from voxsoft.simulation.places import on_the_body, vertices_in
 
 Triangles = NDArray[np.int32]
@@ -50,6 +51,11 @@ class LayerTriangles:
     spanning: Triangles
     openings: Ints
     axis: int | None
+
+    def moved(self, first: int) -> LayerTriangles:
+        """The same among the vertices of a joined mesh, in which its body begins with `first`."""
+        shift = np.int32(first)
+        return replace(self, bonded=self.bonded + shift, spanning=self.spanning + shift)
 
     @property
     def all(self) -> Triangles:
@@ -102,6 +108,11 @@ def layer_triangles(layer: Layer, design: Design, mesh: Mesh, where: str) -> Lay
     >>> len(layer_triangles(film, beam, mesh_of(beam), "layers[0]").bonded)
     80
     """
+    for body in mesh.bodies:
+        if body.name == layer.region.body:
+            lone = layer.replace(region=layer.region.replace(body=None))
+            found = layer_triangles(lone, design.alone(body.name), body.mesh, where)
+            return found.moved(body.first_vertex)
     inside = np.zeros(len(mesh.vertices), dtype=bool)
     points = on_the_body(design, mesh)
     inside[vertices_in(layer.region, mesh, design.shapes, f"{where}.region", points)] = True
@@ -137,7 +148,27 @@ def sealed(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> Mesh:
     """
     if not any(len(layer.openings) for layer in layers):
         return mesh
+    if mesh.bodies:
+        return replace(mesh, cavities=_cavities_of_bodies(mesh, layers))
     return replace(mesh, cavities=tuple(c.surface for c in chambers(mesh, layers)))
+
+
+def _cavities_of_bodies(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> tuple[MeshCavity, ...]:
+    """The cavities of every body once its layers close their openings, largest first."""
+    found: list[MeshCavity] = []
+    for body in mesh.bodies:
+        closed = sealed(body.mesh, layers_on(body, layers))
+        found += [of_body(cavity, body) for cavity in closed.cavities]
+    return tuple(sorted(found, key=lambda cavity: -cavity.volume))
+
+
+def layers_on(body: BodyMesh, layers: tuple[LayerTriangles, ...]) -> tuple[LayerTriangles, ...]:
+    """The layers of a joined mesh that are on one of its bodies, as that has them itself."""
+    return tuple(
+        layer.moved(-body.first_vertex)
+        for layer in layers
+        if body.vertices.start <= int(layer.bonded[0, 0]) < body.vertices.stop
+    )
 
 
 def chambers(mesh: Mesh, layers: tuple[LayerTriangles, ...]) -> list[Chamber]:

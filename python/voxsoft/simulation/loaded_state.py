@@ -9,17 +9,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft.design import Design
+from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads.actions import SurfacePressure
+from voxsoft.simulation.motion import moved_by
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import ContactState, refuse_contact
+from voxsoft.simulation.touching import ContactState, Surface
 
 Floats = NDArray[np.float64]
 
@@ -85,8 +88,12 @@ class LoadedState:
 
     @property
     def reaction(self) -> tuple[float, float, float]:
-        """What all supports carry, N: in equilibrium minus the sum of all loads."""
-        x, y, z = -self.net_forces.sum(axis=0)
+        """What all supports carry, N: in equilibrium minus the sum of all loads.
+
+        Objects are supports too, and carry what they press the body with.
+        """
+        of_objects = [each.force for each in self.contacts if each.of[1] != BODY]
+        x, y, z = np.sum(of_objects, axis=0) - self.net_forces.sum(axis=0)
         return float(x), float(y), float(z)
 
     @property
@@ -94,16 +101,25 @@ class LoadedState:
         """Where the body is in itself or in its floor."""
         return penetration_of(self.design, self.mesh, self.positions)
 
-    @property
+    @cached_property
     def contacts(self) -> tuple[ContactState, ...]:
-        """None: derivatives of contact are not known yet."""
-        refuse_contact(self.design, "gradients")
-        return ()
+        """What touches what, with the multipliers that the contact of the problem holds."""
+        touching = self.setup.touching
+        if touching is None:
+            return ()
+        return touching.contacts(_core.contacts_at(self.setup.problem, self.positions))
 
     def gap_to(self, name: str) -> float:
-        """The distance to an object, m, where nothing has moved it."""
-        refuse_contact(self.design, "gradients")
-        return distance_between(self.mesh, self.positions, posed_surface(self.design, name, None))
+        """The smallest distance of the body and an object, m."""
+        for each in self.contacts:
+            if each.of == (BODY, name) and name != BODY:
+                return each.gap
+        if name == FLOOR and self.design.floor is not None:
+            return float(self.positions[:, 2].min()) - self.design.floor.z
+        first = posed_surface(self.design, name, None)
+        (motion,) = (each.way for each in self.design.objects if each.name == name)
+        surface = Surface(moved_by(motion, first.vertices), first.triangles)
+        return distance_between(self.mesh, self.positions, surface)
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from voxsoft import _core
 from voxsoft.design import Design
+from voxsoft.design.assembly import voxel_size_of
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
 
@@ -37,8 +38,8 @@ def solid_materials(design: Design) -> list[Material]:
                 "use the neo-Hookean one of the same Young's modulus",
             )
     soft = [
-        _shear(material, design.voxel_size)
-        for material in materials
+        _shear(material, voxel_size_of(design, part))
+        for part, material in zip(design.parts, materials, strict=True)
         if not isinstance(material, Rigid)
     ]
     if not soft:

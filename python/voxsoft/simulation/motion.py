@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Clamp
+from voxsoft.design import Clamp, Motion
 from voxsoft.simulation.setup import Setup
 
 
@@ -30,7 +30,7 @@ def held_positions(setup: Setup) -> NDArray[np.float64]:
     rest = setup.mesh.vertices
     placed = rest.copy()
     for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
-        moved = _moved(clamp, rest[vertices])
+        moved = moved_by(clamp.motion, rest[vertices])
         placed[vertices] = np.where(_axes(clamp), moved, placed[vertices])
     return placed
 
@@ -39,9 +39,11 @@ def _axes(clamp: Clamp) -> NDArray[np.bool_]:
     return np.array([axis in clamp.axes for axis in "xyz"])
 
 
-def _moved(clamp: Clamp, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """First turned, then displaced, both times the last factor of the history."""
-    motion = clamp.motion
+def moved_by(motion: Motion | None, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a motion puts points in the end, (n, 3), m.
+
+    First turned, then displaced, both times the last factor of the history.
+    """
     if motion is None:
         return points
     factor = motion.history.factor[-1] if motion.history else 1.0

@@ -71,7 +71,9 @@ def penetration_of(design: Design, mesh: Mesh, positions: Floats) -> Penetration
         membranes = np.concatenate([layer.spanning for layer in layers])
     floor = None if design.floor is None else design.floor.z
     found = find_penetration(mesh, positions, membranes=membranes, floor=floor)
-    smooth = touches_with_skin(design, mesh)
+    smooth = any(
+        touches_with_skin(design, design.alone(body.name), body.mesh) for body in mesh.each_body
+    )
     if mesh.fractions is not None or smooth:
         found = _of_shapes(design, mesh, positions, found)
     if keeps_apart(design):
@@ -211,6 +213,12 @@ def _rest_places(mesh: Mesh, positions: Floats, points: Floats, tets: NDArray[np
 
 def _distances(design: Design, mesh: Mesh, points: Floats) -> Floats:
     """Signed distances from the shapes, to first order: negative inside, (c,)."""
+    if mesh.bodies:
+        # Points are at the surface of their body or in it, and bodies are apart: it is the nearest.
+        each = ((body, design.alone(body.name)) for body in mesh.bodies)
+        found = [_distances(own, body.mesh, body.own(points)) for body, own in each]
+        nearest: Floats = np.min(found, axis=0)
+        return nearest
     shapes = built_parts(design)
     step = 0.01 * voxel_size(mesh)
     around = np.concatenate([np.zeros((1, 3)), step * np.eye(3), -step * np.eye(3)])

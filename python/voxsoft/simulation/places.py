@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from voxsoft.design import Design, Probe, Region
 from voxsoft.design.cut_cells import built_parts
 from voxsoft.errors import DesignError
-from voxsoft.mesh import Mesh
+from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.metrics import Place
 from voxsoft.shapes import Shape
 from voxsoft.units import format_quantity
@@ -47,15 +47,30 @@ def vertices_in(
     DesignError
         No vertex is caught.
     """
-    reach = _HALF * voxel_size(mesh)
     points = mesh.vertices if points is None else points
-    caught = np.flatnonzero(inside_region(region, points, shapes, reach)).astype(np.uint32)
-    if caught.size == 0:
-        raise DesignError(where, f"touches nothing; the body spans {_span(mesh)}", _TRY)
-    return caught
+    caught = [
+        np.flatnonzero(inside_region(region, at, shapes, _HALF * voxel_size(body.mesh)))
+        + body.first_vertex
+        for body, at in _bodies_meant(region, mesh, points)
+    ]
+    found = np.concatenate(caught).astype(np.uint32)
+    if found.size == 0:
+        raise DesignError(where, f"touches nothing; {_spans(region, mesh)}", _TRY)
+    return found
 
 
 _TRY = "move or widen the region so that it touches the body"
+
+
+def _bodies_meant(
+    region: Region, mesh: Mesh, points: NDArray[np.float64]
+) -> Iterator[tuple[BodyMesh, NDArray[np.float64]]]:
+    """The bodies that a region may catch, and where their vertices are in its frame."""
+    for body in mesh.each_body:
+        if region.body is None:
+            yield body, points[body.vertices]
+        elif region.body == body.name:
+            yield body, body.own(points[body.vertices])
 
 
 def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
@@ -86,6 +101,9 @@ def on_the_body(design: Design, mesh: Mesh) -> NDArray[np.float64]:
     """
     if mesh.fractions is None:
         return mesh.vertices
+    if mesh.bodies:
+        each = ((body, design.alone(body.name)) for body in mesh.bodies)
+        return np.concatenate([body.placed(on_the_body(own, body.mesh)) for body, own in each])
     shapes = built_parts(design)
     size = voxel_size(mesh)
     steps = 0.01 * size * np.concatenate([np.zeros((1, 3)), np.eye(3), -np.eye(3)])
@@ -125,25 +143,42 @@ def place_of(
         A point outside the body, or a region that catches no vertex.
     """
     if probe.point is not None:
-        return _point(np.asarray(probe.point), mesh, where)
-    size = voxel_size(mesh)
+        return _point(np.asarray(probe.point), probe.body, mesh, where)
     points = mesh.vertices if points is None else points
-    weights = np.ones(len(mesh.vertices))
+    weights = np.zeros(len(mesh.vertices))
+    meant = zip(
+        _bodies_meant(probe, mesh, points), _bodies_meant(probe, mesh, mesh.vertices), strict=True
+    )
+    for (body, at), (_, exactly) in meant:
+        size = voxel_size(body.mesh)
+        weights[body.vertices] = _weights(probe, at, exactly, shapes, size)
+    caught = np.flatnonzero(weights)
+    if caught.size == 0:
+        raise DesignError(where, f"touches nothing; {_spans(probe, mesh)}", _TRY)
+    return Place(caught.astype(np.uint32), weights[caught] / weights[caught].sum())
+
+
+def _weights(
+    probe: Probe,
+    points: NDArray[np.float64],
+    vertices: NDArray[np.float64],
+    shapes: Mapping[str, Shape],
+    size: float,
+) -> NDArray[np.float64]:
+    """What each vertex of a body counts for a probe, (n,)."""
+    weights = np.ones(len(vertices))
     reach = np.full(3, _HALF * size)
     for axis, name in enumerate("xyz"):
         bounds = getattr(probe, name)
         if bounds is not None and bounds[0] == bounds[1]:
             reach[axis] = size
             # Between layers the motion is interpolated, so that here vertices are where they are.
-            points = mesh.vertices
-            weights *= 1.0 - np.abs(mesh.vertices[:, axis] - bounds[0]) / size
+            points = vertices
+            weights *= 1.0 - np.abs(vertices[:, axis] - bounds[0]) / size
     weights = np.where(inside_region(probe, points, shapes, reach), weights, 0.0)
     # Layers a whole voxel away have the weight 0 up to rounding.
     weights[weights < 1e-9] = 0.0
-    caught = np.flatnonzero(weights)
-    if caught.size == 0:
-        raise DesignError(where, f"touches nothing; the body spans {_span(mesh)}", _TRY)
-    return Place(caught.astype(np.uint32), weights[caught] / weights[caught].sum())
+    return weights
 
 
 def voxel_size(mesh: Mesh) -> float:
@@ -176,7 +211,12 @@ def inside_region(
     return inside
 
 
-def _point(point: NDArray[np.float64], mesh: Mesh, where: str) -> Place:
+def _point(point: NDArray[np.float64], name: str | None, mesh: Mesh, where: str) -> Place:
+    """The place of a point in the frame of a body, or else in that of the mesh."""
+    body = next((each for each in mesh.bodies if each.name == name), None)
+    if body is not None:
+        found = _point(point, None, body.mesh, where)
+        return Place(found.vertices + np.uint32(body.first_vertex), found.weights)
     corners = mesh.vertices[mesh.tets]
     base = corners[:, 0]
     frames = np.swapaxes(corners[:, 1:] - base[:, None], 1, 2)
@@ -197,6 +237,14 @@ def _point(point: NDArray[np.float64], mesh: Mesh, where: str) -> Place:
             "move the point into the body",
         )
     return Place(mesh.tets[best].astype(np.uint32), weights)
+
+
+def _spans(region: Region, mesh: Mesh) -> str:
+    """What the bodies that a region may catch span, in its frame."""
+    for body in mesh.bodies:
+        if region.body == body.name:
+            return f'the body "{body.name}" spans {_span(body.mesh)} in its own frame'
+    return f"the {'bodies span' if mesh.bodies else 'body spans'} {_span(mesh)}"
 
 
 def _span(mesh: Mesh) -> str:

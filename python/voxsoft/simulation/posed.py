@@ -9,7 +9,9 @@ from voxsoft.design import Design
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.records import closest
-from voxsoft.simulation.touching import Pose, Surface, distances_to, surface_of
+from voxsoft.simulation.apart import Surface, distances_to
+from voxsoft.simulation.rigid import surface_of
+from voxsoft.simulation.touching import Pose
 
 
 def posed_surface(design: Design, name: str, pose: Pose | None) -> Surface:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from voxsoft._shown import Shown, rounded, shortened
 from voxsoft.design import Design, Objective
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.design.contact import BODY, FLOOR
+from voxsoft.design.contact import FLOOR
 from voxsoft.errors import DesignError
 from voxsoft.fields import Fields
 from voxsoft.geometry import mean_displacement
@@ -261,9 +261,10 @@ class Result(Shown):
         DesignError
             There is no such object.
         """
-        for each in self.contacts:
-            if each.of == (BODY, name) and name != BODY:
-                return each.gap
+        bodies = self.design.body_names
+        touching = [e.gap for e in self.contacts if e.of[0] in bodies and e.of[1] == name]
+        if touching and name not in bodies:
+            return min(touching)
         if name == FLOOR and self.design.floor is not None:
             return float(self.positions[:, 2].min()) - self.design.floor.z
         surface = posed_surface(self.design, name, self.objects.get(name))

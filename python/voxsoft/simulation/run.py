@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +14,14 @@ from voxsoft.design import Design, Solver, require_design
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
 from voxsoft.simulation.contact_field import ContactField
-from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
+from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
-
-#: An object that went this many sizes of the body is gone.
-_FAR: Final = 5.0
 
 #: Called now and then with (steps, time in s, residual).
 ProgressCallback = Callable[[int, float, float], None]
@@ -86,7 +83,7 @@ def simulate(
     >>> result.status
     'ok'
     """
-    given = design.design if isinstance(design, Setup) else require_design(design)
+    given = design.design if isinstance(design, Setup) else require_design(design).assembled
     if record_interval is not None:
         record_interval = si_value(record_interval, "time", "record_interval", positive=True)
     solver = _settings(given.solver, settings)
@@ -96,8 +93,7 @@ def simulate(
         setup = design
         _check_refinement(setup, settings)
     else:
-        loose = not method.to_rest or may_lie(given, method)
-        setup = Setup.of(design, allow_loose=loose, refine=solver.refine)
+        setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
     started = time.perf_counter()
     used, report = method.solve(setup, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
@@ -148,7 +144,8 @@ def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
 
 def refinement(setup: Setup) -> int:
     """Into how many along each axis the voxels of a setup's design were cut."""
-    return max(1, round(setup.design.voxel_size / voxel_size(setup.mesh)))
+    first = setup.mesh.each_body[0]
+    return max(1, round(setup.design.alone(first.name).voxel_size / voxel_size(first.mesh)))
 
 
 def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:
@@ -239,6 +236,8 @@ def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
 def _sentence(setup: Setup, report: Report, way: str) -> str:
     answer = report.answer
     if answer.path is not None:
+        if report.status == Ended.NOT_AT_REST:
+            return falls(setup, answer)
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
         return sentence(way, *ended, touches=touches)
@@ -269,18 +268,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
 
 def _lost_contact(setup: Setup, answer: _core.Answer) -> str:
     """Why a run over time with contact ended early."""
-    assert setup.touching is not None
-    body = setup.mesh.vertices
-    far = _FAR * float(np.linalg.norm(np.ptp(body, axis=0)))
-    poses = setup.touching.poses(answer.objects)
-    for each, surface in zip(setup.design.objects, setup.touching.surfaces, strict=True):
-        gone = float(np.linalg.norm(np.array(poses[each.name].position) - surface.middle))
-        if each.is_free and gone > far:
-            return (
-                f'the object "{each.name}" falls or flies away: it is {gone:.3g} m from where it '
-                f"was, after {answer.time:.3g} s; hold it, put something under it, or end earlier"
-            )
-    return (
+    return flies(setup, answer) or (
         f"no step goes on from {answer.time:.6g} s, after {answer.back_offs} halvings: contact did "
         "not settle, or the material cannot carry the load; kept is the last state. Try a shorter "
         "time_step, smaller voxels, or less friction"

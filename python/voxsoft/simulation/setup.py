@@ -13,9 +13,17 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft._memory import shortage
 from voxsoft.design import Design, Probe, Region
+from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
 from voxsoft.design.discretize import mesh_of
-from voxsoft.errors import DesignError, DisconnectedError, NoCavityError, SimulationError
+from voxsoft.design.joined import edge_directions
+from voxsoft.errors import (
+    DesignError,
+    DisconnectedError,
+    NoCavityError,
+    SimulationError,
+    VoxSoftError,
+)
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.metrics import Place
@@ -45,7 +53,7 @@ class Setup:
     Attributes
     ----------
     design
-        Where it came from.
+        Where it came from, with what the designs of its bodies say in lists of its own.
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
@@ -67,6 +75,7 @@ class Setup:
         return f"Setup({self.design.name!r}, {self.mesh!r})"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "design", self.design.assembled)
         closed = sealed(self.mesh, self.layers)
         object.__setattr__(self, "mesh", with_chamber_names(self.design, closed))
 
@@ -97,6 +106,13 @@ class Setup:
         SimulationError
             The problem does not fit in the memory.
         """
+        try:
+            return cls._checked(design.assembled, allow_loose, refine)
+        except VoxSoftError as error:
+            raise with_origins(error, design) from None
+
+    @classmethod
+    def _checked(cls, design: Design, allow_loose: bool | None, refine: int | None) -> Setup:
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
         voxels = len(setup.mesh.tets) // 5
         if short := shortage(voxels * BYTES_PER_VOXEL):
@@ -265,8 +281,8 @@ class Setup:
         return _loose_piece(self.mesh, held)
 
     def _check_support(self) -> None:
-        """Every component must be held, unless it may lie on a floor."""
-        if self.design.floor is not None:
+        """Every component must be held, unless it may come to lie on a floor or an object."""
+        if self.design.floor is not None or self.design.objects:
             return
         if not self.design.clamps:
             raise DesignError(
@@ -287,6 +303,7 @@ class Setup:
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
     """Vertices of every clamp and probe that catches any, by name: what a mesh file carries."""
+    design = design.assembled
     regions: dict[str, NDArray[np.uint32]] = {}
     places: dict[str, Region] = {
         **{f"clamp_{index}": clamp.region for index, clamp in enumerate(design.clamps)},
@@ -333,6 +350,8 @@ def core_problem(
     """
     if mesh.fractions is not None:
         parts.fractions(mesh.fractions, mesh.moments)
+    if (directions := edge_directions(mesh)) is not None:
+        parts.axes(directions)
     blocks = mesh.tet_voxel if mesh.tet_voxel is not None else np.arange(len(mesh.tets))
     return _core.Problem(
         mesh.vertices,

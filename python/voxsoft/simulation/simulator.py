@@ -91,7 +91,7 @@ class Simulator:
         retardation: float | str = 0.0,
         tolerance: float = TOLERANCE,
     ) -> None:
-        require_design(design, "design")
+        design = require_design(design, "design").assembled
         refuse_contact(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)

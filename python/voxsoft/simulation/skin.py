@@ -58,8 +58,8 @@ def has_skin(design: Design, mesh: Mesh) -> bool:
     return design.fill == "fraction" or size == design.voxel_size
 
 
-def touches_with_skin(design: Design, mesh: Mesh) -> bool:
-    """Whether a body touches with its smooth surface.
+def touches_with_skin(design: Design, own: Design, mesh: Mesh) -> bool:
+    """Whether a body of a design touches with its smooth surface; `own` is what fills its voxels.
 
     Examples
     --------
@@ -67,13 +67,14 @@ def touches_with_skin(design: Design, mesh: Mesh) -> bool:
     >>> from voxsoft.design.discretize import mesh_of
     >>> ball = families.sphere()
     >>> touching = ball.model_copy(update={"contact": Contact()})
-    >>> touches_with_skin(ball, mesh_of(ball)), touches_with_skin(touching, mesh_of(ball))
+    >>> mesh = mesh_of(ball)
+    >>> touches_with_skin(ball, ball, mesh), touches_with_skin(touching, touching, mesh)
     (False, True)
     """
-    if design.contact is None and not design.objects:
+    if design.contact is None and not design.objects and len(design.body_names) == 1:
         return False
     contact = design.contact or Contact()
-    return contact.surface == "smooth" and has_skin(design, mesh)
+    return contact.surface == "smooth" and has_skin(own, mesh)
 
 
 def corners(mesh: Mesh) -> NDArray[np.uint32]:

@@ -52,6 +52,10 @@ def doubtful_thickness(
     >>> print(*doubtful_thickness(design, vs.mesh_of(design)))  # doctest: +ELLIPSIS
     shapes.body: the wall is 1 to ... times as thick as written (2 mm), most so near ...
     """
+    if mesh.bodies:
+        for body in mesh.bodies:
+            yield from doubtful_thickness(design.alone(body.name), body.mesh)
+        return
     box = np.stack([mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)])
     seen: set[str] = set()
     named = [(f"shapes.{name}", shape) for name, shape in design.shapes.items()]

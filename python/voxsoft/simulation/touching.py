@@ -13,21 +13,19 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._shown import rounded
-from voxsoft.design import Contact, Design, History, Motion, Object
+from voxsoft.design import Contact, Design, History, Motion
 from voxsoft.design.contact import names_of
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
-from voxsoft.shapes import voxelize
-from voxsoft.shapes.tracing import trace
+from voxsoft.simulation.apart import TOUCH, Surface, overlap_of, way_out
+from voxsoft.simulation.rigid import Solid, surface_of
 from voxsoft.simulation.skin import skin_of, touches_with_skin
 from voxsoft.units import format_quantity
 
 #: Into how many parts the edge of a voxel is divided by the points where contact is looked for.
 _SAMPLES: Final = 2
-#: How deep an object may be in the unloaded body, in voxels: rounding of a surface that touches.
-_TOUCH: Final = 1e-6
-#: How far behind a surface it is looked for what covers it exactly, in voxels.
-_INSIDE: Final = 1e-3
+#: How far what is bonded may be apart or in each other in the unloaded design, in voxels.
+_REACH: Final = 0.5
 #: How far the floor goes, in sizes of all that is above it: farther than anything may go.
 _FLOOR: Final = 20.0
 
@@ -39,13 +37,21 @@ class ContactState:
     Attributes
     ----------
     of
-        The body and an object, or the body twice.
+        The body and an object, or the body twice; two bodies where there are several.
     force
         On the first [N]; zero for the body with itself.
     pressed
         The sum of the sizes of all forces [N].
+    pressure
+        The sum of all pressures, which push apart [N].
+    friction
+        The part of the force that is friction [N].
+    bound
+        The most that friction can be: the sum of all pressures times their coefficients [N].
     area
-        In the unloaded body [m²].
+        In the unloaded body [m²], with what is bonded.
+    bonded
+        The area that is bonded [m²].
     gap
         The smallest [m].
     slipping
@@ -55,7 +61,11 @@ class ContactState:
     of: tuple[str, str]
     force: tuple[float, float, float]
     pressed: float
+    pressure: float
+    friction: tuple[float, float, float]
+    bound: float
     area: float
+    bonded: float
     gap: float
     slipping: float
 
@@ -73,7 +83,11 @@ class ContactState:
             "of": list(self.of),
             "force": list(self.force),
             "pressed": self.pressed,
+            "pressure": self.pressure,
+            "friction": list(self.friction),
+            "friction_bound": self.bound,
             "area": self.area,
+            "bonded": self.bonded,
             "gap": self.gap,
             "sticking": 1.0 - self.slipping,
         }
@@ -96,14 +110,15 @@ class Pose:
 
 def has_contact(design: Design) -> bool:
     """Whether anything of a design may touch."""
-    return design.contact is not None or bool(design.objects)
+    return design.contact is not None or bool(design.objects) or len(design.body_names) > 1
 
 
 def keeps_apart(design: Design) -> bool:
-    """Whether contact keeps the body out of itself."""
-    contact = design.contact or Contact()
-    itself = contact.table(design.objects, design.floor is not None)[0][0]
-    return has_contact(design) and not math.isnan(itself)
+    """Whether contact keeps bodies out of themselves and each other."""
+    contact, bodies = design.contact or Contact(), design.body_names
+    table = contact.table(design.objects, design.floor is not None, bodies)
+    own = [entry for row in table[: len(bodies)] for entry in row[: len(bodies)]]
+    return has_contact(design) and not any(math.isnan(entry) for entry in own)
 
 
 def refuse_contact(design: Design, who: str) -> None:
@@ -117,32 +132,42 @@ def refuse_contact(design: Design, who: str) -> None:
     if has_contact(design):
         where = "contact" if design.contact is not None else "objects"
         hint = 'find the equilibrium with "voxsoft run", or leave contact and objects out'
+        if where == "objects" and not design.objects:
+            where = "bodies"
+            hint = 'find the equilibrium with "voxsoft run", or take one body'
         raise DesignError(where, f"is not known to {who} yet", hint)
 
 
+def refuse_bodies(design: Design, who: str) -> None:
+    """Raise where a design has bodies and someone knows only one, along the axes.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    if design.bodies:
+        hint = "take the design of one of them, or solve it with `voxsoft run`"
+        raise DesignError("bodies", f"are not known to {who} yet", hint)
+
+
 @dataclass(frozen=True)
-class Surface:
-    """A closed surface: vertices [m], (n, 3), and triangles, outward, (t, 3)."""
+class Bond:
+    """Two surfaces that are bonded.
 
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.uint32]
+    Attributes
+    ----------
+    of
+        Their numbers.
+    strength
+        The traction at which it lets go [Pa]; infinite for one that does not.
+    where
+        The place in the design.
+    """
 
-    def just_inside(self, depth: float) -> NDArray[np.float64]:
-        """Its vertices, and the centers of its triangles so deep [m] behind them, (n + t, 3).
-
-        Behind its own surface nothing is in what only touches it, but all of what covers it is.
-        """
-        a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
-        normals = np.cross(b - a, c - a)
-        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals = normals / np.where(lengths > 0.0, lengths, 1.0)
-        return np.concatenate([self.vertices, (a + b + c) / 3.0 - depth * normals])
-
-    @property
-    def middle(self) -> NDArray[np.float64]:
-        """Of its box [m], (3,)."""
-        middle: NDArray[np.float64] = (self.vertices.min(axis=0) + self.vertices.max(axis=0)) / 2.0
-        return middle
+    of: tuple[int, int]
+    strength: float
+    where: str
 
 
 @dataclass(frozen=True)
@@ -170,19 +195,52 @@ class Touching:
         """Of the body, m."""
         return self.mesh.voxel_size or self.design.voxel_size
 
+    @property
+    def names(self) -> list[str]:
+        """What touches, as surfaces are numbered: bodies, objects, a floor if there is one."""
+        design = self.design
+        return names_of(design.objects, design.floor is not None, design.body_names)
+
     @cached_property
-    def skin(self) -> _core.Skin | None:
-        """The smooth surface of the body; None where its voxels touch."""
-        return (
-            skin_of(self.design, self.mesh) if touches_with_skin(self.design, self.mesh) else None
+    def friction(self) -> NDArray[np.float64]:
+        """The friction of each with each, in the order of names; NaN where they do not touch."""
+        design = self.design
+        floor = design.floor is not None
+        return np.array(self.contact.table(design.objects, floor, design.body_names))
+
+    @cached_property
+    def skins(self) -> tuple[_core.Skin | None, ...]:
+        """The smooth surface of each body, in its own frame; None where its voxels touch."""
+        return tuple(
+            skin_of(own, body.mesh) if touches_with_skin(self.design, own, body.mesh) else None
+            for body in self.mesh.each_body
+            for own in [self.design.alone(body.name)]
         )
 
     @cached_property
-    def body(self) -> Surface:
-        """The surface of the body."""
-        if self.skin is not None:
-            return Surface(self.skin.points, self.skin.triangles)
-        return Surface(self.mesh.vertices, self.mesh.triangles.astype(np.uint32))
+    def bodies(self) -> tuple[Surface, ...]:
+        """The surface of each body.
+
+        Raises
+        ------
+        DesignError
+            One is in another.
+        """
+        names, found = self.design.body_names, list[Surface]()
+        for index, (body, skin) in enumerate(zip(self.mesh.each_body, self.skins, strict=True)):
+            own = body.mesh
+            surface = (
+                Surface(body.placed(own.vertices), own.triangles.astype(np.uint32))
+                if skin is None
+                else Surface(body.placed(skin.points), skin.triangles)
+            )
+            for other, before in enumerate(found):
+                allowed = self._allowed(other, index)
+                if allowed > 0.0 or not math.isnan(self.friction[index, other]):
+                    where = f"bodies[{index}]"
+                    self._check_apart(surface, before, where, f'"{names[other]}"', allowed)
+            found.append(surface)
+        return tuple(found)
 
     @cached_property
     def traced(self) -> tuple[Surface, ...]:
@@ -194,43 +252,99 @@ class Touching:
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surface of each object, apart from the body and what else it may touch."""
+        """The surface of each object, apart from the body and what else it may touch.
+
+        With ``separate = true`` those that were in something are moved out of it.
+        """
         found: list[Surface] = []
-        for index, (each, surface) in enumerate(zip(self.design.objects, self.traced, strict=True)):
+        for index, surface in enumerate(self.traced):
+            others = self._beside(index, found)
+            if self.contact.separate:
+                free = [other for other, _, depth in others if depth == 0.0]
+                surface = surface.moved(way_out(surface, free, self.voxel_size))
             where = f"objects[{index}]"
-            self._check_apart(surface, self.body, where, "the body")
-            for other, before in zip(self.design.objects, found, strict=False):
-                if each.is_free or other.is_free:
-                    self._check_apart(surface, before, where, f'"{other.name}"')
+            for other, who, depth in others:
+                self._check_apart(surface, other, where, who, depth)
             self._check_above(surface.vertices, where)
             found.append(surface)
-        self._check_above(self.body.vertices, "floor")
+        for body in self.bodies:
+            self._check_above(body.vertices, "floor")
+        self._check_bonds(found)
         return tuple(found)
+
+    def _beside(self, index: int, found: list[Surface]) -> list[tuple[Surface, str, float]]:
+        """What an object must not be in: its surface, its name, and how deep it may be [m]."""
+        each = self.design.objects[index]
+        count = len(self.bodies)
+        others = []
+        for number, (name, body) in enumerate(zip(self.names, self.bodies, strict=False)):
+            who = f'the body "{name}"' if self.mesh.bodies else "the body"
+            others.append((body, who, self._allowed(number, count + index)))
+        for number, other in enumerate(self.design.objects[:index]):
+            if each.is_free or other.is_free:
+                allowed = self._allowed(count + number, count + index)
+                others.append((found[number], f'"{other.name}"', allowed))
+        return others
+
+    def _allowed(self, first: int, second: int) -> float:
+        """How deep two surfaces may be in each other at rest [m]: bonded ones a little."""
+        return self.reach if any(bond.of == (first, second) for bond in self.bonds) else 0.0
 
     def _check_above(self, vertices: NDArray[np.float64], where: str) -> None:
         if self.design.floor is None:
             return
         depth = self.design.floor.z - float(vertices[:, 2].min())
-        if depth > _TOUCH * self.voxel_size:
+        if depth > TOUCH * self.voxel_size:
             who = "is above the lowest point of the body" if where == "floor" else "is in the floor"
             what = f"{who} by {1e3 * depth:.3g} mm"
             raise DesignError(where, what, "move one of them: nothing may be below the floor")
 
-    def _check_apart(self, surface: Surface, body: Surface, where: str, who: str) -> None:
-        # Either may be so small or so thin that no vertex of the other is in it.
-        of_body, of_object = (
-            each.just_inside(_INSIDE * self.voxel_size) for each in (body, surface)
-        )
-        places = np.concatenate([of_body, of_object])
-        into_object = distances_to(surface, of_body)
-        into_body = distances_to(body, of_object)
-        distances = np.concatenate([into_object, into_body])
-        deepest = int(distances.argmin())
-        if -distances[deepest] > _TOUCH * self.voxel_size:
-            x, y, z = 1e3 * places[deepest]
-            depth = -1e3 * distances[deepest]
+    def _check_apart(
+        self, surface: Surface, other: Surface, where: str, who: str, allowed: float
+    ) -> None:
+        overlap = overlap_of(surface, other, self.voxel_size)
+        if overlap.depth > allowed + TOUCH * self.voxel_size:
+            x, y, z = 1e3 * overlap.place
+            depth = 1e3 * overlap.depth
             what = f"is {depth:.3g} mm deep in {who} at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
-            raise DesignError(where, what, f"move it away by {depth:.3g} mm or more")
+            hint = f"move it away by {depth:.3g} mm or more"
+            if not self.contact.separate:
+                hint += ", or write separate = true in [contact]"
+            raise DesignError(where, what, hint)
+
+    def _check_bonds(self, surfaces: Sequence[Surface]) -> None:
+        """What is bonded must meet."""
+        floor = self._floor_under(surfaces)
+        everything = [*self.bodies, *surfaces, *([] if floor is None else [floor])]
+        for bond in self.bonds:
+            first, second = (everything[number] for number in bond.of)
+            distance = -overlap_of(first, second, self.voxel_size).depth
+            if distance > self.reach:
+                a, b = (self.names[number] for number in bond.of)
+                what = f'bonds "{a}" and "{b}", which are {1e3 * distance:.3g} mm apart'
+                hint = f"move them to within half a voxel, {1e3 * self.reach:.3g} mm"
+                raise DesignError(bond.where, what, hint)
+
+    @property
+    def reach(self) -> float:
+        """How near each other at rest what is bonded must be, m."""
+        return _REACH * self.voxel_size
+
+    @property
+    def contact(self) -> Contact:
+        """Of the design, or as it is where there is none."""
+        return self.design.contact or Contact()
+
+    @cached_property
+    def bonds(self) -> tuple[Bond, ...]:
+        """What is bonded; of two entries for one pair the later one counts."""
+        found: dict[tuple[int, int], Bond | None] = {}
+        for index, pair in enumerate(self.contact.pairs):
+            a, b = sorted(self.names.index(name) for name in pair.of)
+            strength = math.inf if pair.strength is None else pair.strength
+            bond = Bond((a, b), strength, f"contact.pairs[{index}]")
+            found[a, b] = bond if pair.kind == "bonded" else None
+        return tuple(bond for bond in found.values() if bond is not None)
 
     @cached_property
     def solids(self) -> tuple[Solid | None, ...]:
@@ -241,9 +355,12 @@ class Touching:
     @cached_property
     def floor(self) -> Surface | None:
         """The floor under everything, a square."""
+        return self._floor_under(self.surfaces)
+
+    def _floor_under(self, surfaces: Sequence[Surface]) -> Surface | None:
         if self.design.floor is None:
             return None
-        all_points = [self.mesh.vertices, *(surface.vertices for surface in self.surfaces)]
+        all_points = [self.mesh.vertices, *(surface.vertices for surface in surfaces)]
         points = np.concatenate(all_points)
         low, high = points.min(axis=0), points.max(axis=0)
         reach = _FLOOR * float(np.linalg.norm(high - low))
@@ -255,8 +372,11 @@ class Touching:
 
     def give_to(self, parts: _core.ProblemParts) -> None:
         """Add it to the parts of a problem."""
-        body = self.mesh.triangles.astype(np.uint32)
-        parts.touch(body, self.voxel_size, _SAMPLES, self.skin)
+        for body, skin in zip(self.mesh.each_body, self.skins, strict=True):
+            triangles = (body.mesh.triangles + body.first_vertex).astype(np.uint32)
+            size = body.mesh.voxel_size or self.design.voxel_size
+            count = len(body.mesh.vertices)
+            parts.touch(triangles, size, _SAMPLES, skin, body.first_vertex, count)
         for each, surface, solid in zip(
             self.design.objects, self.surfaces, self.solids, strict=True
         ):
@@ -274,18 +394,22 @@ class Touching:
                 parts.object(surface.vertices, surface.triangles, **motion)
         if self.floor is not None:
             parts.object(self.floor.vertices, self.floor.triangles)
-        contact = self.design.contact or Contact()
-        parts.friction(np.array(contact.table(self.design.objects, self.floor is not None)))
+        parts.friction(self.friction)
+        for bond in self.bonds:
+            parts.bond(*bond.of, self.reach, bond.strength)
 
     def contacts(self, found: Sequence[_core.Contact]) -> tuple[ContactState, ...]:
         """What touches, as the core found it."""
-        names = names_of(self.design.objects, self.design.floor is not None)
         return tuple(
             ContactState(
-                of=(names[each.a], names[each.b]),
+                of=(self.names[each.a], self.names[each.b]),
                 force=(each.force[0], each.force[1], each.force[2]),
                 pressed=each.pressed,
+                pressure=each.pressure,
+                friction=(each.friction[0], each.friction[1], each.friction[2]),
+                bound=each.bound,
                 area=each.area,
+                bonded=each.bonded,
                 gap=each.gap,
                 slipping=each.slipping,
             )
@@ -306,81 +430,6 @@ class Touching:
             rotation = tuple((row[0], row[1], row[2]) for row in pose.rotation)
             poses[each.name] = Pose((x, y, z), rotation)
         return poses
-
-
-@dataclass(frozen=True)
-class Solid:
-    """What a free object answers to forces with.
-
-    Attributes
-    ----------
-    mass
-        In kg.
-    center
-        Of mass, m.
-    axes
-        Its principal axes, unit vectors row by row, (3, 3).
-    radii
-        The roots of its second moments of mass along them over its mass, m.
-    """
-
-    mass: float
-    center: list[float]
-    axes: list[list[float]]
-    radii: list[float]
-
-    @classmethod
-    def of(cls, surface: Surface, each: Object) -> Solid:
-        """A solid of one density with a closed surface."""
-        import trimesh
-
-        solid = trimesh.Trimesh(surface.vertices, surface.triangles, process=False)
-        volume = float(solid.volume)
-        # The moment of inertia about an axis is the second moment along the other two.
-        inertia = np.asarray(solid.moment_inertia) / volume
-        second = np.trace(inertia) / 2.0 * np.eye(3) - inertia
-        squares, columns = np.linalg.eigh(second)
-        density = each.density
-        mass = each.mass if density is None else density * volume
-        assert mass is not None  # a free object has a mass or a density
-        center = np.asarray(solid.center_mass).tolist()
-        return cls(mass, center, columns.T.tolist(), np.sqrt(squares).tolist())
-
-
-def surface_of(each: Object, design: Design, where: str) -> Surface:
-    """Trace the surface of an object.
-
-    Raises
-    ------
-    DesignError
-        It has none that could be traced.
-    """
-    shape = design.shapes[each.shape] if isinstance(each.shape, str) else each.shape
-    size = each.voxel_size or design.voxel_size
-    voxels = voxelize(shape, size, names=design.shapes)
-    traced = trace([shape.build(design.shapes)], voxels)
-    if traced is None:
-        what = "has too large a surface to be traced"
-        raise DesignError(where, what, "give it a larger voxel_size")
-    vertices, triangles, _ = traced
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
-        triangles = triangles[:, ::-1]
-    return Surface(vertices, np.ascontiguousarray(triangles, dtype=np.uint32))
-
-
-def distances_to(surface: Surface, places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distances of places to a surface [m], negative inside."""
-    import igl
-
-    triangles = surface.triangles.astype(np.int64)
-    nearest, winding = igl.AABB(), igl.FastWindingNumberBVH()
-    nearest.init(surface.vertices, triangles)
-    winding.init(surface.vertices, triangles)
-    squared, _, _ = nearest.squared_distance(surface.vertices, triangles, places)
-    inside = np.abs(winding.winding_number(places)) > 0.5
-    distances: NDArray[np.float64] = np.where(inside, -1.0, 1.0) * np.sqrt(squared)
-    return distances
 
 
 #: Times [s] and factors, as the core takes them.

@@ -22,6 +22,7 @@ from voxsoft.simulation.collapse import collapsed_voxels
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
+from voxsoft.simulation.separation import separations
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
@@ -36,11 +37,18 @@ def _ambiguous_indices(design: Design, mesh: Mesh, _: NDArray[np.float64]) -> It
     return ambiguous_indices(design, mesh)
 
 
+def _left_out(design: Design, _mesh: Mesh, _: NDArray[np.float64]) -> Iterator[Diagnostic]:
+    """What of the designs of bodies is left out although it decides how they behave alone."""
+    return (Diagnostic("warning", *problem) for problem in design.left_out)
+
+
 CHECKS: Final[tuple[Check, ...]] = (
     _ambiguous_indices,
+    _left_out,
     doubtful_surfaces,
     doubtful_thickness,
     overlap_warnings,
+    separations,
 )
 FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,6 @@ from voxsoft.shapes.sampling import grid_bounds
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.choice import method_of
-from voxsoft.simulation.dynamics import may_lie
 from voxsoft.simulation.loads import read
 from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import events
@@ -59,8 +58,10 @@ class StudioBody:
         Number of this body; frames name it.
     rev
         Revision of the document that it was made of.
-    setup, voxels, surface
+    setup, surface
         What was made of the design.
+    voxels
+        Those of each body by its name; of a design without bodies, by an empty one.
     lost
         Volume of the material that found no voxel [m³].
     refusal
@@ -72,7 +73,7 @@ class StudioBody:
     topology: int
     rev: int
     setup: Setup = field(repr=False)
-    voxels: Voxels = field(repr=False)
+    voxels: Mapping[str, Voxels] = field(repr=False)
     surface: Surface = field(repr=False)
     lost: float
     refusal: VoxSoftError | None
@@ -88,7 +89,9 @@ class StudioBody:
             It cannot be meshed, or would need more memory than there is.
         """
         started = time.perf_counter()
-        _refuse_far_too_large(design)
+        design = design.assembled
+        for name in design.body_names:
+            _refuse_far_too_large(design.alone(name))
         cells = filled(design, design.solver.refine)
         _refuse_too_large(cells.count)
         setup = Setup(design, cells.mesh())
@@ -96,12 +99,18 @@ class StudioBody:
         refusal: VoxSoftError | None = None
         try:
             method = method_of(design, design.solver)
-            setup.check(allow_loose=not method.to_rest or may_lie(design, method))
+            setup.check(allow_loose=not method.to_rest)
             _ = setup.problem, setup.problem_alone
         except VoxSoftError as error:
             refusal = error
         seconds = time.perf_counter() - started
-        return cls(topology, rev, setup, cells.voxels, surface, cells.lost, refusal, seconds)
+        voxels = {name: own.voxels for name, own in cells.each.items()}
+        return cls(topology, rev, setup, voxels, surface, cells.lost, refusal, seconds)
+
+    @property
+    def voxel_count(self) -> int:
+        """Of all bodies."""
+        return sum(voxels.count for voxels in self.voxels.values())
 
     @property
     def mesh(self) -> Mesh:
@@ -163,7 +172,7 @@ class StudioBody:
         return events.Body(
             topology=self.topology,
             rev=self.rev,
-            voxels=self.voxels.count,
+            voxels=self.voxel_count,
             vertices=len(rest),
             tets=len(mesh.tets),
             surface_vertices=len(self.surface.vertices),
@@ -178,7 +187,7 @@ class StudioBody:
                 )
                 for cavity in mesh.cavities
             ],
-            leaks=[] if report is None else [_leak(leak, self.voxels) for leak in report.leaks],
+            leaks=[] if report is None else _leaks(report),
             mass=None if problem is None else problem.mass,
             volume=mesh.volume,
             bounds=(_point(rest.min(axis=0)), _point(rest.max(axis=0))),
@@ -193,7 +202,7 @@ class StudioBody:
             not_live=self.not_live,
             touches=has_contact(setup.design),
             seconds=self.seconds,
-            memory=float(self.voxels.count * BYTES_PER_VOXEL),
+            memory=float(self.voxel_count * BYTES_PER_VOXEL),
         )
 
     def _probes(self) -> list[events.BodyProbe]:
@@ -357,10 +366,9 @@ def _parts(design: Design) -> list[events.BodyPart]:
     return found
 
 
-def _leak(leak: Any, voxels: Voxels) -> events.Leak:  # noqa: ANN401 - a Leak of the grid
-    cell = np.asarray(leak.openings[0], dtype=np.float64)
-    point = np.asarray(voxels.origin) + (cell + 0.5) * voxels.voxel_size
-    return events.Leak(volume=float(leak.volume), point=_point(point))
+def _leaks(report: CheckReport) -> list[events.Leak]:
+    pairs = zip(report.leaks, report.leak_points, strict=True)
+    return [events.Leak(volume=float(leak.volume), point=point) for leak, point in pairs]
 
 
 def _point(values: NDArray[np.float64]) -> Triple:

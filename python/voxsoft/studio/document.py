@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft.design import Design
-from voxsoft.design.documents import with_absolute_paths
 from voxsoft.design.formula import is_formula
+from voxsoft.design.included import placed_document
 from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
@@ -256,7 +256,7 @@ class DesignDocument:
         try:
             document = read_document(self.text, self.name)
             self.source = document
-            self.design = Design.from_document(with_absolute_paths(document, self.folder))
+            self.design = Design.from_document(placed_document(document, self.folder))
             if self._former is None:
                 self._former = self._values()
         except VoxSoftError as error:

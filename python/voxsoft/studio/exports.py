@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import files
+from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.simulation import Result, named_regions
@@ -129,7 +130,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         _write_mesh(shown, target, deformed=deformed)
     elif format == "npy":
         array = io.BytesIO()
-        np.save(array, shown.body.voxels.array)
+        np.save(array, voxels_of(shown.body.setup.design).array)
         write_atomically(target, array.getvalue())
     elif format == "csv":
         write_atomically(target, _table(shown))

@@ -19,7 +19,7 @@ from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
-from voxsoft.simulation.touching import refuse_contact
+from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
@@ -115,7 +115,10 @@ def page_of_body(
     if body.refusal is not None:
         raise body.refusal
     if body.not_live:
-        refuse_contact(body.setup.design, "exported pages of the lattice material")
+        refuse_contact(
+            body.setup.design, "exported pages of the lattice, of several bodies or of bonds"
+        )
+    refuse_bodies(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(

@@ -16,8 +16,10 @@ from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 
-#: Why time does not run for a body of the lattice material that may touch something.
+#: Why time does not run for a body that may touch something.
 NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice: press Solve."
+NOT_LIVE_BODIES: Final = "Live motion knows contact of one body alone: press Solve."
+NOT_LIVE_BONDS: Final = "Live motion knows no bonded pairs: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -46,7 +48,15 @@ def not_live(setup: Setup) -> str:
     if not has_contact(setup.design):
         return ""
     of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
-    return NOT_LIVE if of_lattice else ""
+    if of_lattice:
+        return NOT_LIVE
+    design = setup.design
+    if design.bodies:
+        return NOT_LIVE_BODIES
+    bonded = design.contact is not None and any(
+        pair.kind == "bonded" for pair in design.contact.pairs
+    )
+    return NOT_LIVE_BONDS if bonded else ""
 
 
 def touches_live(setup: Setup) -> bool:

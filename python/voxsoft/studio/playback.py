@@ -112,7 +112,7 @@ class Playback:
         """Refuse what needs time to run where it cannot: objects would be passed through."""
         live = isinstance(command, commands.Play | commands.Step | commands.Grab)
         if live and self.body is not None and self.body.not_live:
-            what = "of the lattice is not known to live motion, which would go through it"
+            what = f"is not found while time runs: {self.body.not_live}"
             raise SimulationError("contact", what, "press Solve")
 
     def advance(self, seconds: float, budget: float) -> list[Event]:

@@ -15,6 +15,7 @@ from voxsoft.errors import DisconnectedError, NoCavityError, StudyError, VoxSoft
 from voxsoft.search.gradient_sampler import Answer
 from voxsoft.search.optuna_bridge import FrozenTrial
 from voxsoft.simulation import gradient, simulate
+from voxsoft.simulation.path_gradient import LARGEST_WITH_FRICTION, has_friction
 from voxsoft.study.outcome import Outcome, outcome_of_result
 from voxsoft.study.trial import OUTCOME_KEY
 
@@ -53,7 +54,8 @@ def evaluate_slopes(design: Design, parameters: Sequence[str]) -> Outcome:
     """
     started = time.perf_counter()
     try:
-        result = simulate(design, method="statics", tolerance=_TOLERANCE)
+        tolerance = LARGEST_WITH_FRICTION if has_friction(design) else _TOLERANCE
+        result = simulate(design, method="statics", tolerance=tolerance)
         metrics = dict(result.metrics)
         if result.status == "ok":
             targets: dict[str, Objective | Constraint] = {

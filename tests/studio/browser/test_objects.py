@@ -171,7 +171,7 @@ def pinch_of_lattice(tmp_path, serving):
     server.stop()
 
 
-def test_pads_touch_a_plate_live_and_it_is_told(pinch, open_tab):
+def test_pads_touch_a_plate_live_and_it_is_shown(pinch, open_tab):
     tab = open_tab(pinch.address, mode="simulate", size=(1000, 640))
     tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
     assert tab.find("not-live").count() == 0

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::vector::{Vec3, dot, sub};
 
 use crate::touch::Carried;
 
@@ -11,7 +11,7 @@ use crate::touch::Carried;
 const ON: f64 = 1e-6;
 
 /// The voxels, ready to carry points.
-pub(super) struct Carriers<'a> {
+pub(crate) struct Carriers<'a> {
     voxels: &'a [[u32; 8]],
     vertices: &'a [Vec3],
     /// The voxels around each vertex.
@@ -19,7 +19,7 @@ pub(super) struct Carriers<'a> {
 }
 
 impl<'a> Carriers<'a> {
-    pub(super) fn new(voxels: &'a [[u32; 8]], vertices: &'a [Vec3]) -> Self {
+    pub(crate) fn new(voxels: &'a [[u32; 8]], vertices: &'a [Vec3]) -> Self {
         let mut around = vec![Vec::new(); vertices.len()];
         for (number, voxel) in voxels.iter().enumerate() {
             for vertex in voxel {
@@ -35,7 +35,7 @@ impl<'a> Carriers<'a> {
 
     /// Carries a point by the voxel that it is in or nearest to, of those at all vertices of `share`; by the mean of
     /// several that are as near.
-    pub(super) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
+    pub(crate) fn carry(&self, share: &Carried, point: Vec3) -> Carried {
         let (first, others) = share.vertices.split_first().expect("a point has vertices");
         let at_all = |voxel: &&u32| {
             let corners = &self.voxels[**voxel as usize];
@@ -70,9 +70,10 @@ impl<'a> Carriers<'a> {
     /// Where a point is in a voxel, whose corners are at 0 and 1.
     fn local(&self, voxel: u32, point: Vec3) -> Vec3 {
         let corner = |c: usize| self.vertices[self.voxels[voxel as usize][c] as usize];
-        let (low, high) = (corner(0), corner(7));
+        let low = corner(0);
         std::array::from_fn(|i| {
-            let place = (point[i] - low[i]) / (high[i] - low[i]);
+            let edge = sub(corner(4 >> i), low);
+            let place = dot(sub(point, low), edge) / dot(edge, edge);
             let nearest = (2.0 * place).round() / 2.0;
             if (place - nearest).abs() < ON {
                 nearest

@@ -26,7 +26,7 @@ use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use crate::touch::gap::{doubled, unit};
 use crate::touch::surface::{Face, outer_faces};
 use crate::touch::{Carried, Surface};
-use carrier::Carriers;
+pub(crate) use carrier::Carriers;
 use crossing::{Crossing, Field};
 use folds::Folds;
 

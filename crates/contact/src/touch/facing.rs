@@ -146,6 +146,7 @@ mod tests {
             triangles,
         };
         let description = Description {
+            bonds: Vec::new(),
             surfaces: vec![surface],
             friction: vec![vec![0.0]],
             voxel: 1.0,

@@ -9,8 +9,6 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
 use super::gap::{area, normal, unit};
 use super::{Carried, Meeting, Touch};
 
-/// The body among the surfaces.
-const BODY: u32 = 0;
 /// How far the normal of a triangle may be from the direction that presses it: the cosine of 60 degrees.
 const TOWARD: f64 = 0.5;
 
@@ -28,8 +26,8 @@ pub struct ContactField {
 }
 
 impl Touch {
-    /// What touches the first surface at `positions`, with the multipliers of the last correction. Its vertices are
-    /// the first `count`.
+    /// What touches bodies at `positions`, with the multipliers of the last correction. Their vertices are the first
+    /// `count`.
     pub fn field(&self, positions: &[Vec3], count: usize) -> ContactField {
         let state = self.read();
         let mut pressed = vec![0.0; count];
@@ -57,8 +55,8 @@ impl Touch {
         }
         let mut gap = vec![f64::INFINITY; count];
         for (index, sample) in self.samples.iter().enumerate() {
-            if let (BODY, [vertex], Some(facing)) = (
-                sample.surface,
+            if let (true, [vertex], Some(facing)) = (
+                sample.surface < self.bodies,
                 self.share(index as u32).vertices.as_slice(),
                 state.facing[index],
             ) {
@@ -91,10 +89,10 @@ impl Touch {
                 take(*vertex as usize, sign, part * weight);
             }
         };
-        if own == BODY {
+        if own < self.bodies {
             share(sample, 1.0, 1.0); // Samples are numbered as their points are.
         }
-        if other == BODY {
+        if other < self.bodies {
             for (corner, weight) in self.triangles[triangle as usize].into_iter().zip(weights) {
                 share(corner, -1.0, weight);
             }
@@ -106,7 +104,7 @@ impl Touch {
         let mut whole = vec![0.0; direction.len()];
         let mut toward = whole.clone();
         for (triangle, &surface) in self.surface_of.iter().enumerate() {
-            if surface != BODY {
+            if surface >= self.bodies {
                 continue;
             }
             let corners = self.corners(triangle as u32, points);
@@ -156,6 +154,7 @@ mod tests {
             triangles: first.triangles.clone(),
         };
         let description = Description {
+            bonds: Vec::new(),
             surfaces: vec![first, second],
             friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
             voxel: 1.0,

@@ -69,7 +69,11 @@ impl Touch {
         if !sample.triangles.iter().any(faces) {
             return false;
         }
-        let itself = sample.surface == self.surface_of[triangle as usize];
+        let other = self.surface_of[triangle as usize];
+        if self.is_bonded(state, index as u32, other) {
+            return false;
+        }
+        let itself = sample.surface == other;
         if itself {
             let of = self.triangles[triangle as usize];
             let mut own = sample.triangles.iter().map(|t| self.triangles[*t as usize]);

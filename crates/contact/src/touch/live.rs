@@ -213,6 +213,7 @@ impl LiveTouch {
             plane: meeting.normal,
             bound: coefficient * pressure,
             anchor: Some(anchor),
+            ..Memory::default()
         }
     }
 }
@@ -264,14 +265,26 @@ impl Contact for LiveTouch {
         true
     }
 
-    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
-        let largest = self.touch.correct(positions, negligible);
+    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+        let settled = self.touch.correct(positions, negligible, precision);
         self.touch.write().stick = STICK;
-        largest
+        settled
     }
 
-    fn has_friction(&self) -> bool {
-        self.touch.has_friction()
+    fn length(&self) -> f64 {
+        self.touch.length()
+    }
+
+    fn let_go(&self, positions: &[Vec3]) -> bool {
+        self.touch.let_go(positions)
+    }
+
+    fn depends_on_way(&self) -> bool {
+        self.touch.depends_on_way()
+    }
+
+    fn extrapolate(&self, ratio: f64) {
+        self.touch.extrapolate(ratio);
     }
 
     fn accept(&self, positions: &[Vec3]) {
@@ -389,10 +402,9 @@ impl Term for LiveTouch {
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
         let state = self.touch.read();
         let pattern = self.run().pattern.clone();
-        self.each_pressed(&state, positions, |meeting, pressure, _| {
+        self.each_pressed(&state, positions, |meeting, _, _| {
             if pattern.contains(&(meeting.sample, meeting.triangle)) {
-                let tangent = Tangent::Stressless;
-                self.touch.visit_gap(meeting, pressure, &[], tangent, visit);
+                self.touch.visit_gap(meeting, 0.0, &[], visit);
             }
         });
         self.each_friction(&state, positions, |sample, friction| {

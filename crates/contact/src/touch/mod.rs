@@ -21,13 +21,17 @@
 //! sticks does not move, however long it is held. The bound and the plane of friction are those of the last correction, so that friction has a potential; at the
 //! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
+pub mod bonds;
 mod facing;
 mod field;
 mod friction;
 pub(crate) mod gap;
 mod listing;
 pub mod live;
+mod mortar;
 mod path;
+mod predicted;
+mod recording;
 mod report;
 pub mod rigid;
 mod state;
@@ -40,6 +44,7 @@ use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Contact, ProblemError};
 
+use bonds::Bond;
 pub use field::ContactField;
 use gap::normal;
 pub use report::PairReport;
@@ -71,11 +76,15 @@ const DEEPEST: f64 = 0.9 * CLEARANCE;
 /// different voxels do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
 const CREEP: f64 = 1e-4;
-/// By how much a bound of friction may be off, of the largest one: at first, and after [`PATIENCE`] corrections, as
-/// long as the sum of the bounds on each surface is that good. Surfaces that do not fit share a pressure among their
-/// samples in many ways, between which multipliers decide slowly and nothing moves.
+/// By how much bounds of friction may be off, of the largest one that a vertex feels: at first, and after [`PATIENCE`]
+/// corrections, as long as the sum of the bounds on each surface is that good.
 const BOUND: [f64; 2] = [3e-3, 0.05];
+/// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
+const NEARLY: f64 = 0.95;
+/// Corrections at one load after which samples keep what they face, and bounds may be off by more.
 const PATIENCE: u32 = 10;
+/// Corrections after which more precision than by default is given up.
+const PRECISE: u32 = 36;
 
 /// Who touches whom, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,6 +93,8 @@ pub struct Description {
     pub surfaces: Vec<Surface>,
     /// The coefficient of friction of each surface with each, symmetric; NaN where they pass through each other.
     pub friction: Vec<Vec<f64>>,
+    /// Surfaces that are bonded.
+    pub bonds: Vec<Bond>,
     /// The size of a voxel in m.
     pub voxel: f64,
     /// Young's modulus of what touches, or something of its size, in Pa.
@@ -99,7 +110,9 @@ pub struct Touch {
     least_area: Vec<f64>,
     /// The points of all surfaces.
     points: Vec<Carried>,
-    /// For each point of the first surface the vertices that stand for it, where those are not what carries it.
+    /// How many of the surfaces, the first ones, are those of bodies.
+    bodies: u32,
+    /// For each point of bodies the vertices that stand for it, where those are not what carries it.
     shares: Vec<Carried>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
@@ -109,6 +122,8 @@ pub struct Touch {
     around: Vec<Vec<u32>>,
     /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
     penalty: AtomicU64,
+    /// For each sample the ties that it is in, with the surface that they are to.
+    ties_at: Vec<Vec<(u32, u32)>>,
     state: RwLock<State>,
 }
 
@@ -174,6 +189,7 @@ impl Touch {
         }
         let (mut samples, mut points, mut triangles) = (Vec::new(), Vec::new(), Vec::new());
         let (mut surface_of, mut least_area) = (Vec::new(), Vec::new());
+        let mut first_sample = Vec::new();
         for (number, surface) in description.surfaces.iter().enumerate() {
             surface.check(rest.len())?;
             let number = number as u32;
@@ -182,6 +198,7 @@ impl Touch {
             least_area.push(LEAST_AREA * area / own.len().max(1) as f64);
             samples.extend(own);
             let first = points.len() as u32;
+            first_sample.push(first);
             points.extend(surface.points.iter().cloned());
             triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
             surface_of.resize(triangles.len(), number);
@@ -192,26 +209,31 @@ impl Touch {
                 around[*point as usize].push(t as u32);
             }
         }
-        let touch = Self {
+        let mut touch = Self {
             description,
             samples,
             least_area,
             points,
+            bodies: 1,
             shares: Vec::new(),
             triangles,
             surface_of,
             around,
             penalty: AtomicU64::new(PENALTY.to_bits()),
+            ties_at: Vec::new(),
             state: RwLock::default(),
         };
+        touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());
         Contact::start(&touch, rest);
         Ok(touch)
     }
 
-    /// Gives the points of the first surface vertices that stand for them in fields over vertices, with positive
-    /// weights: what carries a smooth surface lies partly inside, and has weights of both signs.
+    /// Says how many surfaces are those of bodies, which come first, and gives their points vertices that stand for
+    /// them in fields over vertices, with positive weights: what carries a smooth surface lies partly inside, and has
+    /// weights of both signs.
     #[must_use]
-    pub fn with_shares(mut self, shares: Vec<Carried>) -> Self {
+    pub fn with_bodies(mut self, bodies: u32, shares: Vec<Carried>) -> Self {
+        self.bodies = bodies;
         self.shares = shares;
         self
     }
@@ -349,6 +371,7 @@ mod tests {
         };
         let surfaces = vec![tetrahedron(0), tetrahedron(4)];
         let description = Description {
+            bonds: Vec::new(),
             surfaces,
             friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
             voxel: 1.0,
@@ -369,7 +392,7 @@ mod tests {
         }
         touch.follow(&positions);
         check_term(&touch, &apart, &positions).unwrap();
-        touch.correct(&positions, 0.0);
+        touch.correct(&positions, 0.0, 1.0);
         check_term(&touch, &apart, &positions).unwrap();
     }
 }

@@ -5,10 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use voxsoft_solid::Contact;
 use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
+use super::bonds::Hold;
 use super::gap::{self, normal};
+use super::recording::Recording;
 use super::state::{Facing, Memory, State};
 use super::{
-    APART, BOUND, CREEP, DEEPEST, LOOKS, Meeting, PATIENCE, STICK, STIFFER, STRAYED, Touch, listing,
+    APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER,
+    STRAYED, Touch, listing,
 };
 use crate::threads;
 
@@ -16,20 +19,27 @@ use crate::threads;
 /// triangles, and an iteration that goes astray by any.
 const WASTE: usize = 2;
 const MANY: usize = 100;
+/// How far multipliers are taken to go on as they did, in steps.
+const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
 impl Contact for Touch {
     fn start(&self, positions: &[Vec3]) {
         let points = self.points_at(positions);
         let samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         let nothing = vec![Memory::default(); self.samples.len()];
+        let untouched = vec![Hold::default(); self.ties().count()];
         let mut state = self.write();
         *state = State {
             accepted_points: points.clone(),
             accepted_samples: samples,
             accepted: nothing.clone(),
+            before: nothing.clone(),
             now: nothing,
+            accepted_holds: untouched.clone(),
+            holds: untouched,
             stick: STICK[0],
             crept: f64::INFINITY,
+            recording: state.recording.is_some().then(Recording::default),
             ..State::default()
         };
         self.list_from_accepted(&mut state, points);
@@ -57,34 +67,14 @@ impl Contact for Touch {
         self.write().looks = LOOKS;
     }
 
-    fn correct(&self, positions: &[Vec3], negligible: f64) -> f64 {
+    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
         let mut state = self.write();
-        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
-        let anchor_of = |memory: &Memory| Memory {
-            anchor: memory.anchor,
-            ..Memory::default()
-        };
-        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
-            let sample = meeting.sample as usize;
-            let memory = &state.now[sample];
-            let friction = self.friction(&state, meeting.sample, point, points);
-            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
-            now[sample] = Memory {
-                normal: pressure,
-                friction: friction.map_or([0.0; 3], |friction| friction.force),
-                plane: meeting.normal,
-                bound: coefficient * pressure,
-                anchor: memory
-                    .anchor
-                    .or_else(|| Some(self.first_anchor(&state, meeting, point, points))),
-            };
-        });
+        state.keep_moment(positions);
+        let now = self.corrected(&state, positions);
         state.corrections += 1;
         let patient = state.corrections <= PATIENCE;
-        let bounds = now.iter().chain(&state.now).map(|memory| memory.bound);
-        let known = BOUND[usize::from(!patient)] * bounds.fold(negligible, f64::max);
-        let mut largest = self.off_bounds(&state.now, &now, negligible);
+        let mut largest =
+            self.off_bounds(&state.now, &now, BOUND[usize::from(!patient)], negligible);
         let mut farthest = 0.0f64;
         for (sample, (old, new)) in state.now.iter().zip(&now).enumerate() {
             if old == new {
@@ -94,43 +84,63 @@ impl Contact for Touch {
             let pressed = (new.normal - old.normal) / unit;
             let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
             largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
-            let bound = (new.bound - old.bound).abs();
-            if bound > 0.0 {
-                largest = largest.max(bound / known);
-            }
             farthest = farthest.max(crept / CREEP);
         }
-        largest = largest.max(farthest);
-        if farthest > 1.0 && farthest > state.crept / STIFFER {
+        let (holds, off) = self.corrected_ties(&state, positions);
+        largest = largest.max(farthest).max(off);
+        let enough = if state.corrections <= PRECISE {
+            precision
+        } else {
+            1.0
+        };
+        if farthest > enough && farthest > state.crept / STIFFER {
             state.stick = (STIFFER * state.stick).min(STICK[1]);
         }
         state.crept = farthest;
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-        if largest > 1.0 {
+        let settled = largest <= enough;
+        if settled {
+            state.settle_moment(enough <= precision);
+        } else {
             state.now = now;
+            state.holds = holds;
             state.looks = u32::from(patient);
         }
-        largest
+        settled
     }
 
-    fn has_friction(&self) -> bool {
+    fn length(&self) -> f64 {
+        self.description.voxel
+    }
+
+    fn let_go(&self, positions: &[Vec3]) -> bool {
+        let mut state = self.write();
+        let any = self.break_ties(&mut state, positions);
+        if any {
+            // What held until now may touch.
+            let points = self.points_at(positions);
+            self.list(&mut state, points);
+            (state.listed_at_rest, state.corrections) = (false, 0);
+            state.looks = LOOKS;
+        }
+        any
+    }
+
+    fn depends_on_way(&self) -> bool {
         let table = self.description.friction.iter().flatten();
-        table.into_iter().any(|coefficient| *coefficient > 0.0)
+        let rough = table.into_iter().any(|coefficient| *coefficient > 0.0);
+        rough
+            || self
+                .description
+                .bonds
+                .iter()
+                .any(|bond| bond.strength.is_finite())
     }
 
     fn accept(&self, positions: &[Vec3]) {
         let mut state = self.write();
-        let mut moved = vec![Memory::default(); self.samples.len()];
-        self.each_contact(&state, positions, |meeting, _, point, points| {
-            let memory = &mut moved[meeting.sample as usize];
-            *memory = state.now[meeting.sample as usize];
-            let friction = self.friction(&state, meeting.sample, point, points);
-            if friction.is_none_or(|friction| friction.slips) {
-                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
-                let corners = self.corners(meeting.triangle, points);
-                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
-            }
-        });
+        let moved = self.carried_on(&state, positions);
+        state.keep_step();
         let pairs = self.pairs_of_stiffness(&state, positions);
         if state.pattern.len() > WASTE * pairs.len().max(MANY) {
             state.pattern = pairs;
@@ -139,22 +149,107 @@ impl Contact for Touch {
         let points = self.points_at(positions);
         state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         state.accepted_points.clone_from(&points);
-        state.accepted.clone_from(&moved);
+        state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
+        state.accepted_holds = state.holds.clone();
         (state.crept, state.corrections) = (f64::INFINITY, 0);
         self.list_from_accepted(&mut state, points);
     }
 
     fn go_back(&self) {
         let mut state = self.write();
+        state.drop_step();
+        state.extrapolated = None;
         state.now = state.accepted.clone();
+        if state
+            .holds
+            .iter()
+            .zip(&state.accepted_holds)
+            .any(|(a, b)| a.broken != b.broken)
+        {
+            state.listed_at_rest = false;
+        }
+        state.holds = state.accepted_holds.clone();
         (state.stick, state.crept, state.corrections) = (STICK[0], f64::INFINITY, 0);
         let points = state.accepted_points.clone();
         self.list_from_accepted(&mut state, points);
     }
+
+    fn extrapolate(&self, ratio: f64) {
+        let mut state = self.write();
+        state.extrapolated = Some(ratio);
+        let ratio = ratio.min(LONGEST_EXTRAPOLATION);
+        let State {
+            now,
+            accepted,
+            before,
+            ..
+        } = &mut *state;
+        for (now, (last, before)) in now.iter_mut().zip(accepted.iter().zip(before)) {
+            if !(last.normal > 0.0 && before.normal > 0.0) {
+                continue;
+            }
+            let on = |last: f64, before: f64| last + ratio * (last - before);
+            now.normal = on(last.normal, before.normal).max(0.0);
+            now.bound = on(last.bound, before.bound).max(0.0);
+            let friction = [0, 1, 2].map(|i| on(last.friction[i], before.friction[i]));
+            let most = now.bound / norm(friction).max(now.bound);
+            now.friction = if most.is_finite() {
+                scale(most, friction)
+            } else {
+                [0.0; 3]
+            };
+        }
+    }
 }
 
 impl Touch {
+    /// What samples hold after a correction by the forces at `positions`.
+    pub(super) fn corrected(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
+        // What loses contact for now keeps its anchor: it may come back before the state is accepted.
+        let anchor_of = |memory: &Memory| Memory {
+            anchor: memory.anchor,
+            since: memory.since,
+            ..Memory::default()
+        };
+        let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
+        self.each_contact(state, positions, |meeting, pressure, point, points| {
+            let sample = meeting.sample as usize;
+            let memory = &state.now[sample];
+            let friction = self.friction(state, meeting.sample, point, points);
+            let coefficient = self.coefficient(meeting.sample, meeting.triangle);
+            let (anchor, since) = memory.anchor.map_or_else(
+                || self.first_anchor(state, meeting, point, points),
+                |anchor| (anchor, memory.since),
+            );
+            now[sample] = Memory {
+                normal: pressure,
+                friction: friction.map_or([0.0; 3], |friction| friction.force),
+                plane: meeting.normal,
+                bound: coefficient * pressure,
+                anchor: Some(anchor),
+                since,
+            };
+        });
+        now
+    }
+
+    /// What samples hold from an accepted state on: the anchors of what has slipped come along.
+    pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
+        let mut moved = vec![Memory::default(); self.samples.len()];
+        self.each_contact(state, positions, |meeting, _, point, points| {
+            let memory = &mut moved[meeting.sample as usize];
+            *memory = state.now[meeting.sample as usize];
+            let friction = self.friction(state, meeting.sample, point, points);
+            if friction.is_none_or(|friction| friction.slips) {
+                memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
+                let corners = self.corners(meeting.triangle, points);
+                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
+            }
+        });
+        moved
+    }
+
     /// Lists what may be met from the accepted state on, unless it is where it was when that was listed.
     fn list_from_accepted(&self, state: &mut State, points: Vec<Vec3>) {
         if !(state.listed_at_rest && self.farthest_from_listed(state, &points) <= listing::SAME) {
@@ -165,7 +260,11 @@ impl Touch {
     }
 
     /// Samples and triangles that have stiffness at `positions`.
-    fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
+    pub(super) fn pairs_of_stiffness(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+    ) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
         self.each_contact(state, positions, |meeting, _, _, _| {
             pairs.insert((meeting.sample, meeting.triangle));
@@ -183,28 +282,52 @@ impl Touch {
         farthest.fold(0.0, f64::max) / self.description.voxel
     }
 
-    /// How far the sum of the bounds of friction between two surfaces is off, as a part of what it may.
-    fn off_bounds(&self, old: &[Memory], new: &[Memory], negligible: f64) -> f64 {
-        let mut sums: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
-        for (sample, (old, new)) in self.samples.iter().zip(old.iter().zip(new)) {
-            let Some((triangle, _)) = new.anchor else {
+    /// How far the bounds of friction are off, as a part of what they may: as vertices feel them, which may be `off_vertex`,
+    /// and summed over two surfaces.
+    ///
+    /// Surfaces that do not fit share a pressure among their samples in many ways, between which multipliers decide slowly
+    /// and nothing moves: there are more samples than vertices that carry them. So single bounds do not count.
+    fn off_bounds(&self, old: &[Memory], new: &[Memory], off_vertex: f64, negligible: f64) -> f64 {
+        let mut pairs: BTreeMap<[u32; 2], [f64; 2]> = BTreeMap::new();
+        let mut vertices: BTreeMap<u32, [f64; 2]> = BTreeMap::new();
+        for (index, (old, new)) in old.iter().zip(new).enumerate() {
+            let Some((triangle, weights)) = new.anchor else {
                 continue;
             };
-            let mut pair = [sample.surface, self.surface_of[triangle as usize]];
+            let change = new.bound - old.bound;
+            let mut pair = [
+                self.samples[index].surface,
+                self.surface_of[triangle as usize],
+            ];
             pair.sort_unstable();
-            let [change, size] = sums.entry(pair).or_default();
-            *change += new.bound - old.bound;
-            *size += new.bound;
-        }
-        let part = |[change, size]: &[f64; 2]| {
-            let off = change.abs();
-            if off > 0.0 {
-                off / (BOUND[0] * size.max(negligible))
-            } else {
-                0.0
+            let entry = pairs.entry(pair).or_default();
+            entry[0] += change;
+            entry[1] += new.bound;
+            let corners = self.triangles[triangle as usize].into_iter().zip(weights);
+            for (point, part) in corners.chain([(index as u32, 1.0)]) {
+                let Carried {
+                    vertices: carriers,
+                    weights,
+                } = self.share(point);
+                for (vertex, weight) in carriers.iter().zip(weights) {
+                    let entry = vertices.entry(*vertex).or_default();
+                    entry[0] += part * weight * change;
+                    entry[1] += part * weight * new.bound;
+                }
             }
-        };
-        sums.values().map(part).fold(0.0, f64::max)
+        }
+        let largest = vertices
+            .values()
+            .map(|[_, size]| *size)
+            .fold(negligible, f64::max);
+        let of_vertices = vertices
+            .values()
+            .map(|[change, _]| change.abs() / (off_vertex * largest));
+        let of_pairs = pairs
+            .values()
+            .map(|[change, size]| change.abs() / (BOUND[0] * size.max(negligible)));
+        // Where nothing is bounded, 0/0 counts as nothing.
+        of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
     /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
@@ -215,7 +338,7 @@ impl Touch {
         meeting: &Meeting,
         point: Vec3,
         points: &[Vec3],
-    ) -> (u32, [f64; 3]) {
+    ) -> ((u32, [f64; 3]), f64) {
         let corners = self.corners(meeting.triangle, points);
         let before = self.corners(meeting.triangle, &state.accepted_points);
         let start = state.accepted_samples[meeting.sample as usize];
@@ -228,7 +351,10 @@ impl Touch {
         }
         let gap_before = dot(sub(start, foot), normal(before)) - self.clearance();
         let gap_now = meeting.gap - self.clearance();
-        let since = if gap_before > 0.0 && gap_before > gap_now {
+        let given = state.given_since.get(meeting.sample as usize);
+        let since = if let Some(given) = given {
+            *given
+        } else if gap_before > 0.0 && gap_before > gap_now {
             1.0 - gap_before / (gap_before - gap_now.min(0.0))
         } else {
             1.0
@@ -236,7 +362,7 @@ impl Touch {
         // A touch that only just begins has `since` near 0: it has not slipped yet.
         let slip = sub(point, foot_now);
         let anchor = add(point, scale(-since, slip));
-        (meeting.triangle, gap::affine(anchor, corners))
+        ((meeting.triangle, gap::affine(anchor, corners)), since)
     }
 
     /// Lets samples look for what they face: all of them, or those that have strayed from it.

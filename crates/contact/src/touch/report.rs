@@ -6,10 +6,8 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, scale, sub};
 
 use super::gap::normal;
 use super::state::State;
-use super::{Meeting, Touch};
+use super::{Meeting, NEARLY, Touch};
 
-/// The part of its bound from which friction counts as slipping: bounds of light pressures are right to a few percent.
-const NEARLY: f64 = 0.95;
 /// How near what is not pressed itself must be to count as touching between points that are, in voxels: facets of a
 /// ball of four voxels radius are a thirtieth of a voxel apart from it.
 const NEAR: f64 = 0.05;
@@ -23,19 +21,45 @@ pub struct PairReport {
     pub force: Vec3,
     /// The sum of the sizes of all pressures and frictions, N: also what cancels.
     pub pressed: f64,
-    /// The area in contact in the unloaded body, m².
+    /// The sum of all pressures alone, N.
+    pub pressure: f64,
+    /// The part of the force that is friction, N.
+    pub friction: Vec3,
+    /// The most that friction can be: the sum of all pressures times their coefficients, N.
+    pub bound: f64,
+    /// The area in contact in the unloaded body, m²; bonded area is part of it.
     pub area: f64,
+    /// The area that is bonded, m².
+    pub bonded: f64,
     /// The smallest gap in m.
     pub gap: f64,
     /// The part of the pressure under which the surfaces slip.
     pub slipping: f64,
 }
 
+impl PairReport {
+    /// Of surfaces that do not touch.
+    fn apart(of: [u32; 2]) -> Self {
+        Self {
+            of,
+            force: [0.0; 3],
+            pressed: 0.0,
+            pressure: 0.0,
+            friction: [0.0; 3],
+            bound: 0.0,
+            area: 0.0,
+            bonded: 0.0,
+            gap: f64::INFINITY,
+            slipping: 0.0,
+        }
+    }
+}
+
 impl Touch {
     /// What touches at `positions`, with the multipliers of the last correction; ascending.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
         let state = self.read();
-        let mut found: BTreeMap<[u32; 2], (PairReport, f64, [f64; 2])> = BTreeMap::new();
+        let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
         self.each_contact(&state, positions, |meeting, pressure, point, points| {
             pressed_samples[meeting.sample as usize] = true;
@@ -44,48 +68,55 @@ impl Touch {
             let memory = &state.now[meeting.sample as usize];
             let friction = self.friction(&state, meeting.sample, point, points);
             let mut force = scale(pressure, meeting.normal);
+            let mut tangential = [0.0; 3];
             let (mut pressed, mut slipping) = (pressure, pressure);
             if let Some(friction) = friction {
-                force = add(force, friction.force);
+                tangential = friction.force;
+                force = add(force, tangential);
                 pressed = norm(force);
                 let sticks = !friction.slips && norm(friction.force) < NEARLY * memory.bound;
                 if sticks {
                     slipping = 0.0;
                 }
             }
-            let entry = found.entry(of).or_insert_with(|| {
-                let report = PairReport {
-                    of,
-                    force: [0.0; 3],
-                    pressed: 0.0,
-                    area: 0.0,
-                    gap: f64::INFINITY,
-                    slipping: 0.0,
-                };
-                (report, 0.0, [0.0; 2])
-            });
-            let (report, total, areas) = entry;
+            let entry = found.entry(of);
+            let (report, areas) = entry.or_insert_with(|| (PairReport::apart(of), [0.0; 2]));
             if of[0] != of[1] {
                 let sign = if sample.surface == of[0] { 1.0 } else { -1.0 };
                 axpy(&mut report.force, sign, force);
+                axpy(&mut report.friction, sign, tangential);
             }
+            report.pressure += pressure;
+            report.bound += self.coefficient(meeting.sample, meeting.triangle) * pressure;
             report.pressed += pressed;
             areas[self.side(meeting)] += self.area_toward(meeting, points);
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
-            *total += pressure;
         });
         self.each_between(&state, positions, &pressed_samples, |meeting, points| {
-            if let Some((_, _, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
+            if let Some((_, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
                 areas[self.side(meeting)] += self.area_toward(meeting, points);
             }
         });
-        let each = found.into_values().map(|(mut report, total, areas)| {
-            report.slipping /= total;
+        self.each_tie(&state, positions, |bond, tie, force| {
+            let mut of = bond.of;
+            of.sort_unstable();
+            let entry = found.entry(of);
+            let (report, _) = entry.or_insert_with(|| (PairReport::apart(of), [0.0; 2]));
+            let sign = if bond.of == of { 1.0 } else { -1.0 };
+            axpy(&mut report.force, sign, force);
+            report.pressed += norm(force);
+            report.bonded += tie.area;
+            report.gap = report.gap.min(0.0);
+        });
+        let each = found.into_values().map(|(mut report, areas)| {
+            if report.pressure > 0.0 {
+                report.slipping /= report.pressure;
+            }
             // Both sides see the contact, the coarser one less sharply; a surface with itself counts twice.
             report.area = match report.of {
                 [a, b] if a == b => areas[1] / 2.0,
-                _ => areas[0].max(areas[1]),
+                _ => areas[0].max(areas[1]) + report.bonded,
             };
             report
         });

@@ -4,9 +4,12 @@ use std::collections::BTreeSet;
 
 use voxsoft_solid::vector::Vec3;
 
+use super::bonds::Hold;
+use super::recording::Recording;
+
 /// What a sample carries along a load path.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Memory {
+pub struct Memory {
     /// The multiplier of its gap, a force in N that pushes apart.
     pub normal: f64,
     /// That of its slip in N, along the surface.
@@ -17,12 +20,14 @@ pub(super) struct Memory {
     pub bound: f64,
     /// Where on the other surface it sticks: a triangle, and affine coordinates in it.
     pub anchor: Option<(u32, [f64; 3])>,
+    /// The part of its step that was left when it came into contact there.
+    pub since: f64,
 }
 
 /// What a sample faces, fixed for some steps of Newton's method, so that what it minimizes has no kinks where a
 /// sample slides over an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Facing {
+pub enum Facing {
     /// The plane of a triangle.
     Plane(u32),
     /// A point on an edge or corner of a triangle, with its barycentric coordinates, and the normal there.
@@ -46,8 +51,15 @@ pub(super) struct State {
     pub accepted_samples: Vec<Vec3>,
     /// What they carried.
     pub accepted: Vec<Memory>,
+    /// What they carried at the accepted state before that.
+    pub before: Vec<Memory>,
+    /// By how many steps what they carry now goes on, while nothing has corrected it.
+    pub extrapolated: Option<f64>,
     /// What they carry now.
     pub now: Vec<Memory>,
+    /// What ties carried at the last accepted state, and what they carry now.
+    pub accepted_holds: Vec<Hold>,
+    pub holds: Vec<Hold>,
     /// The points when candidates were listed last.
     pub listed_points: Vec<Vec3>,
     /// Whether they were those of the accepted state then.
@@ -68,4 +80,11 @@ pub(super) struct State {
     pub pattern: BTreeSet<(u32, u32)>,
     /// Whether that has become less, and nobody has been told.
     pub pattern_shrank: bool,
+    /// Whether a path is gone over again, for which the stiffness has to be exact.
+    pub retraces: bool,
+    /// That part for each sample which comes into contact, while a path is gone over again: where a sample was just apart it
+    /// changes steeply, and soon no more.
+    pub given_since: Vec<f64>,
+    /// The path so far, where derivatives will ask for it.
+    pub recording: Option<Recording>,
 }

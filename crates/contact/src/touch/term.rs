@@ -4,10 +4,12 @@ use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, dot, scale};
-use voxsoft_solid::{ProblemError, Term};
+use voxsoft_solid::{ProblemError, Strain, Term};
 
 use super::friction::Friction;
 use super::gap::barycentric_gradients;
+use super::predicted::PredictedPressures;
+use super::state::State;
 use super::{Meeting, Touch};
 
 /// How far, in units of Young's modulus, a pressure may be above its multiplier and count in how it turns. What a step
@@ -23,12 +25,19 @@ impl Term for Touch {
         Ok(()) // The surfaces were checked when they were given.
     }
 
+    fn is_local(&self) -> bool {
+        true
+    }
+
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
         for &(sample, triangle) in &self.read().pattern {
             let nothing = |_, _| [[0.0; 3]; 3];
             self.visit_local(sample, triangle, nothing, &mut |vertices, _| {
                 visit(vertices);
             });
+        }
+        for (_, tie) in self.ties() {
+            self.visit_tie(tie, &mut |vertices, _| visit(vertices));
         }
     }
 
@@ -39,6 +48,9 @@ impl Term for Touch {
             energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
         });
         self.each_friction(&state, positions, |_, friction| energy += friction.energy);
+        self.each_tie(&state, positions, |_, tie, force| {
+            energy += dot(force, force) / (2.0 * self.tie_penalty(tie));
+        });
         energy
     }
 
@@ -52,6 +64,10 @@ impl Term for Touch {
         self.each_friction(&state, positions, |sample, friction| {
             self.add_force(friction.force, sample, friction.anchor, forces);
         });
+        self.each_tie(&state, positions, |_, tie, force| {
+            tie.first.add_force(1.0, force, forces);
+            tie.second.add_force(-1.0, force, forces);
+        });
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
@@ -60,19 +76,41 @@ impl Term for Touch {
 
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
         let state = self.read();
-        self.each_contact(&state, positions, |meeting, pressure, _, points| {
-            let sample = meeting.sample as usize;
-            let believed = SPURIOUS * self.description.young * self.samples[sample].area;
-            let pressure = pressure.min(state.now[sample].normal + believed);
-            self.visit_gap(meeting, pressure, points, tangent, visit);
-        });
-        self.each_friction(&state, positions, |sample, friction| {
-            self.visit_friction(sample, &friction, visit);
-        });
+        let believed = |sample: usize, pressure: f64| {
+            let more = SPURIOUS * self.description.young * self.samples[sample].area;
+            match tangent {
+                Tangent::Exact if state.retraces => pressure,
+                Tangent::Exact => pressure.min(state.now[sample].normal + more),
+                Tangent::Stressless => 0.0,
+            }
+        };
+        self.visit_stiffness_under(&state, positions, believed, visit);
+    }
+
+    fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
+        Some(Box::new(PredictedPressures::new(self, positions, moves)))
     }
 }
 
 impl Touch {
+    /// The stiffness with normals that turn under the pressure (N) that `believed` makes of a sample and its pressure.
+    pub(super) fn visit_stiffness_under(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        believed: impl Fn(usize, f64) -> f64,
+        visit: Visitor<'_>,
+    ) {
+        self.each_contact(state, positions, |meeting, pressure, _, points| {
+            let pressure = believed(meeting.sample as usize, pressure);
+            self.visit_gap(meeting, pressure, points, visit);
+        });
+        self.each_friction(state, positions, |sample, friction| {
+            self.visit_friction(sample, &friction, visit);
+        });
+        self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
+    }
+
     /// Hands over a matrix on the sample and the corners of a triangle as one on the vertices that carry them.
     pub(super) fn visit_local(
         &self,
@@ -125,20 +163,19 @@ impl Touch {
         self.visit_local(sample, friction.anchor.0, block, visit);
     }
 
-    /// The stiffness of a pressed gap: `k n nᵀ` and, for the exact one, how the normal turns under the pressure.
+    /// The stiffness of a pressed gap: `k n nᵀ` and, under a pressure, how the normal turns.
     pub(super) fn visit_gap(
         &self,
         meeting: &Meeting,
         pressure: f64,
         points: &[Vec3],
-        tangent: Tangent,
         visit: Visitor<'_>,
     ) {
         let k = self.penalty(meeting.sample);
         let n = meeting.normal;
         let [b0, b1, b2] = meeting.weights;
         let factors = [1.0, -b0, -b1, -b2];
-        let turning = meeting.inside && tangent == Tangent::Exact;
+        let turning = meeting.inside && pressure > 0.0;
         let gradients = if turning {
             barycentric_gradients(self.corners(meeting.triangle, points))
         } else {

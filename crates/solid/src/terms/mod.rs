@@ -53,6 +53,12 @@ pub trait Term: Debug + Send + Sync {
         false
     }
 
+    /// Whether it acts on single vertices or between surfaces that are near each other, so that multigrid on the voxels
+    /// converges with it.
+    fn is_local(&self) -> bool {
+        false
+    }
+
     /// Hands over the vertices of every element: its stiffness joins no others.
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32]));
 

@@ -8,6 +8,7 @@
 //! doi 10.1145/1531326.1531358).
 
 use voxsoft_solid::Body;
+use voxsoft_solid::vector::{Vec3, dot, sub};
 
 /// A cube of a level: its place on the lattice of that level and its nodes; corner `c` lies at
 /// `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
@@ -30,23 +31,63 @@ impl Interpolation {
     }
 }
 
-/// The voxels of a body as cells; `None` where they are not of one size on one lattice.
+/// The voxels of a body as cells; `None` where those that hang together are not of one size on one lattice.
+///
+/// Components that share no vertex have lattices of their own, of any size and direction: they share no node on any
+/// level either.
 pub(crate) fn cells_of(body: &Body) -> Option<Vec<Cell>> {
-    let rest = body.rest();
-    let first = body.voxels().first()?;
-    let low = rest[first[0] as usize];
-    let side = rest[first[7] as usize][0] - low[0];
-    let place = |x: f64, axis: usize| (x - low[axis]) / side;
-    let cell = |nodes: &[u32; 8]| {
-        let (near, far) = (rest[nodes[0] as usize], rest[nodes[7] as usize]);
-        let at: [i32; 3] = std::array::from_fn(|axis| place(near[axis], axis).round() as i32);
-        let fits = (0..3).all(|axis| {
-            (place(near[axis], axis) - f64::from(at[axis])).abs() < 1e-3
-                && ((far[axis] - near[axis]) / side - 1.0).abs() < 1e-3
-        });
-        fits.then_some(Cell { at, nodes: *nodes })
+    let voxels = body.voxels();
+    let mut components = Classes::new(body.rest().len());
+    for nodes in voxels {
+        nodes
+            .iter()
+            .for_each(|node| components.join(nodes[0] as usize, *node as usize));
+    }
+    let mut lattices: Vec<Option<Lattice>> = vec![None; body.rest().len()];
+    let mut cell = |nodes: &[u32; 8]| {
+        let corners = nodes.map(|node| body.rest()[node as usize]);
+        let own = &mut lattices[components.find(nodes[0] as usize)];
+        let at = own
+            .get_or_insert_with(|| Lattice::of(&corners))
+            .place(&corners)?;
+        Some(Cell { at, nodes: *nodes })
     };
-    body.voxels().iter().map(cell).collect()
+    voxels.iter().map(&mut cell).collect()
+}
+
+/// Where the voxels of a component may be.
+#[derive(Debug, Clone)]
+struct Lattice {
+    /// A corner of a voxel, m.
+    origin: Vec3,
+    /// The edges of that voxel, m.
+    edges: [Vec3; 3],
+}
+
+impl Lattice {
+    /// The one of a voxel with these corners.
+    fn of(corners: &[Vec3; 8]) -> Self {
+        let edge = |axis: usize| sub(corners[4 >> axis], corners[0]);
+        Self {
+            origin: corners[0],
+            edges: [edge(0), edge(1), edge(2)],
+        }
+    }
+
+    /// The place of a voxel; `None` where it does not fit.
+    fn place(&self, corners: &[Vec3; 8]) -> Option<[i32; 3]> {
+        let along = |axis: usize, x: Vec3| {
+            dot(x, self.edges[axis]) / dot(self.edges[axis], self.edges[axis])
+        };
+        let from_origin = |axis| along(axis, sub(corners[0], self.origin));
+        let at: [i32; 3] = std::array::from_fn(|axis| from_origin(axis).round() as i32);
+        let across = sub(corners[7], corners[0]);
+        let fits = (0..3).all(|axis| {
+            (from_origin(axis) - f64::from(at[axis])).abs() < 1e-3
+                && (along(axis, across) - 1.0).abs() < 1e-3
+        });
+        fits.then_some(at)
+    }
 }
 
 /// The cells of the next level, the number of its nodes, and how they interpolate `nodes` nodes.

@@ -107,7 +107,7 @@ impl Transient {
             contact.start(&start.positions);
         }
         let means = Means {
-            solver: LinearSolver::Direct,
+            solver: LinearSolver::Auto,
             memory: self.memory,
         };
         let equilibrium = match Equilibrium::new(&moving, means) {

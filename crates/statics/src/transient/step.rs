@@ -7,9 +7,7 @@ use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale, sub};
 
 use super::energy::Now;
 use super::{Run, Stop};
-use crate::equilibrium::{Failure, Way};
 use crate::implicit::scheme::Start;
-use crate::path::ROUNDS;
 use crate::point::Point;
 use crate::settings::Settings;
 
@@ -130,15 +128,8 @@ impl Run<'_> {
             tolerance: STEP_TOLERANCE,
             ..Settings::default()
         };
-        for round in 0..ROUNDS {
-            let way = Way::of_round(round, self.problem, true);
-            self.equilibrium
-                .newton(positions, point, &settings, way, observer)?;
-            let floor_changed = self.equilibrium.update_floor(positions, point)?;
-            if !floor_changed && self.equilibrium.is_contact_settled(positions) {
-                return Ok(());
-            }
-        }
-        Err(Stop::Failed(Failure::Lost))
+        self.equilibrium
+            .settle(positions, point, &settings, true, observer)?;
+        Ok(())
     }
 }

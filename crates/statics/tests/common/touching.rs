@@ -83,6 +83,7 @@ pub fn touching(
     let body = Body::new(mesh, &[rubber()]).unwrap();
     let young = YOUNG;
     let description = Description {
+        bonds: Vec::new(),
         surfaces,
         friction,
         voxel,

@@ -1,0 +1,273 @@
+//! Bonds: surfaces that are glued to each other, for good or until a traction.
+//!
+//! Points `s` all over the triangles of the first surface that lie on the second at rest, with the areas `A_s`, are tied to the
+//! places `y_s` of the second body where they are: these move with it. Vertices `v` share each point by `N_v(s)`, and there
+//! is one tie for each of them (a mortar form: Bernardi, Maday and Patera 1994; Puso and Laursen 2004, doi 10.1016/j.cma.2003.10.010):
+//!
+//! ```text
+//! c_v = Σ_s A_s N_v(s) (x_s − y_s) / W_v = 0,   W_v = Σ_s A_s N_v(s),
+//! ```
+//!
+//! so that a uniform traction passes between voxels of different sizes, and neither side is stiffened. With a multiplier
+//! `f` and a penalty `k` its force is `f − k c`, and `f` is brought up after each equilibrium as that of contact is. As
+//! `y_s` is where the point was, gaps and overlaps at rest are kept, and no moment is lost.
+//!
+//! A bond with a strength lets go where `√(t_n² + t_t²)` passes it, with the pull `t_n` along the normal, which
+//! a pressure does not count for, and the traction `t_t` along the surface; both as means over a tie and those beside it.
+//! What has let go touches.
+
+use std::collections::BTreeMap;
+
+use voxsoft_solid::ProblemError;
+use voxsoft_solid::assembly::Visitor;
+use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
+
+use super::gap::normal;
+use super::mortar::Meeting;
+use super::rigid::Frame;
+use super::state::State;
+use super::{Carried, PENALTY, Surface, Touch};
+
+/// How far a tie may be off at the end, in voxels: a hundredth of the clearance of contact.
+const OFF: f64 = 1e-6;
+/// The penalty of a tie over that of contact: it has no kinks, and what multipliers still have to learn shrinks by it.
+const STIFFER_THAN_CONTACT: f64 = 10.0;
+
+/// What moves with a body, also a little beside its surface.
+#[derive(Debug, Clone, Copy)]
+pub enum Solid<'a> {
+    /// A rigid object whose vertices are those from the given one on.
+    Rigid(&'a Frame, u32),
+    /// Voxels: corner `c` of each is at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
+    Voxels(&'a [[u32; 8]]),
+}
+
+/// One side of a bond.
+#[derive(Debug, Clone, Copy)]
+pub struct Side<'a> {
+    /// Its number among the surfaces.
+    pub number: u32,
+    /// The surface.
+    pub surface: &'a Surface,
+    /// For each point the vertices that stand for it, with positive weights; none where these are what carries it.
+    pub shares: &'a [Carried],
+    /// What is behind the surface.
+    pub solid: Solid<'a>,
+}
+
+/// Two surfaces that are bonded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bond {
+    /// The surfaces.
+    pub of: [u32; 2],
+    /// The traction at which it lets go, Pa; infinite for one that does not.
+    pub strength: f64,
+    /// What is tied.
+    pub(super) ties: Vec<Tie>,
+}
+
+/// The mean of places of the first surface, and that of the same places in the second body.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Tie {
+    /// On the first surface.
+    pub first: Carried,
+    /// In the second body.
+    pub second: Carried,
+    /// In the unloaded body, m².
+    pub area: f64,
+    /// The area for which it has a penalty, m².
+    pub stiff: f64,
+    /// A triangle of the second surface there, as it is numbered on it.
+    pub triangle: u32,
+    /// The points of the first surface in it, and those of the second one nearest to it.
+    pub points: [Vec<u32>; 2],
+    /// The ties of its bond that have points of it, itself included.
+    pub patch: Vec<u32>,
+}
+
+/// What a tie carries along a load path.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Hold {
+    /// Its multiplier, on the first surface, N.
+    pub force: Vec3,
+    /// Whether it has let go.
+    pub broken: bool,
+}
+
+impl Bond {
+    /// Bonds the parts of two surfaces that are within `reach` (m) of each other at `rest`.
+    ///
+    /// The first one should have the smaller voxels, and must not be rigid unless both are.
+    ///
+    /// # Errors
+    ///
+    /// They do not meet.
+    pub fn new(
+        first: Side<'_>,
+        second: Side<'_>,
+        reach: f64,
+        strength: f64,
+        rest: &[Vec3],
+    ) -> Result<Self, ProblemError> {
+        let ties = Meeting::new([first, second], reach, rest).ties(rest);
+        if ties.is_empty() {
+            let what = "the bonded area in m²";
+            return Err(ProblemError::NotPositive { what, value: 0.0 });
+        }
+        Ok(Self {
+            of: [first.number, second.number],
+            strength,
+            ties,
+        })
+    }
+}
+
+impl Tie {
+    /// How far it is off, m.
+    fn off(&self, positions: &[Vec3]) -> Vec3 {
+        sub(self.first.at(positions), self.second.at(positions))
+    }
+}
+
+impl Touch {
+    /// All ties with their bonds, as their holds are numbered.
+    pub(super) fn ties(&self) -> impl Iterator<Item = (&Bond, &Tie)> {
+        let bonds = self.description.bonds.iter();
+        bonds.flat_map(|bond| bond.ties.iter().map(move |tie| (bond, tie)))
+    }
+
+    /// Hands over every tie that holds, with its force on the first surface, N.
+    pub(super) fn each_tie(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(&Bond, &Tie, Vec3),
+    ) {
+        for ((bond, tie), hold) in self.ties().zip(&state.holds) {
+            if !hold.broken {
+                let force = self.tie_force(tie, hold, positions);
+                take(bond, tie, force);
+            }
+        }
+    }
+
+    fn tie_force(&self, tie: &Tie, hold: &Hold, positions: &[Vec3]) -> Vec3 {
+        let mut force = hold.force;
+        axpy(&mut force, -self.tie_penalty(tie), tie.off(positions));
+        force
+    }
+
+    /// N/m.
+    pub(super) fn tie_penalty(&self, tie: &Tie) -> f64 {
+        STIFFER_THAN_CONTACT * PENALTY * self.description.young / self.description.voxel * tie.stiff
+    }
+
+    /// The multipliers that ties have at an equilibrium, and how far off they are, as a part of what they may.
+    pub(super) fn corrected_ties(&self, state: &State, positions: &[Vec3]) -> (Vec<Hold>, f64) {
+        let mut largest = 0.0f64;
+        let pairs = self.ties().zip(&state.holds);
+        let corrected = pairs.map(|((_, tie), hold)| {
+            if hold.broken {
+                return *hold;
+            }
+            largest = largest.max(norm(tie.off(positions)) / (OFF * self.description.voxel));
+            Hold {
+                force: self.tie_force(tie, hold, positions),
+                ..*hold
+            }
+        });
+        (corrected.collect(), largest)
+    }
+
+    /// Lets go what is pulled harder than it holds; whether anything has.
+    pub(super) fn break_ties(&self, state: &mut State, positions: &[Vec3]) -> bool {
+        let mut loads = Vec::with_capacity(state.holds.len());
+        let mut first = 0;
+        for bond in &self.description.bonds {
+            let holds = &state.holds[first..first + bond.ties.len()];
+            first += bond.ties.len();
+            for (tie, hold) in bond.ties.iter().zip(holds) {
+                let load = if hold.broken || bond.strength.is_infinite() {
+                    0.0
+                } else {
+                    let traction = self.traction(bond, tie, holds, positions);
+                    self.pull(bond, tie, traction, positions) / bond.strength
+                };
+                loads.push(load);
+            }
+        }
+        let mut any = false;
+        for (hold, load) in state.holds.iter_mut().zip(loads) {
+            if load > 1.0 {
+                (hold.broken, any) = (true, true);
+            }
+        }
+        any
+    }
+
+    /// The traction on the first surface around a tie, Pa: multipliers of single ones, of which some have little area, go
+    /// up and down from one to the next.
+    fn traction(&self, bond: &Bond, tie: &Tie, holds: &[Hold], positions: &[Vec3]) -> Vec3 {
+        let (mut force, mut area) = ([0.0; 3], 0.0);
+        for &near in &tie.patch {
+            let (tie, hold) = (&bond.ties[near as usize], &holds[near as usize]);
+            if !hold.broken {
+                axpy(&mut force, 1.0, self.tie_force(tie, hold, positions));
+                area += tie.area;
+            }
+        }
+        scale(1.0 / area, force)
+    }
+
+    /// The size of a traction on the first surface without what of it presses, Pa.
+    fn pull(&self, bond: &Bond, tie: &Tie, traction: Vec3, positions: &[Vec3]) -> f64 {
+        let surface = &self.description.surfaces[bond.of[1] as usize];
+        let corners = surface.triangles[tie.triangle as usize];
+        let outward = normal(corners.map(|p| surface.points[p as usize].at(positions)));
+        let pressing = dot(traction, outward).max(0.0);
+        norm(sub(traction, scale(pressing, outward)))
+    }
+
+    /// For each sample the ties that it is in, with the surface that they are to.
+    pub(super) fn ties_at(&self, first_sample: &[u32], samples: usize) -> Vec<Vec<(u32, u32)>> {
+        let mut at = vec![Vec::new(); samples];
+        for (number, (bond, tie)) in self.ties().enumerate() {
+            for side in 0..2 {
+                let first = first_sample[bond.of[side] as usize];
+                for point in &tie.points[side] {
+                    at[(first + point) as usize].push((number as u32, bond.of[1 - side]));
+                }
+            }
+        }
+        at
+    }
+
+    /// Whether a sample is still bonded to a surface.
+    pub(super) fn is_bonded(&self, state: &State, sample: u32, surface: u32) -> bool {
+        let ties = self.ties_at[sample as usize].iter();
+        let holds = |(tie, to): &(u32, u32)| *to == surface && !state.holds[*tie as usize].broken;
+        ties.into_iter().any(holds)
+    }
+
+    /// The stiffness of a tie: its penalty between all vertices that carry it.
+    pub(super) fn visit_tie(&self, tie: &Tie, visit: Visitor<'_>) {
+        let mut parts: BTreeMap<u32, f64> = BTreeMap::new();
+        for (sign, side) in [(1.0, &tie.first), (-1.0, &tie.second)] {
+            for (vertex, weight) in side.vertices.iter().zip(&side.weights) {
+                *parts.entry(*vertex).or_default() += sign * weight;
+            }
+        }
+        let (vertices, weights): (Vec<u32>, Vec<f64>) = parts.into_iter().unzip();
+        let size = 3 * vertices.len();
+        let mut matrix = vec![0.0; size * size];
+        let k = self.tie_penalty(tie);
+        for (a, wa) in weights.iter().enumerate() {
+            for (b, wb) in weights.iter().enumerate() {
+                for i in 0..3 {
+                    matrix[(3 * a + i) * size + 3 * b + i] = k * wa * wb;
+                }
+            }
+        }
+        visit(&vertices, &matrix);
+    }
+}

@@ -1,0 +1,55 @@
+//! Pressures that Newton's method carries along by itself.
+//!
+//! A step that leads two surfaces into each other ends under pressures that nothing bears, and how normals turn under
+//! them would make the next tangent indefinite. With the pressure `p` of every sample as an unknown of its own,
+//! Newton's method on `f(x) + Σ p ∂g = 0` and `p = ⟨λ − k (g − δ)⟩` solves, as for strains ([`voxsoft_solid::mixed`]),
+//!
+//! `(K + Σ k ∂g ∂gᵀ + Σ p̂ ∂²g) δ = f + Σ ⟨λ − k (g − δ)⟩ ∂g`,
+//!
+//! with the sums on the right over what is pressed at `x`, and `p̂` what the last step led to: the pressure at its start
+//! less `k ∂g·δ` where a sample was pressed, none elsewhere (a semi-smooth Newton method; Hintermüller, Ito and Kunisch 2002,
+//! doi 10.1137/S1052623401383558). The equilibrium is the same.
+
+use voxsoft_solid::Strain;
+use voxsoft_solid::Term;
+use voxsoft_solid::assembly::Visitor;
+use voxsoft_solid::vector::{Vec3, axpy, dot};
+
+use super::Touch;
+
+/// The pressure of every sample in N, to first order, where a step ends.
+pub(super) struct PredictedPressures<'a> {
+    touch: &'a Touch,
+    pressures: Vec<f64>,
+}
+
+impl<'a> PredictedPressures<'a> {
+    /// Those that a step `moves` (m) from `positions` leads to.
+    pub fn new(touch: &'a Touch, positions: &[Vec3], moves: &[Vec3]) -> Self {
+        let mut pressures = vec![0.0; touch.samples.len()];
+        let state = touch.read();
+        touch.each_contact(&state, positions, |meeting, pressure, _, _| {
+            let mut relative = [0.0; 3];
+            let parts = touch.relative(meeting.sample, meeting.triangle, meeting.weights);
+            for (factor, point) in parts {
+                axpy(&mut relative, factor, point.at(moves));
+            }
+            let closing = touch.penalty(meeting.sample) * dot(meeting.normal, relative);
+            pressures[meeting.sample as usize] = (pressure - closing).max(0.0);
+        });
+        Self { touch, pressures }
+    }
+}
+
+impl Strain for PredictedPressures<'_> {
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        self.touch.add_forces(positions, forces);
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        let state = self.touch.read();
+        let predicted = |sample: usize, _| self.pressures[sample];
+        self.touch
+            .visit_stiffness_under(&state, positions, predicted, visit);
+    }
+}

@@ -1,0 +1,287 @@
+//! Contact that goes over its path again.
+
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, norm, sub};
+use voxsoft_solid::{Contact, Moment, RecordedContact};
+
+use super::gap::normal;
+use super::state::{Facing, Memory, State};
+use super::{CREEP, Touch};
+
+/// How far the normal at an edge may be from that of the triangle there and still turn with it: the cosine of 0.08 degrees.
+/// What touches lies so near that the normal to the closest point is rounded to 10⁻⁵.
+const FLUSH: f64 = 1.0 - 1e-6;
+
+/// What all samples held at an equilibrium, before it corrected them.
+#[derive(Debug, Clone)]
+pub struct Held {
+    now: Vec<Memory>,
+    facing: Vec<Option<Facing>>,
+    stick: f64,
+    extrapolated: Option<f64>,
+    precise: bool,
+}
+
+/// A path as far as it was recorded.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Recording {
+    accepted: Vec<Moment<Held>>,
+    /// Since the last accepted state.
+    pending: Vec<Moment<Held>>,
+}
+
+impl State {
+    /// Records an equilibrium before its correction, if the path is recorded.
+    pub fn keep_moment(&mut self, positions: &[Vec3]) {
+        let extrapolated = self.extrapolated.take();
+        if let Some(recording) = &mut self.recording {
+            recording.pending.push(Moment {
+                positions: positions.to_vec(),
+                settled: false,
+                memory: Held {
+                    now: self.now.clone(),
+                    facing: self.facing.clone(),
+                    stick: self.stick,
+                    extrapolated,
+                    precise: true,
+                },
+            });
+        }
+    }
+
+    /// Contact has settled at the last equilibrium, and whether as precisely as was asked for.
+    pub fn settle_moment(&mut self, precise: bool) {
+        let pending = self
+            .recording
+            .as_mut()
+            .map(|recording| &mut recording.pending);
+        if let Some(last) = pending.and_then(|pending| pending.last_mut()) {
+            last.settled = true;
+            last.memory.precise = precise;
+        }
+    }
+
+    /// Takes what was recorded since the last accepted state as a step of the path.
+    pub fn keep_step(&mut self) {
+        if let Some(recording) = &mut self.recording {
+            recording.accepted.append(&mut recording.pending);
+        }
+    }
+
+    /// Forgets what was recorded since the last accepted state.
+    pub fn drop_step(&mut self) {
+        if let Some(recording) = &mut self.recording {
+            recording.pending.clear();
+        }
+    }
+}
+
+impl RecordedContact for Touch {
+    type Memory = Held;
+
+    fn record(&self) {
+        self.write().recording = Some(Recording::default());
+    }
+
+    fn take_recorded(&self) -> Vec<Moment<Held>> {
+        let recording = self.write().recording.take();
+        let mut moments = recording.map_or_else(Vec::new, |recording| recording.accepted);
+        for moment in &mut moments {
+            self.turn_with_planes(moment);
+        }
+        moments
+    }
+
+    fn recall(&self, moment: &Moment<Held>) -> bool {
+        self.face_as(moment);
+        let mut state = self.write();
+        state.now.clone_from(&moment.memory.now);
+        state.retraces = true;
+        let pairs = self.pairs_of_stiffness(&state, &moment.positions);
+        let before = state.pattern.len();
+        state.pattern.extend(pairs);
+        state.pattern.len() > before
+    }
+
+    fn face_as(&self, moment: &Moment<Held>) {
+        let mut state = self.write();
+        state.facing.clone_from(&moment.memory.facing);
+        state.stick = moment.memory.stick;
+    }
+
+    fn follow_on(
+        group: &[&Self],
+        positions: &[Vec<Vec3>],
+        moment: &Moment<Held>,
+        next: Option<&Moment<Held>>,
+    ) {
+        let since = |memory: &Memory| memory.since;
+        let given: Vec<f64> =
+            next.map_or_else(Vec::new, |next| next.memory.now.iter().map(since).collect());
+        for (touch, positions) in group.iter().zip(positions) {
+            touch.write().given_since.clone_from(&given);
+            touch.follow_to(positions, moment.settled);
+            if moment.settled
+                && let Some(ratio) = next.and_then(|next| next.memory.extrapolated)
+            {
+                touch.extrapolate(ratio);
+            }
+        }
+        let Some(next) = next else { return };
+        let mut states: Vec<_> = group.iter().map(|touch| touch.write()).collect();
+        for (sample, own) in next.memory.now.iter().enumerate() {
+            let mut of_sample: Vec<&mut Memory> = states
+                .iter_mut()
+                .map(|state| &mut state.now[sample])
+                .collect();
+            bring_around(&mut of_sample, own);
+        }
+    }
+}
+
+/// Moves what contacts of values around one hold so that its mean is what that one itself holds: only their differences
+/// are followed, and nothing drifts.
+fn bring_around(around: &mut [&mut Memory], own: &Memory) {
+    let part = 1.0 / around.len() as f64;
+    let mut mean = Memory::default();
+    let mut weights = [0.0; 3];
+    let anchored = own.anchor.filter(|own| {
+        let same = |memory: &&mut Memory| memory.anchor.is_some_and(|anchor| anchor.0 == own.0);
+        around.iter().all(same)
+    });
+    for memory in around.iter() {
+        mean.normal += part * memory.normal;
+        mean.bound += part * memory.bound;
+        axpy(&mut mean.friction, part, memory.friction);
+        axpy(&mut mean.plane, part, memory.plane);
+        axpy(
+            &mut weights,
+            part,
+            memory.anchor.map_or([0.0; 3], |anchor| anchor.1),
+        );
+    }
+    for memory in around {
+        memory.normal += own.normal - mean.normal;
+        memory.bound += own.bound - mean.bound;
+        memory.friction = add(memory.friction, sub(own.friction, mean.friction));
+        memory.plane = add(memory.plane, sub(own.plane, mean.plane));
+        memory.anchor = match (anchored, memory.anchor) {
+            (Some(own), Some((triangle, now))) => Some((triangle, add(now, sub(own.1, weights)))),
+            _ => own.anchor,
+        };
+    }
+}
+
+impl Touch {
+    /// Corrects what samples hold, or where contact has `settled` accepts the state.
+    fn follow_to(&self, positions: &[Vec3], settled: bool) {
+        let points = self.points_at(positions);
+        let mut state = self.write();
+        if !settled {
+            state.now = self.corrected(&state, positions);
+            return;
+        }
+        let moved = self.carried_on(&state, positions);
+        state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
+        state.accepted_points = points;
+        state.before = std::mem::replace(&mut state.accepted, moved.clone());
+        state.now = moved;
+    }
+
+    /// Whether another contact has the same surfaces, wherever they are.
+    pub fn has_surfaces_of(&self, other: &Self) -> bool {
+        let sizes = |touch: &Self| {
+            let surfaces = touch.description.surfaces.iter();
+            surfaces.map(|s| s.points.len()).collect::<Vec<_>>()
+        };
+        self.triangles == other.triangles && sizes(self) == sizes(other)
+    }
+
+    /// Whether contact has settled as precisely as was asked for in all recorded steps.
+    pub fn recorded_precisely(&self) -> bool {
+        let state = self.read();
+        let mut moments = state
+            .recording
+            .iter()
+            .flat_map(|recording| &recording.accepted);
+        moments.all(|moment| moment.memory.precise)
+    }
+
+    /// The largest part of the pressure between surfaces with friction under which something has slipped, of the recorded
+    /// steps: by more than what sticks may creep.
+    pub fn recorded_slip(&self) -> f64 {
+        let state = self.read();
+        let moments = state
+            .recording
+            .iter()
+            .flat_map(|recording| &recording.accepted);
+        let steps = moments.filter(|moment| moment.settled);
+        steps.map(|moment| self.slip_at(moment)).fold(0.0, f64::max)
+    }
+
+    /// The largest part of the pressure between surfaces with friction on what was not yet in contact after the first of the
+    /// recorded steps.
+    pub fn recorded_touching_later(&self) -> f64 {
+        let state = self.read();
+        let moments = state
+            .recording
+            .iter()
+            .flat_map(|recording| &recording.accepted);
+        let mut steps = moments.filter(|moment| moment.settled);
+        let Some(first) = steps.next() else {
+            return 0.0;
+        };
+        let later = |moment: &Moment<Held>| {
+            let (mut pressed, mut late) = (0.0, 0.0);
+            for (then, now) in first.memory.now.iter().zip(&moment.memory.now) {
+                if now.bound > 0.0 {
+                    pressed += now.normal;
+                    late += if then.bound > 0.0 { 0.0 } else { now.normal };
+                }
+            }
+            if pressed > 0.0 { late / pressed } else { 0.0 }
+        };
+        steps.map(later).fold(0.0, f64::max)
+    }
+
+    fn slip_at(&self, moment: &Moment<Held>) -> f64 {
+        let state = State {
+            now: moment.memory.now.clone(),
+            stick: moment.memory.stick,
+            ..State::default()
+        };
+        let points = self.points_at(&moment.positions);
+        let (mut pressed, mut slipping) = (0.0, 0.0);
+        self.each_friction(&state, &moment.positions, |sample, friction| {
+            let (triangle, weights) = friction.anchor;
+            let memory = &state.now[sample as usize];
+            let mut slip = self.samples[sample as usize].point.at(&moment.positions);
+            for (weight, corner) in weights.iter().zip(self.corners(triangle, &points)) {
+                axpy(&mut slip, -weight, corner);
+            }
+            let away = dot(slip, memory.plane);
+            axpy(&mut slip, -away, memory.plane);
+            pressed += memory.normal;
+            if friction.slips && norm(slip) > CREEP * self.description.voxel {
+                slipping += memory.normal;
+            }
+        });
+        if pressed > 0.0 {
+            slipping / pressed
+        } else {
+            0.0
+        }
+    }
+
+    /// Lets samples that face an edge within a flat surface face the plane of its triangle, whose normal turns as the
+    /// triangle does: along a path such a normal is found anew with each correction.
+    fn turn_with_planes(&self, moment: &mut Moment<Held>) {
+        let points = self.points_at(&moment.positions);
+        for facing in moment.memory.facing.iter_mut().flatten() {
+            if let Facing::Edge(triangle, _, outward) = *facing
+                && dot(normal(self.corners(triangle, &points)), outward) > FLUSH
+            {
+                *facing = Facing::Plane(triangle);
+            }
+        }
+    }
+}

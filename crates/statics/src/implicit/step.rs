@@ -1,0 +1,141 @@
+//! One step: its end is found, and taken if it is sound.
+
+use voxsoft_solid::vector::{Vec3, scale, sub};
+use voxsoft_solid::{Ask, Breakdown, Damping, State};
+
+use super::objective::{Goal, Value};
+use super::scheme::Start;
+use super::{ANCHOR_SPEED, Failure, Implicit, MAX_BACK_OFFS, PATIENCE};
+
+impl Implicit {
+    /// Takes one step, in halves of halves where a whole one fails.
+    pub(super) fn take_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
+        loop {
+            self.steps += 1;
+            match self.try_step(go_on) {
+                Ok(()) => {
+                    self.good += 1;
+                    if self.good >= PATIENCE && self.step < self.settings.step {
+                        self.step = (2.0 * self.step).min(self.settings.step);
+                        self.good = 0;
+                    }
+                    return Ok(());
+                }
+                Err(Failure::Cancelled) => return Err(Failure::Cancelled),
+                Err(Failure::Lost) => {
+                    self.back_offs += 1;
+                    self.good = 0;
+                    self.step /= 2.0;
+                    self.before = None;
+                    if self.step < least {
+                        return Err(Failure::Lost);
+                    }
+                }
+            }
+        }
+    }
+
+    /// By the second-order formula, but for what touches.
+    fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let second_order = self.before.is_some() && !self.touching;
+        let mut found = self.find(second_order, go_on);
+        if second_order && matches!(&found, Ok((next, _)) if self.touches(&next.positions)) {
+            self.go_back();
+            found = self.find(false, go_on);
+        }
+        let (next, value) = found.inspect_err(|_| self.go_back())?;
+        self.accept(next, value)
+    }
+
+    /// The end of a step that starts from the state, by the second-order formula or by backward Euler.
+    fn find(
+        &mut self,
+        second_order: bool,
+        go_on: &mut dyn FnMut(Ask) -> bool,
+    ) -> Result<(State, Value), Failure> {
+        let step = self.step;
+        let before = self.before.as_ref().filter(|_| second_order);
+        let start = Start::new(&self.state, before, step);
+        let braked = start.rate + self.damping_rate;
+        let inertia = start.rate * braked;
+        let free: Vec<Vec3> = start
+            .positions
+            .iter()
+            .zip(&start.velocities)
+            .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / braked))
+            .collect();
+        let time = self.state.time + step;
+        let mut hands = self.hands.clone();
+        let grabs = hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        let dead = (!self.problem.is_conservative()).then(|| {
+            let mut forces = vec![[0.0; 3]; free.len()];
+            self.problem
+                .add_loads(&self.state.positions, time, &mut forces);
+            forces
+        });
+        let mut within = self.pressures.start(self.problem.body());
+        if let Some(viscosity) = &mut self.viscosity {
+            let from = &self.state.positions;
+            viscosity.start(self.problem.body(), from, step, &mut within);
+        }
+        let goal = Goal {
+            time,
+            inertia,
+            free: &free,
+            grabs: &grabs,
+            dead: dead.as_deref(),
+            within: &within,
+        };
+        let (mut positions, value) = self.minimize(goal, go_on)?;
+        self.keep_momentum(inertia, &mut positions, &value);
+        let velocities = positions.iter().zip(&start.positions);
+        let velocities = velocities.map(|(x, from)| scale(start.rate, sub(*x, *from)));
+        let next = State {
+            velocities: velocities.collect(),
+            positions,
+            time,
+        };
+        Ok((next, value))
+    }
+
+    /// Goes on from the end of a step, if it is sound.
+    fn accept(&mut self, next: State, value: Value) -> Result<(), Failure> {
+        let step = next.time - self.state.time;
+        if let Some(place) =
+            Breakdown::find(&self.problem, &next.positions, self.travel_limit, next.time)
+        {
+            self.breakdown = Some(place);
+            self.go_back();
+            return Err(Failure::Lost);
+        }
+        let touching = self.touches(&next.positions);
+        let taken = self
+            .problem
+            .contact()
+            .is_none_or(|contact| contact.take_step(&next.positions));
+        if !taken {
+            self.go_back();
+            return Err(Failure::Lost);
+        }
+        self.touching = touching;
+        self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        if let Some(viscosity) = &mut self.viscosity {
+            viscosity.end(self.problem.body(), &next.positions, step);
+        }
+        self.pressures.take(&value.pressures);
+        if self.settings.damping == Damping::Critical {
+            self.damping_rate = 2.0 * self.frequency(&next, &value);
+        }
+        self.before = Some(std::mem::replace(&mut self.state, next));
+        self.value = value;
+        Ok(())
+    }
+
+    /// Forgets what contact has learned since the state.
+    fn go_back(&self) {
+        if let Some(contact) = self.problem.contact() {
+            contact.go_back();
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Derivatives along a load path, where the answer depends on the way to it.
+//!
+//! Contact with friction remembers: multipliers, bounds and anchors `M` at each equilibrium come from the one before. With
+//! the equilibria `r_j(x_j, M_j, p) = 0` of a path and what a correction makes of them, `M_{j+1} = C(x_j, M_j, p)`,
+//!
+//! ```text
+//! K_j dx_j/dp = ∂r_j/∂p + ∂r_j/∂M dM_j/dp ,   dM_{j+1}/dp = ∂C/∂p + ∂C/∂x dx_j/dp + ∂C/∂M dM_j/dp ,   K_j = −∂r_j/∂x .
+//! ```
+//!
+//! Each tangent is factorized once for all parameters. All else takes no solution and is differenced: for each parameter
+//! some problems follow the path with a value of it that is a little off. They hold their own `M`, and their vertices are
+//! where the derivative puts them, so that the differences of their forces, over those of their values, are the right-hand
+//! side above. That is the derivative of what the path computes, with multipliers as good as its corrections have made them.
+
+use voxsoft_solid::vector::{Vec3, axpy, norm, sub};
+use voxsoft_solid::{Moment, Problem, RecordedContact, elastic};
+
+use crate::adjoint::AdjointError;
+use crate::equilibrium::Equilibrium;
+use crate::point::Point;
+use crate::settings::LinearSolver;
+use crate::system::{Means, System};
+
+/// What an iterative solution leaves of a derivative, in energy.
+const TOLERANCE: f64 = 1e-8;
+
+/// Corrections of derivatives at the end of a step, with the factor that is there: as many as bring them to so small a part
+/// of their size, but no more than so many; beyond such a change they do not converge.
+const SETTLED: f64 = 1e-7;
+const ROUNDS: u32 = 30;
+const LARGEST_CHANGE: f64 = 1e-5;
+
+/// A problem with a value of a parameter that is a little off.
+#[derive(Debug, Clone, Copy)]
+pub struct Varied<'a, C> {
+    /// The problem.
+    pub problem: &'a Problem,
+    /// Its contact.
+    pub contact: &'a C,
+    /// By how much the value is off.
+    pub offset: f64,
+    /// The weight of a number at this value in its derivative.
+    pub weight: f64,
+}
+
+/// Where the vertices of varied problems are at the end of a path, to the first order, for each parameter and each of its
+/// varied problems. Their contact is then in the state that belongs to it.
+///
+/// `moments` are those of a path of load control that [`RecordedContact`] recorded, and `factors` the load factors of its steps.
+/// The tangent may take `memory` bytes; `stop` is asked between the steps of the work.
+pub fn sensitivities<C: RecordedContact>(
+    problem: &Problem,
+    contact: &C,
+    moments: &[Moment<C::Memory>],
+    factors: &[f64],
+    parameters: &[Vec<Varied<'_, C>>],
+    memory: u64,
+    stop: &mut dyn FnMut() -> bool,
+) -> Result<Vec<Vec<Vec<Vec3>>>, AdjointError> {
+    let means = Means {
+        solver: LinearSolver::Auto,
+        memory,
+    };
+    for varied in parameters.iter().flatten() {
+        varied.contact.start(varied.problem.body().rest());
+    }
+    let mut equilibrium = Equilibrium::new(problem, means)?;
+    let mut ends = Vec::new();
+    let mut steps = factors.iter();
+    let mut point = Point::all(0.0);
+    let mut begins = true;
+    for (number, moment) in moments.iter().enumerate() {
+        if std::mem::replace(&mut begins, moment.settled) {
+            point = Point::all(*steps.next().unwrap_or(&1.0));
+        }
+        if contact.recall(moment) {
+            equilibrium.system = System::new(problem, &equilibrium.held, means)?;
+        }
+        let system = &mut equilibrium.system;
+        let mut unused = vec![0.0; system.size()];
+        system.assemble(
+            problem,
+            &moment.positions,
+            &point.factor_of(),
+            None,
+            None,
+            &mut unused,
+        );
+        if stop() {
+            return Err(AdjointError::Cancelled);
+        }
+        let factor = system.factor(0.0)?;
+        ends.clear();
+        let again = Moment {
+            settled: false,
+            ..moment.clone()
+        };
+        for parameter in parameters {
+            let group: Vec<&C> = parameter.iter().map(|varied| varied.contact).collect();
+            let mut before: Vec<Vec3> = Vec::new();
+            let mut round = 0;
+            let places = loop {
+                let mut side = vec![0.0; system.size()];
+                let mut places = Vec::with_capacity(parameter.len());
+                let mut carried = 0.0f64;
+                for varied in parameter {
+                    varied.contact.face_as(moment);
+                    let mut positions = moment.positions.clone();
+                    varied
+                        .problem
+                        .place_clamps(point.time, point.dead, &mut positions);
+                    let forces = system.gather(&net_forces(varied.problem, &positions, point));
+                    for (side, force) in side.iter_mut().zip(forces) {
+                        *side += varied.weight * force;
+                    }
+                    let moves = positions.iter().zip(&moment.positions);
+                    let farthest = moves.map(|(x, own)| norm(sub(*x, *own)));
+                    carried = carried.max(farthest.fold(0.0, f64::max) / varied.offset.abs());
+                    places.push(positions);
+                }
+                system.solve(&factor, &mut side, false, TOLERANCE, stop)?;
+                if !side.iter().all(|x| x.is_finite()) {
+                    return Err(AdjointError::Singular);
+                }
+                let slopes = system.spread(&side);
+                for (varied, positions) in parameter.iter().zip(&mut places) {
+                    for (x, slope) in positions.iter_mut().zip(&slopes) {
+                        axpy(x, varied.offset, *slope);
+                    }
+                }
+                let change = change(&before, &slopes, carried);
+                if !moment.settled || change <= SETTLED {
+                    break places;
+                }
+                if round == ROUNDS {
+                    if change > LARGEST_CHANGE {
+                        return Err(AdjointError::Unsettled);
+                    }
+                    break places;
+                }
+                C::follow_on(&group, &places, &again, Some(&again));
+                before = slopes;
+                round += 1;
+            };
+            C::follow_on(&group, &places, moment, moments.get(number + 1));
+            ends.push(places);
+        }
+    }
+    Ok(ends)
+}
+
+/// The largest change of slopes, as a part of the largest one or of how far clamps and objects are `carried`, beside which
+/// the slopes of the body may be nothing but rounding; infinite where there were none.
+fn change(before: &[Vec3], now: &[Vec3], carried: f64) -> f64 {
+    let largest = |all: &[f64]| all.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    if before.is_empty() {
+        return f64::INFINITY;
+    }
+    let (before, now) = (before.as_flattened(), now.as_flattened());
+    let moved: Vec<f64> = before.iter().zip(now).map(|(a, b)| a - b).collect();
+    let size = largest(now).max(carried);
+    if size > 0.0 {
+        largest(&moved) / size
+    } else {
+        0.0
+    }
+}
+
+fn net_forces(problem: &Problem, positions: &[Vec3], point: Point) -> Vec<Vec3> {
+    let mut net = vec![[0.0; 3]; positions.len()];
+    problem.add_scaled_loads(positions, &point.factor_of(), &mut net);
+    elastic::add_forces(problem.body(), positions, &mut net);
+    net
+}

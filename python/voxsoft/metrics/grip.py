@@ -1,0 +1,64 @@
+"""How an object is gripped: how hard, with what margin, and what it takes to block a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import DesignError
+from voxsoft.metrics.contact import object_of_target
+from voxsoft.metrics.definition import Metric, State, Target, Touch
+from voxsoft.metrics.vectors import component
+
+#: Where nothing pulls the margin has no bound, and numbers of files are finite.
+_LARGEST_MARGIN: Final = 1e9
+
+
+def _contacts(metric: Metric, state: State, target: Target) -> tuple[str, Sequence[Touch]]:
+    """The object that a target names, and all contacts with it."""
+    name = object_of_target(metric, target, state.design)
+    if all(each.name != name for each in state.design.objects):
+        what = f'"{name}" is no object, and {metric.name} asks how something is held'
+        raise DesignError("object", what, "name one of [[objects]]")
+    return name, [each for each in state.contacts if name in each.of]
+
+
+def _on(name: str, contact: Touch, force: tuple[float, float, float]) -> NDArray[np.float64]:
+    """A force of a contact, on an object; contacts have it on their first."""
+    return np.asarray(force) if contact.of[0] == name else -np.asarray(force)
+
+
+def _grip(state: State, target: Target) -> float:
+    _, contacts = _contacts(GRIP_FORCE, state, target)
+    return sum(each.pressure for each in contacts)
+
+
+def _margin(state: State, target: Target) -> float:
+    name, contacts = _contacts(HOLD_MARGIN, state, target)
+    bound = sum(each.bound for each in contacts)
+    if bound == 0.0:  # apart, or without friction: nothing is held
+        return 0.0
+    friction = sum((_on(name, each, each.friction) for each in contacts), np.zeros(3))
+    carried = float(np.linalg.norm(friction))
+    return bound / max(carried, bound / _LARGEST_MARGIN)
+
+
+def _blocked(state: State, target: Target) -> float:
+    name, contacts = _contacts(BLOCKED_FORCE, state, target)
+    (blocked,) = (each for each in state.design.objects if each.name == name)
+    if blocked.is_free:
+        what = f'"{name}" moves freely, and blocked_force asks what it takes to hold it'
+        raise DesignError("object", what, 'fix it by motion = "fixed", or ask for grip_force')
+    pushed = sum((_on(name, each, each.force) for each in contacts), np.zeros(3))
+    return component(pushed, target)
+
+
+# Without slopes: gradients know no contact.
+GRIP_FORCE: Final = Metric("grip_force", "force", _grip, None, frozenset({"object"}))
+HOLD_MARGIN: Final = Metric("hold_margin", "number", _margin, None, frozenset({"object"}))
+BLOCKED_FORCE: Final = Metric(
+    "blocked_force", "force", _blocked, None, frozenset({"object"}), frozenset({"axis"})
+)

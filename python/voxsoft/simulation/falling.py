@@ -1,0 +1,103 @@
+"""What nothing holds: free objects and loose bodies that fall, fly or slide away."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.simulation.setup import Setup
+
+#: What went this many sizes of the body is gone.
+_FAR: Final = 5.0
+
+
+@dataclass(frozen=True)
+class Loose:
+    """Something that no clamp holds.
+
+    Attributes
+    ----------
+    name
+        In words.
+    position
+        Of its middle, now [m], (3,).
+    moved
+        How far that is from where it was [m].
+    """
+
+    name: str
+    position: NDArray[np.float64]
+    moved: float
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        x, y, z = 1e3 * self.position
+        return f"({x:.1f}, {y:.1f}, {z:.1f}) mm"
+
+
+def farthest_loose(setup: Setup, answer: _core.Answer) -> Loose | None:
+    """What has gone farthest of all that no clamp holds.
+
+    Parameters
+    ----------
+    setup
+        What was solved.
+    answer
+        What the core found.
+    """
+    assert setup.touching is not None
+    found: list[Loose] = []
+    poses = setup.touching.poses(answer.objects)
+    for each, surface in zip(setup.design.objects, setup.touching.surfaces, strict=True):
+        if each.is_free:
+            position = np.array(poses[each.name].position)
+            moved = float(np.linalg.norm(position - surface.middle))
+            found.append(Loose(f'the object "{each.name}"', position, moved))
+    part = setup.loose_piece
+    if part is not None:
+        whole = len(part) == len(setup.mesh.vertices)
+        position = answer.positions[part].mean(axis=0)
+        moved = float(np.linalg.norm(position - setup.mesh.vertices[part].mean(axis=0)))
+        name = "the body" if whole else f"a component of {len(part)} vertices"
+        found.append(Loose(name, position, moved))
+    return max(found, key=lambda each: each.moved, default=None)
+
+
+def is_gone(setup: Setup, loose: Loose) -> bool:
+    """Whether something went so far that it does not come back."""
+    size = float(np.linalg.norm(np.ptp(setup.mesh.vertices, axis=0)))
+    return loose.moved > _FAR * size
+
+
+def falls(setup: Setup, answer: _core.Answer) -> str:
+    """Say that statics found no place where something stays, and what to try."""
+    loose = farthest_loose(setup, answer)
+    assert loose is not None  # statics ends so only where something is loose
+    if is_gone(setup, loose):
+        return (
+            f"{loose.name} falls or slides away: nothing holds it under the whole load, and it was "
+            f"last at {loose.place}, {1e3 * loose.moved:.3g} mm from where it began. Put something "
+            "under it, grip it harder or with more friction, or hold it"
+        )
+    return (
+        f"{loose.name} does not come to rest under the whole load: it was last at {loose.place}, "
+        f"{1e3 * loose.moved:.3g} mm from where it began, and moves on. What slides or rolls "
+        "without friction has no place to stay: give the contact friction, or write "
+        'method = "dynamics"'
+    )
+
+
+def flies(setup: Setup, answer: _core.Answer) -> str | None:
+    """Say which free object has left a run over time; None if none has."""
+    loose = farthest_loose(setup, answer)
+    if loose is None or not is_gone(setup, loose):
+        return None
+    return (
+        f"{loose.name} falls or flies away: it is {loose.moved:.3g} m from where it was, after "
+        f"{answer.time:.3g} s; hold it, put something under it, or end earlier"
+    )
