@@ -774,6 +774,8 @@ class Scene:
     """A problem with all it takes to play it: in this process, or in a page that opens its bytes.
 
     Each control is a value and the loads that it changes; each probe a name, vertices and weights.
+    Of a problem with contact, `surfaces` are the names of what touches, and `middles` those of the
+    boxes of the objects that are drawn, in m.
     """
 
     def __new__(
@@ -790,6 +792,8 @@ class Scene:
         damping: float | None = None,
         retardation: float = 0.0,
         tolerance: float = 1e-4,
+        surfaces: Sequence[str] = ...,
+        middles: Sequence[tuple[float, float, float]] = ...,
     ) -> Scene: ...
     def pack(self, notes: str = "", positions: NDArray[np.float64] | None = None) -> bytes:
         """The bytes that a page opens; it shows positions first where they are given."""
@@ -816,7 +820,12 @@ class Player:
         residual: float,
         elastic: float,
         time: float | None = None,
-    ) -> bytes: ...
+        poses: Sequence[
+            tuple[tuple[float, float, float], tuple[tuple[float, float, float], ...]]
+        ] = ...,
+    ) -> bytes:
+        """Take where a solver ended; objects stand in poses, each a middle in m and a rotation."""
+
     def take_motion(self, times: NDArray[np.float64], positions: NDArray[np.float64]) -> None:
         """Take a motion that a solver found, (f, n, 3) in m at f times in s, to go back to."""
 
@@ -834,6 +843,7 @@ class Player:
     @property
     def unloaded(self) -> bool: ...
     def stat(self) -> bytes: ...
+    def moment(self) -> bytes | None: ...
     def plot(self) -> bytes: ...
     def shown(self) -> bytes: ...
     def positions(self) -> NDArray[np.float64]: ...

@@ -211,7 +211,11 @@ export interface LoadCommand {
   factor?: number | null;
 }
 
-/** Pull a vertex of the surface toward a point by a spring; the same id moves the point. */
+/**
+ * Pull a vertex of the surface toward a point by a spring; the same id moves the point.
+ *
+ * A free object, by its place among those of the body, is held by its middle instead of a vertex.
+ */
 export interface GrabCommand {
   t: "grab";
   seq: number;
@@ -219,6 +223,7 @@ export interface GrabCommand {
   vertex: number;
   target: Triple;
   stiffness?: number;
+  object?: number | null;
 }
 
 /** Take the spring away. */
@@ -687,7 +692,8 @@ export interface BodyObject {
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
- * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text.
+ * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
+ * `touches` tells whether anything of the design may touch.
  */
 export interface BodyEvent {
   t: "body";
@@ -713,12 +719,17 @@ export interface BodyEvent {
   attachments: BodyAttachment[];
   objects: BodyObject[];
   not_live: string;
+  touches: boolean;
   seconds: number;
   memory: number;
   smooth: boolean;
 }
 
-/** A spring that pulls: force in N on the body, distance to its target in m. */
+/**
+ * A spring that pulls: force in N on the body, distance to its target in m.
+ *
+ * Where it holds an object, that is its place among those of the body, and `vertex` means nothing.
+ */
 export interface GrabState {
   id: number;
   vertex: number;
@@ -726,6 +737,7 @@ export interface GrabState {
   stiffness: number;
   force: Triple;
   stretch: number;
+  object: number | null;
 }
 
 /**
@@ -840,7 +852,8 @@ export interface Touch {
 /**
  * A frame of a solution: its time in s, the pose of each object of the body, what touches.
  *
- * `fields` tells whether the fields of contact are known of it.
+ * `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are
+ * in each other in m, where that is more than live contact should let them.
  */
 export interface Moment {
   frame: number;
@@ -848,6 +861,7 @@ export interface Moment {
   poses: ObjectPose[];
   contacts: Touch[];
   fields: boolean;
+  depth: number | null;
 }
 
 /** What is known of stored frames beside their pictures; replaces what was known before. */
@@ -855,6 +869,13 @@ export interface MomentsEvent {
   t: "moments";
   topology: number;
   moments: Moment[];
+}
+
+/** What touches in the newest frame of a body that moves; adds to what was known before. */
+export interface MomentNewsEvent {
+  t: "moment";
+  topology: number;
+  moment: Moment;
 }
 
 /**
@@ -1171,6 +1192,7 @@ export type AnyEvent =
   | EquilibriumEvent
   | OverlapEvent
   | MomentsEvent
+  | MomentNewsEvent
   | PlotEvent
   | PickedEvent
   | JobEvent

@@ -8,6 +8,7 @@ const moment = (frame: number, time: number): Moment => ({
   poses: [],
   contacts: [],
   fields: false,
+  depth: null,
 });
 const known = (...moments: Moment[]) => new Map(moments.map((one) => [one.frame, one]));
 

@@ -21,6 +21,7 @@ const BODY: BodyEvent = {
     attachments: [],
     objects: [],
     not_live: "",
+    touches: false,
     parts: [],
     seconds: 0,
     memory: 0,

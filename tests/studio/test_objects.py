@@ -1,4 +1,4 @@
-"""Rigid objects in the studio: shown at rest, found by Solve, never passed through live."""
+"""Rigid objects in the studio: shown at rest, found by Solve and live."""
 
 import base64
 import json
@@ -10,13 +10,13 @@ import pytest
 from own_loop import run
 
 import voxsoft as vs
-from voxsoft.design import Object, families
+from voxsoft.design import Contact, Object, families
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
 from voxsoft.simulation import simulate
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.posed import posed_surface
-from voxsoft.studio import commands
+from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS, contact_values
 from voxsoft.studio.objects import moments_of
@@ -94,8 +94,15 @@ def test_an_object_within_the_body_is_drawn_and_keeps_it_from_being_solved():
     assert "deep in the body" in str(body.refusal)
 
 
-def test_time_does_not_run_through_an_object(pressed):
-    playback = playing(load(pressed))
+def of_lattice(design):
+    """The same design of the lattice material, whose contact is not found live."""
+    material = vs.Lattice(edge="25 kPa", bulk="100 kPa")
+    parts = [part.model_copy(update={"material": material}) for part in design.parts]
+    return design.replace(parts=parts)
+
+
+def test_time_does_not_run_through_an_object_where_contact_is_not_found_live(pressed):
+    playback = playing(of_lattice(load(pressed)))
     grab = commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.0))
     for command in (commands.Play(seq=1), commands.Step(seq=1), grab):
         with pytest.raises(SimulationError, match="press Solve"):
@@ -105,12 +112,57 @@ def test_time_does_not_run_through_an_object(pressed):
 
 
 def test_what_was_pulled_or_played_stops_where_an_object_comes(pressed):
-    design = load(pressed)
+    design = of_lattice(load(pressed))
     playback = playing(design.replace(objects=(), contact=None))
     playback.do(commands.Grab(seq=1, id=1, vertex=0, target=(0.0, 0.0, 0.1)))
     playback.do(commands.Play(seq=1))
     assert not playback.begin(StudioBody.of(design, 2, 2))
     assert playback.stat().grabs == []
+
+
+def test_a_plate_presses_live_as_hard_as_statics_says(pressed):
+    # Live the plate comes in one step: friction, which depends on the way, would be another.
+    design = load(pressed).replace(contact=Contact())
+    playback = playing(design)
+    assert playback.body.event().not_live == ""
+    playback.do(commands.Play(seq=1))
+    moments = []
+    for _ in range(200):
+        told = playback.advance(1 / 60, 10.0)
+        moments += [event.moment for event in told if isinstance(event, events.MomentNews)]
+        if not playback.moving:
+            break
+    assert playback.state == "at-rest"
+    [touch] = moments[-1].contacts
+    assert touch.of == ("body", "plate")
+    solved = simulate(design).contacts[0]
+    # Rest is where the residual is 1e-4 of the forces; both clearances are 1e-4 voxels of 1 mm.
+    assert touch.force[2] == pytest.approx(solved.force[2], rel=5e-3)
+    assert moments[-1].depth is None
+    assert moments[-1].poses[0].position[2] == pytest.approx(13.0 * mm, abs=1e-6)
+    assert [moment.frame for moment in moments] == list(range(1, playback.frame + 1))
+    assert playback.player.positions().shape == playback.body.mesh.vertices.shape
+
+
+def test_a_free_object_is_pulled_and_one_that_is_held_is_not(pressed):
+    plate = load(pressed).objects[0].model_copy(update={"motion": "free", "mass": 0.02})
+    design = load(pressed).replace(objects=(plate,), solver=vs.Solver(method="dynamics"))
+    playback = playing(design)
+    hold = commands.Grab(seq=1, id=3, vertex=0, object=0, target=(6 * mm, 6 * mm, 30 * mm))
+    playback.do(hold)
+    playback.do(commands.Play(seq=1))
+    for _ in range(60):
+        playback.advance(1 / 60, 10.0)
+    [grab] = playback.stat().grabs
+    assert (grab.id, grab.object) == (3, 0)
+    assert playback.player.moment().moment.poses[0].position[2] > 25 * mm
+    playback.do(commands.Release(seq=1, id=3))
+    assert playback.stat().grabs == []
+    held = playing(load(pressed))
+    with pytest.raises(SimulationError, match="does not move freely"):
+        held.do(hold)
+    with pytest.raises(SimulationError, match="no object 7"):
+        held.do(commands.Grab(seq=1, id=1, vertex=0, object=7, target=(0.0, 0.0, 0.0)))
 
 
 def test_solve_finds_contact_and_reports_where_the_plate_went(make_studio, pressed):
@@ -125,8 +177,6 @@ def test_solve_finds_contact_and_reports_where_the_plate_went(make_studio, press
                 again = await other.until("moments")
             await page.send("reset")
             cleared = await page.until("moments")
-            await page.send("play")
-            refused = await page.until("error")
         [moment] = moments.moments
         [touch] = moment["contacts"]
         assert touch["of"] == ["body", "plate"]
@@ -136,7 +186,6 @@ def test_solve_finds_contact_and_reports_where_the_plate_went(make_studio, press
         assert moment["poses"][0]["position"][2] == pytest.approx(13.0 * mm, abs=1e-6)
         assert again.moments == moments.moments
         assert cleared.moments == []
-        assert "live motion" in refused.what
 
     run(scenario())
 

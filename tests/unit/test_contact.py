@@ -186,8 +186,9 @@ def test_what_knows_no_contact_says_so(result):
         result_at(Setup.of(pressed()), result.positions)
     with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):
         vs.Simulator(pressed())
-    with pytest.raises(DesignError, match="objects: is not known to exported pages yet"):
-        page_of_body(StudioBody.of(pressed(), 1, 1))
+    lattice = vs.Part(shape=BLOCK, material=vs.Lattice(edge=25 * kPa, bulk=100 * kPa))
+    with pytest.raises(DesignError, match="objects: is not known to exported pages of the lattice"):
+        page_of_body(StudioBody.of(pressed(parts=[lattice]), 1, 1))
 
 
 def test_a_side_of_an_object_that_goes_through_samples_is_there():

@@ -41,8 +41,11 @@ pub enum Command {
     Grab {
         /// The caller's number.
         id: u32,
-        /// Which point of the surface.
+        /// Which point of the surface; of no meaning for an object.
         vertex: usize,
+        /// Which object is held by its middle instead, as its pose was when it was taken.
+        #[serde(default)]
+        object: Option<usize>,
         /// Toward where, in m.
         target: Vec3,
         /// In N/m.

@@ -12,6 +12,60 @@ pub enum Event {
     Plot(Plot),
     /// All fields at a point.
     Picked(Picked),
+    /// What touches what in a frame, and where objects are.
+    Moment(MomentOf),
+}
+
+/// A moment of a body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MomentOf {
+    /// The number of the body.
+    pub topology: u32,
+    /// What is told.
+    pub moment: Moment,
+}
+
+/// A frame beside its picture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Moment {
+    /// Its number.
+    pub frame: u64,
+    /// In s.
+    pub time: f64,
+    /// Of each object.
+    pub poses: Vec<Pose>,
+    /// Pair by pair.
+    pub contacts: Vec<Touch>,
+    /// Whether fields of contact are known.
+    pub fields: bool,
+    /// How deep surfaces are in each other in m, where that is more than contact lets them in a step.
+    pub depth: Option<f64>,
+}
+
+/// Where an object is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pose {
+    /// The middle of its first box, in m.
+    pub position: Vec3,
+    /// From its first pose, nine numbers by rows.
+    pub rotation: Vec<f64>,
+}
+
+/// What touches what.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Touch {
+    /// The two, by name.
+    pub of: [String; 2],
+    /// On the first, in N.
+    pub force: Vec3,
+    /// The sum of the sizes of all forces, in N.
+    pub pressed: f64,
+    /// In m².
+    pub area: f64,
+    /// The smallest, in m.
+    pub gap: f64,
+    /// The part of the pressure under which they slip.
+    pub slipping: f64,
 }
 
 /// Whether time runs, and why not.
@@ -93,6 +147,8 @@ pub struct GrabState {
     pub id: u32,
     /// The point of the surface.
     pub vertex: usize,
+    /// The object that is held by its middle instead.
+    pub object: Option<usize>,
     /// Toward where, in m.
     pub target: Vec3,
     /// In N/m.

@@ -55,20 +55,26 @@ mod command;
 mod control;
 mod event;
 mod motion;
+mod objects;
 mod pace;
 mod player;
 mod plots;
 mod recording;
 mod sentences;
 mod stepper;
+mod touching;
 mod view;
 
 pub use clock::Clock;
 pub use command::{Command, STIFFNESS};
 pub use control::Control;
-pub use event::{Event, GrabState, Mode, Picked, Plot, Refusal, Shown, Stat, Value};
+pub use event::{
+    Event, GrabState, Mode, Moment, MomentOf, Picked, Plot, Pose, Refusal, Shown, Stat, Touch,
+    Value,
+};
 pub use motion::{FRAME_TIME, Rest};
 pub use pace::PACES;
 pub use player::{Cast, Player};
 pub use plots::{COLUMNS, Probe};
 pub use stepper::stepper;
+pub use touching::{Placed, Touching};

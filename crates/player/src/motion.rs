@@ -1,7 +1,9 @@
 //! Time as it is handed to a player, and what becomes of it.
 
+use voxsoft_solid::hands::still_state;
+use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Ask, LiveStatus, Look, Method, ProblemError};
+use voxsoft_solid::{Ask, LiveStatus, Look, Method, ProblemError, State};
 
 use crate::clock::Clock;
 use crate::event::{Event, Mode, finite};
@@ -25,8 +27,10 @@ const ROUNDING: f64 = 1e-6;
 /// How a search for rest ended, by whoever solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rest {
-    /// Where the vertices are, in m.
+    /// Where the vertices are, in m; those of objects may be left out.
     pub positions: Vec<Vec3>,
+    /// Where the middle of each object is then, and its rotation from its first pose.
+    pub poses: Vec<(Vec3, Mat3)>,
     /// Whether it is rest, a breakdown, or neither.
     pub mode: Mode,
     /// The same in words.
@@ -49,9 +53,11 @@ impl Player {
         if self.mode != Mode::Playing {
             return Vec::new();
         }
+        let mut moment = None;
         if let Some(look) = self.take_steps(seconds, budget, clock) {
             self.speed.mark(look.time, clock.now());
             self.take_frame(look);
+            moment = self.moment();
         } else {
             let time = self.stepper.state().time;
             self.speed.mark(time, clock.now());
@@ -66,7 +72,8 @@ impl Player {
         });
         let rows = rows.then(|| self.plots.news(self.topology)).flatten();
         let stat = stat.then(|| Event::Stat(self.stat()));
-        rows.map(Event::Plot).into_iter().chain(stat).collect()
+        let rows = rows.map(Event::Plot);
+        moment.into_iter().chain(rows).chain(stat).collect()
     }
 
     /// Takes the steps that are due.
@@ -103,6 +110,7 @@ impl Player {
             residual: finite(look.residual),
             elastic: finite(look.elastic),
             kinetic: finite(look.kinetic),
+            unsettled: !look.settled,
         };
         Some(look)
     }
@@ -132,9 +140,13 @@ impl Player {
 
     /// Keeps the present as a frame and a row of the plots.
     fn record(&mut self) {
+        let state = self.stepper.state().clone();
+        self.record_state(&state);
+    }
+
+    fn record_state(&mut self, state: &State) {
         self.frame += 1;
         let (loads, grabs) = (self.loads.clone(), self.grabs());
-        let state = self.stepper.state();
         self.recording.keep(self.frame, state, loads, grabs);
         let Numbers {
             residual,
@@ -171,7 +183,17 @@ impl Player {
 
     /// Shows positions (m) of all vertices at time zero first; play goes the way from the unloaded shape.
     pub fn show_first(&mut self, positions: Vec<Vec3>) -> Result<(), ProblemError> {
+        let positions = self.completed(positions, &[]);
         self.stepper.seek(positions, 0.0)
+    }
+
+    /// Positions with those of objects, in their first poses but for those that are given.
+    fn completed(&self, positions: Vec<Vec3>, poses: &[(Vec3, Mat3)]) -> Vec<Vec3> {
+        let rest = self.stepper.problem().body().rest();
+        match &self.touching {
+            Some(touching) => touching.completed(rest, positions, poses),
+            None => positions,
+        }
     }
 
     /// Takes a motion that a solver found, as frames to go back to: times (s) with positions (m) of all vertices.
@@ -180,9 +202,10 @@ impl Player {
         self.shown = None;
         self.numbers = Numbers::default();
         for (time, positions) in motion {
-            self.stepper.seek(positions, time)?;
+            let positions = self.completed(positions, &[]);
+            let state = still_state(self.stepper.problem(), positions, time)?;
             self.solved = true;
-            self.record();
+            self.record_state(&state);
         }
         Ok(())
     }
@@ -190,7 +213,8 @@ impl Player {
     /// Takes the state that a solver found; hands let go, as no solver knows of them.
     pub fn go_to_rest(&mut self, rest: Rest) -> Result<Vec<Event>, ProblemError> {
         let time = rest.time.unwrap_or(self.stepper.state().time);
-        self.stepper.seek(rest.positions, time)?;
+        let positions = self.completed(rest.positions, &rest.poses);
+        self.stepper.seek(positions, time)?;
         self.held.clear();
         self.shown = None;
         self.solved = true;

@@ -13,6 +13,7 @@ use crate::pace::{Pace, RealTimeFactor};
 use crate::plots::{Plots, Probe};
 use crate::recording::{Recorded, Recording};
 use crate::stepper::stepper;
+use crate::touching::Touching;
 
 /// What a player is told of a problem beside its mechanics.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,6 +30,9 @@ pub struct Cast {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Held {
     pub(crate) vertex: usize,
+    /// An object that is held instead, and its vertices from its middle when it was taken.
+    pub(crate) object: Option<(usize, [Vec3; 4])>,
+    pub(crate) target: Vec3,
     pub(crate) stiffness: f64,
 }
 
@@ -40,12 +44,14 @@ pub(crate) struct Numbers {
     pub(crate) residual: Option<f64>,
     pub(crate) elastic: Option<f64>,
     pub(crate) kinetic: Option<f64>,
+    pub(crate) unsettled: bool,
 }
 
 /// A problem that lives: it does what it is asked, moves as time is handed to it, and tells of it.
 pub struct Player {
     pub(crate) stepper: Box<dyn Stepper>,
     pub(crate) surface: Display,
+    pub(crate) touching: Option<Touching>,
     pub(crate) topology: u32,
     pub(crate) controls: Vec<Control>,
     /// The value of each control now.
@@ -79,6 +85,7 @@ impl Player {
         Self {
             stepper: stepper(problem, settings),
             surface,
+            touching: None,
             topology: cast.topology,
             loads: cast.controls.iter().map(|one| one.value).collect(),
             controls: cast.controls,
@@ -101,6 +108,13 @@ impl Player {
         }
     }
 
+    /// The same with the contact of its problem, of which it tells.
+    #[must_use]
+    pub fn with_touching(mut self, touching: Touching) -> Self {
+        self.touching = Some(touching);
+        self
+    }
+
     /// Does what is asked, and gives what there is to tell of it.
     pub fn command(&mut self, command: Command) -> Result<Vec<Event>, Refusal> {
         match command {
@@ -117,9 +131,17 @@ impl Player {
             Command::Grab {
                 id,
                 vertex,
+                object: None,
                 target,
                 stiffness,
             } => self.on_grab(id, vertex, target, stiffness)?,
+            Command::Grab {
+                id,
+                object: Some(object),
+                target,
+                stiffness,
+                ..
+            } => self.on_hold_object(id, object, target, stiffness)?,
             Command::Release { id } => self.on_release(id),
             Command::Seek { frame, time } => self.on_seek(frame, time)?,
             Command::Live => self.on_live(),
@@ -167,7 +189,8 @@ impl Player {
         self.recording.clear();
         self.plots.clear();
         self.stand(Mode::Paused, String::new());
-        vec![Event::Plot(self.whole_plot()), Event::Stat(self.stat())]
+        let told = [Event::Plot(self.whole_plot()), Event::Stat(self.stat())];
+        self.moment().into_iter().chain(told).collect()
     }
 
     fn on_pace(&mut self, factor: Option<f64>) -> Result<(), Refusal> {
@@ -217,14 +240,26 @@ impl Player {
         self.stepper
             .grab(id, of_body, target, stiffness)
             .map_err(|error| Refusal::new("grab", error, ""))?;
-        self.held.insert(id, Held { vertex, stiffness });
+        let held = Held {
+            vertex,
+            object: None,
+            target,
+            stiffness,
+        };
+        self.held.insert(id, held);
         self.wake();
         Ok(())
     }
 
     fn on_release(&mut self, id: u32) {
-        self.held.remove(&id);
-        self.stepper.release(id);
+        match self.held.remove(&id) {
+            Some(Held {
+                object: Some(_), ..
+            }) => self.let_go_of_object(id),
+            _ => {
+                self.stepper.release(id);
+            }
+        }
         self.wake();
     }
 
@@ -243,7 +278,7 @@ impl Player {
         Ok(())
     }
 
-    fn on_live(&mut self) {
+    pub(crate) fn on_live(&mut self) {
         if self.shown.take().is_some() {
             self.stand(Mode::Paused, String::new());
         }
@@ -287,7 +322,7 @@ impl Player {
     }
 
     /// A hand is on a load or a pull: what it does is shown at once, and what was at rest is so no more.
-    fn wake(&mut self) {
+    pub(crate) fn wake(&mut self) {
         self.pace.rest_in = None;
         if self.mode == Mode::AtRest {
             self.stand(Mode::Paused, String::new());

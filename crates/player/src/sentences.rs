@@ -2,6 +2,10 @@
 
 use voxsoft_solid::vector::Vec3;
 
+/// What is said of a step that ended early.
+pub(crate) const UNSETTLED: &str =
+    "Contact has not settled in this step: slow it down to see it right";
+
 /// A number with so many significant digits, as people read it: never with an exponent.
 fn significant(value: f64, digits: usize) -> String {
     // Rounded first, as 9.996 has one digit more before the point when it is.

@@ -6,9 +6,10 @@ use voxsoft_xpbd::{Dynamics, Live};
 ///
 /// Bodies with hyperelastic voxels take implicit steps: their stiff change of volume would ask for explicit ones of
 /// microseconds. Bodies of springs and layers alone take the substeps that their frequency allows, and so does any
-/// body whose substeps are asked for.
+/// body whose substeps are asked for. What touches takes implicit steps in any case.
 pub fn stepper(problem: Problem, settings: Dynamics) -> Box<dyn Stepper> {
-    if problem.body().bricks().is_empty() || settings.substeps.is_some() {
+    let explicit = problem.body().bricks().is_empty() || settings.substeps.is_some();
+    if explicit && problem.contact().is_none() {
         return Box::new(Live::new(problem, settings));
     }
     let settings = ImplicitSettings {

@@ -6,8 +6,11 @@ use voxsoft_frames::{Display, Field, FrameHead, frame_flag, name_of};
 use voxsoft_solid::vector::{Vec3, norm, sub};
 use voxsoft_solid::{Problem, State};
 
-use crate::event::{GrabState, Mode, Picked, Plot, Refusal, Shown, Stat, Value, finite};
+use crate::event::{
+    Event, GrabState, Mode, MomentOf, Picked, Plot, Refusal, Shown, Stat, Value, finite,
+};
 use crate::player::Player;
+use crate::sentences::UNSETTLED;
 
 impl Player {
     /// All numbers of the moment.
@@ -17,6 +20,7 @@ impl Player {
             topology: self.topology,
             state: self.mode,
             sentence: match self.sentence.as_str() {
+                "" if moving && self.numbers.unsettled => UNSETTLED.to_owned(),
                 "" if moving => self.pace.words(),
                 sentence => sentence.to_owned(),
             },
@@ -123,6 +127,16 @@ impl Player {
         display.frame(body, &self.state(), field, head)
     }
 
+    /// What touches what now, and where objects are; nothing without contact.
+    pub fn moment(&self) -> Option<Event> {
+        let touching = self.touching.as_ref()?;
+        let state = self.stepper.state();
+        let rest = self.stepper.problem().body().rest();
+        let moment = touching.moment((self.frame, state.time), rest, &state.positions);
+        let topology = self.topology;
+        Some(Event::Moment(MomentOf { topology, moment }))
+    }
+
     /// All rows of the plots, to replace those that a reader has.
     pub fn whole_plot(&self) -> Plot {
         self.plots.whole(self.topology)
@@ -134,19 +148,21 @@ impl Player {
         let asked = |id: u32| self.held.get(&id);
         let grabs = self.stepper.grabs().iter();
         let grabs = grabs.filter_map(|(id, grab)| Some((*id, grab, asked(*id)?)));
-        grabs
-            .map(|(id, grab, asked)| {
-                let position = positions[grab.vertex as usize];
-                GrabState {
-                    id,
-                    vertex: asked.vertex,
-                    target: grab.target,
-                    stiffness: asked.stiffness,
-                    force: grab.force(position),
-                    stretch: norm(sub(grab.anchor, position)),
-                }
-            })
-            .collect()
+        let of_body = grabs.map(|(id, grab, asked)| {
+            let position = positions[grab.vertex as usize];
+            GrabState {
+                id,
+                vertex: asked.vertex,
+                object: None,
+                target: grab.target,
+                stiffness: asked.stiffness,
+                force: grab.force(position),
+                stretch: norm(sub(grab.anchor, position)),
+            }
+        });
+        let of_objects = self.held.iter();
+        let of_objects = of_objects.filter_map(|(id, held)| self.hold_of(*id, held));
+        of_body.chain(of_objects).collect()
     }
 
     pub(crate) fn picked(&self, point: usize) -> Result<Picked, Refusal> {

@@ -137,6 +137,7 @@ fn a_hand_pulls_with_the_force_of_its_spring_and_lets_go() {
     let grab = |target| Command::Grab {
         id: 3,
         vertex: 1,
+        object: None,
         target,
         stiffness: 40.0,
     };

@@ -20,7 +20,7 @@ use voxsoft_player::{
 };
 use voxsoft_scene::Scene;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Material, Mesh, Problem, ProblemError};
+use voxsoft_solid::{Problem, ProblemError};
 use voxsoft_xpbd::{Damping, Dynamics};
 
 use crate::display::{PyDisplay, field as field_of, of_vertices};
@@ -64,20 +64,17 @@ impl Clock for Wall<'_> {
 #[pyclass(frozen, name = "Scene", module = "voxsoft._core")]
 pub struct PyScene {
     problem: Arc<Problem>,
-    mesh: Mesh,
-    materials: Vec<Material>,
-    triangles: Vec<[u32; 3]>,
-    tags: Vec<u8>,
-    voxel_size: f64,
-    settings: Dynamics,
-    cast: Cast,
+    /// How many vertices its body has.
+    own: usize,
+    scene: Scene,
 }
 
 #[pymethods]
 impl PyScene {
+    /// `objects` are the names of those that are drawn, with the middles of their boxes in m; of a problem with contact.
     #[new]
     #[pyo3(signature = (problem, triangles, tags, voxel_size, *, topology=1, controls=vec![], probes=vec![],
-        substeps=None, damping=None, retardation=0.0, tolerance=1e-4))]
+        substeps=None, damping=None, retardation=0.0, tolerance=1e-4, surfaces=vec![], middles=vec![]))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -94,6 +91,8 @@ impl PyScene {
         damping: Option<f64>,
         retardation: f64,
         tolerance: f64,
+        surfaces: Vec<String>,
+        middles: Vec<Vec3>,
     ) -> PyResult<Self> {
         let control = |(value, loads)| Control { value, loads };
         let probe = |(name, vertices, weights)| Probe {
@@ -101,10 +100,17 @@ impl PyScene {
             vertices,
             weights,
         };
-        Ok(Self {
-            problem: Arc::clone(&problem.problem),
+        let touching = problem.touching.as_ref();
+        let mechanics = &problem.problem;
+        let scene = Scene {
+            notes: String::new(),
             mesh: problem.mesh.clone(),
             materials: problem.materials.clone(),
+            clamps: mechanics.clamps().to_vec(),
+            loads: mechanics.loads().to_vec(),
+            floor: mechanics.floor(),
+            touching: touching.map(|t| t.to_play(mechanics.body(), surfaces, &middles)),
+            positions: None,
             triangles: rows("triangles", &triangles)?,
             tags: tags.as_array().to_vec(),
             voxel_size,
@@ -114,6 +120,11 @@ impl PyScene {
                 controls: controls.into_iter().map(control).collect(),
                 probes: probes.into_iter().map(probe).collect(),
             },
+        };
+        Ok(Self {
+            problem: Arc::clone(mechanics),
+            own: problem.own(),
+            scene,
         })
     }
 
@@ -125,21 +136,11 @@ impl PyScene {
         notes: &str,
         positions: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<Bound<'py, PyBytes>> {
-        let count = self.problem.body().rest().len();
-        let positions = positions.map(|array| of_vertices("positions", &array, count));
+        let positions = positions.map(|array| of_vertices("positions", &array, self.own));
         let scene = Scene {
             notes: notes.to_owned(),
-            settings: self.settings.clone(),
-            mesh: self.mesh.clone(),
-            materials: self.materials.clone(),
-            clamps: self.problem.clamps().to_vec(),
-            loads: self.problem.loads().to_vec(),
-            floor: self.problem.floor(),
-            voxel_size: self.voxel_size,
-            triangles: self.triangles.clone(),
-            tags: self.tags.clone(),
-            cast: self.cast.clone(),
             positions: positions.transpose()?,
+            ..self.scene.clone()
         };
         Ok(PyBytes::new(py, &py.detach(|| scene.write())))
     }
@@ -147,20 +148,24 @@ impl PyScene {
     /// A player at rest pose and time zero.
     #[pyo3(signature = (*, deterministic=false))]
     fn play(&self, py: Python<'_>, deterministic: bool) -> PyResult<PyPlayer> {
-        let problem = &self.problem;
-        let settings = Dynamics {
-            deterministic,
-            ..self.settings.clone()
-        };
+        let (problem, scene) = (&self.problem, &self.scene);
         let player = gate::run(py, |_| {
-            let (triangles, tags) = (&self.triangles, &self.tags);
-            let body = problem.body();
-            let surface = Display::surface(body, triangles, tags, self.voxel_size)?;
+            if scene.touching.is_some() {
+                // Contact of its own: another one may be solved for at the same time.
+                return scene.play(deterministic);
+            }
+            let (triangles, tags) = (&scene.triangles, &scene.tags);
+            let settings = Dynamics {
+                deterministic,
+                ..scene.settings.clone()
+            };
+            let surface = Display::surface(problem.body(), triangles, tags, scene.voxel_size)?;
             let problem = Problem::clone(problem);
-            Ok::<_, ProblemError>(Player::new(problem, settings, surface, self.cast.clone()))
+            Ok::<_, ProblemError>(Player::new(problem, settings, surface, scene.cast.clone()))
         })?;
         Ok(PyPlayer {
             problem: Arc::clone(problem),
+            own: self.own,
             player: Mutex::new(player.map_err(to_python)?),
             began: Instant::now(),
         })
@@ -171,6 +176,8 @@ impl PyScene {
 #[pyclass(frozen, name = "Player", module = "voxsoft._core")]
 pub struct PyPlayer {
     problem: Arc<Problem>,
+    /// How many vertices its body has.
+    own: usize,
     player: Mutex<Player>,
     began: Instant,
 }
@@ -234,7 +241,8 @@ impl PyPlayer {
     }
 
     /// Takes positions (m) where a solver ended, at a time (s) or now; gives the events.
-    #[pyo3(signature = (positions, state, sentence, residual, elastic, time=None))]
+    /// `poses` has the middle (m) and the rotation of each object, row by row.
+    #[pyo3(signature = (positions, state, sentence, residual, elastic, time=None, poses=vec![]))]
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -248,9 +256,11 @@ impl PyPlayer {
         residual: f64,
         elastic: f64,
         time: Option<f64>,
+        poses: Vec<(Vec3, [Vec3; 3])>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         let rest = Rest {
             positions: rows("positions", &positions)?,
+            poses,
             mode: match state {
                 "at-rest" => Mode::AtRest,
                 "diverged" => Mode::Diverged,
@@ -332,6 +342,12 @@ impl PyPlayer {
         Ok(json(py, &stat))
     }
 
+    /// What touches now, and where objects are: an event, or none without contact.
+    fn moment<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyBytes>>> {
+        let moment = self.with(py, |player| player.moment())?;
+        Ok(moment.map(|event| json(py, &event)))
+    }
+
     /// All rows of the plots.
     fn plot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let plot = self.with(py, |player| Event::Plot(player.whole_plot()))?;
@@ -344,10 +360,10 @@ impl PyPlayer {
         Ok(json(py, &shown))
     }
 
-    /// Positions (m) of what is looked at.
+    /// Positions (m) of the body in what is looked at.
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.with(py, |player| player.state().positions.clone())?;
-        Ok(from_rows(py, &positions))
+        Ok(from_rows(py, &positions[..self.own]))
     }
 
     /// The frame of what is looked at, on the surface or on another display of the same problem.

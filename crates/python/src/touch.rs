@@ -7,8 +7,10 @@ use voxsoft_contact::skin::Skin;
 use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
+use voxsoft_player::Placed;
+use voxsoft_scene::Touching as Played;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, Mesh, Motion, Problem, ProblemError, Springs};
+use voxsoft_solid::{Body, Clamp, Mesh, Motion, Problem, ProblemError, Rigid, Springs};
 
 /// What moves a rigid object.
 #[derive(Debug, Clone)]
@@ -299,6 +301,28 @@ impl Touching {
             Py::new(py, PyObjectPose { position, rotation })
         });
         each.collect()
+    }
+
+    /// The same contact for live motion: what each surface is called, and the middle (m) of each object that is drawn.
+    pub(crate) fn to_play(&self, body: &Body, names: Vec<String>, middles: &[Vec3]) -> Played {
+        let corners = |number: usize| {
+            let first = (self.first + 4 * number) as u32;
+            std::array::from_fn(|i| first + i as u32)
+        };
+        let free = self.parts.objects.iter().enumerate();
+        let free = free.filter(|(_, object)| object.is_free());
+        let place = |(number, middle): (usize, &Vec3)| Placed {
+            vertices: corners(number),
+            middle: *middle,
+        };
+        let springs = self.parts.frame_springs(body, self.first);
+        Played {
+            description: self.touch.description().clone(),
+            rigid: free.map(|(number, _)| Rigid(corners(number))).collect(),
+            springs: springs.unwrap_or_default(),
+            names,
+            objects: middles.iter().enumerate().map(place).collect(),
+        }
     }
 
     /// The positions of the body, with the objects where their motions end.

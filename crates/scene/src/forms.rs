@@ -8,7 +8,7 @@ use voxsoft_solid::{self as solid, HyperelasticMaterial, LatticeConstants, Latti
 use voxsoft_solid::{Attachment, LoadKind, Model, ProblemError};
 use voxsoft_xpbd::{Damping, Dynamics};
 
-use crate::SceneError;
+use crate::{SceneError, touching};
 
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Scene {
@@ -25,6 +25,7 @@ pub(crate) struct Scene {
     topology: u32,
     controls: Vec<Control>,
     probes: Vec<Probe>,
+    touching: Option<touching::Form>,
     positions: Option<Vec<Vec3>>,
 }
 
@@ -51,6 +52,7 @@ struct Mesh {
     /// Vertices, then Young's modulus, Poisson's ratio, thickness and density.
     membranes: Vec<([u32; 3], [f64; 4])>,
     attachments: Vec<Attachment>,
+    point_masses: Vec<(u32, f64)>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -127,6 +129,7 @@ impl From<&crate::Scene> for Scene {
             topology: scene.cast.topology,
             controls: scene.cast.controls.clone(),
             probes: scene.cast.probes.clone(),
+            touching: scene.touching.as_ref().map(Into::into),
             positions: scene.positions.clone(),
         }
     }
@@ -142,6 +145,13 @@ impl TryFrom<Scene> for crate::Scene {
             probe.vertices.iter().all(known) && probe.vertices.len() == probe.weights.len()
         });
         let loads = form.loads.len();
+        let touching = match form.touching {
+            None => None,
+            Some(touching) => {
+                let found = touching.of_vertices(vertices);
+                Some(found.ok_or(SceneError::Value("what touches"))?)
+            }
+        };
         let mut controlled = form.controls.iter().flat_map(|control| &control.loads);
         for (good, what) in [
             (form.floor.is_none_or(f64::is_finite), "height of the floor"),
@@ -166,6 +176,7 @@ impl TryFrom<Scene> for crate::Scene {
                 controls: form.controls,
                 probes: form.probes,
             },
+            touching,
             positions: form.positions,
         })
     }
@@ -229,6 +240,7 @@ impl From<&solid::Mesh> for Mesh {
             block_filling: mesh.block_filling.iter().map(filling).collect(),
             membranes: mesh.membranes.iter().map(membrane).collect(),
             attachments: mesh.attachments.clone(),
+            point_masses: mesh.point_masses.clone(),
         }
     }
 }
@@ -257,7 +269,7 @@ impl TryFrom<Mesh> for solid::Mesh {
         Ok(Self {
             membranes: membranes?,
             attachments: form.attachments,
-            point_masses: Vec::new(),
+            point_masses: form.point_masses,
             block_axes: Vec::new(),
             vertices: form.vertices,
             tets: form.tets,

@@ -5,6 +5,7 @@
 //! and [`Scene::problem`] checks the mechanics.
 
 mod forms;
+mod touching;
 
 use thiserror::Error;
 use voxsoft_frames::Display;
@@ -13,10 +14,12 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Clamp, Floor, Load, Material, Mesh, Problem, ProblemError};
 use voxsoft_xpbd::Dynamics;
 
+pub use touching::Touching;
+
 const MAGIC: [u8; 4] = *b"VXSC";
 
 /// The version that is written and read.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Why bytes are no scene.
 #[derive(Debug, Error, Clone, PartialEq)]
@@ -66,6 +69,8 @@ pub struct Scene {
     pub tags: Vec<u8>,
     /// What can be changed and what is plotted.
     pub cast: Cast,
+    /// What touches.
+    pub touching: Option<Touching>,
     /// Where the vertices are shown first in m; `None`: unloaded.
     pub positions: Option<Vec<Vec3>>,
 }
@@ -98,7 +103,7 @@ impl Scene {
         }
     }
 
-    /// Builds the problem.
+    /// Builds the problem, without what touches.
     pub fn problem(&self) -> Result<Problem, ProblemError> {
         let body = Body::new(&self.mesh, &self.materials)?;
         Problem::new(body, self.clamps.clone(), self.loads.clone(), self.floor)
@@ -107,7 +112,13 @@ impl Scene {
     /// Gets the problem ready to be played: with the same bits everywhere, if explicit steps move it and
     /// `deterministic` is asked for.
     pub fn play(&self, deterministic: bool) -> Result<Player, ProblemError> {
-        let problem = self.problem()?;
+        let mut problem = self.problem()?;
+        let mut touching = None;
+        if let Some(contact) = &self.touching {
+            let played;
+            (problem, played) = contact.add_to(problem)?;
+            touching = Some(played);
+        }
         let (triangles, tags) = (&self.triangles, &self.tags);
         let surface = Display::surface(problem.body(), triangles, tags, self.voxel_size)?;
         let settings = Dynamics {
@@ -115,6 +126,9 @@ impl Scene {
             ..self.settings.clone()
         };
         let mut player = Player::new(problem, settings, surface, self.cast.clone());
+        if let Some(touching) = touching {
+            player = player.with_touching(touching);
+        }
         if let Some(positions) = &self.positions {
             player.show_first(positions.clone())?;
         }

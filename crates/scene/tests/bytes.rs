@@ -1,17 +1,63 @@
 //! What is written is read again, and no bytes make the reader fall over.
 
 use proptest::prelude::*;
-use voxsoft_player::{Cast, Control, Probe};
-use voxsoft_scene::{Scene, SceneError};
+use voxsoft_contact::touch::rigid::Frame;
+use voxsoft_contact::touch::{Description, Surface};
+use voxsoft_player::{Cast, Control, Placed, Probe};
+use voxsoft_scene::{Scene, SceneError, Touching};
+use voxsoft_solid::matrix::IDENTITY;
+use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Attachment, Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load,
-    Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure, Spring,
-    Springs,
+    Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure, Rigid,
+    Spring, Springs,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics};
 
 const SIDE: f64 = 5e-3;
+
+/// Vertices with those of a free object, an octahedron, that touches the body; the first of them.
+fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Touching) {
+    let first = vertices.len() as u32;
+    let frame = Frame::of_mass([0.0, 0.0, 0.1], IDENTITY, [0.01; 3]).unwrap();
+    vertices.extend(frame.vertices());
+    let corner = |axis: usize, side: f64| {
+        let mut corner = [0.0, 0.0, 0.1];
+        corner[axis] += side;
+        frame.carry(corner, first)
+    };
+    let points = (0..3).flat_map(|axis| [corner(axis, 0.02), corner(axis, -0.02)]);
+    let faces = (0..8u32).map(|side| {
+        let [a, b, c] = [side & 1, 2 + (side >> 1 & 1), 4 + (side >> 2 & 1)];
+        if side.count_ones() % 2 == 0 {
+            [a, b, c]
+        } else {
+            [a, c, b]
+        }
+    });
+    let ball = Surface {
+        points: points.collect(),
+        triangles: faces.collect(),
+    };
+    let touching = Touching {
+        description: Description {
+            bonds: Vec::new(),
+            surfaces: vec![Surface::of_triangles(body), ball],
+            friction: vec![vec![0.1, 0.2], vec![0.2, 0.0]],
+            voxel: SIDE,
+            young: 6e4,
+        },
+        rigid: vec![Rigid([first, first + 1, first + 2, first + 3])],
+        springs: Springs(frame.springs(first, 1e6).to_vec()),
+        names: vec!["body".into(), "ball".into()],
+        objects: vec![Placed {
+            vertices: [first, first + 1, first + 2, first + 3],
+            middle: [0.0, 0.0, 0.1],
+        }],
+    };
+    (vertices, first, touching)
+}
 
 /// Two voxels of two materials with one of everything.
 fn full() -> Scene {
@@ -26,11 +72,12 @@ fn full() -> Scene {
     };
     let triangles: Vec<[u32; 3]> = tets.triangles.iter().map(|t| t.map(|v| v as u32)).collect();
     let corners = triangles[0].map(|v| tets.vertices[v as usize]);
+    let (vertices, first, touching) = with_ball(tets.vertices, &triangles);
     let mesh = Mesh {
         tets: tets.tets.iter().map(|t| t.map(|v| v as u32)).collect(),
         tet_part: (0..10).map(|t| u8::from(t >= 5)).collect(),
         tet_block: (0..10).map(|t| t / 5).collect(),
-        vertices: tets.vertices,
+        vertices,
         block_fraction: vec![1.0, 0.7],
         block_filling: vec![
             Filling::FULL,
@@ -47,7 +94,7 @@ fn full() -> Scene {
             length: 0.02,
             stiffness: 4.0,
         }]))],
-        point_masses: vec![],
+        point_masses: (first..first + 4).map(|vertex| (vertex, 0.01)).collect(),
         block_axes: vec![],
     };
     let fiber = Fiber {
@@ -122,6 +169,7 @@ fn full() -> Scene {
                 weights: vec![0.25, 0.75],
             }],
         },
+        touching: Some(touching),
         positions: Some(mesh.vertices.clone()),
         mesh,
     }
@@ -173,7 +221,7 @@ fn what_is_cut_off_or_too_long_is_reported() {
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
     // A list that says to be longer than all there is is refused once the bytes are used up.
-    let endless = b"VXSC\x03\0\0\0\xff\xff\xff\xff\x0fab";
+    let endless = b"VXSC\x04\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }
@@ -205,7 +253,7 @@ proptest! {
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = open(&bytes);
         // The same behind a good head, so that lengths and kinds are reached.
-        let _ = open(&[b"VXSC\x02\0\0\0", &bytes[..]].concat());
+        let _ = open(&[b"VXSC\x04\0\0\0", &bytes[..]].concat());
     }
 
     #[test]

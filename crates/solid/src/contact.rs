@@ -37,6 +37,24 @@ pub trait Contact: Term {
     /// Takes `positions` as the state from which the path goes on.
     fn accept(&self, positions: &[Vec3]);
 
+    /// Takes `positions` as the end of a step that was not solved to the end: the multipliers are brought up to the
+    /// forces there, once. `false`, and nothing is taken, where something is so deep in something else that which side
+    /// it came from is no longer known.
+    fn take_step(&self, positions: &[Vec3]) -> bool {
+        self.accept(positions);
+        true
+    }
+
+    /// Resists more for the rest of the step where something is too deep in something else at `positions`; whether it is.
+    fn stiffen(&self, _positions: &[Vec3]) -> bool {
+        false
+    }
+
+    /// Whether anything is pressed at `positions`.
+    fn is_touching(&self, positions: &[Vec3]) -> bool {
+        self.energy(positions) > 0.0
+    }
+
     /// Forgets what happened since the last accepted state.
     fn go_back(&self);
 

@@ -62,6 +62,7 @@ pub mod matrix;
 mod membrane;
 pub mod mixed;
 mod problem;
+mod rigid;
 mod solver;
 mod state;
 mod stepper;
@@ -86,6 +87,7 @@ pub use loads::{
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
 pub use problem::Problem;
+pub use rigid::Rigid;
 pub use solver::{Observer, Progress, Solution, Solver, Status};
 pub use state::State;
 pub use stepper::{Ask, Damping, LiveStatus, Look, Method, Stepper};

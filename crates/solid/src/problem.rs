@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::assembly::{Visitor, check_indices};
 use crate::loads::Vertices;
 use crate::vector::Vec3;
-use crate::{Body, Clamp, Contact, Floor, History, Load, ProblemError, Term};
+use crate::{Body, Clamp, Contact, Floor, History, Load, ProblemError, Rigid, Term};
 
 /// A body with clamps, loads, and maybe a floor or contact.
 #[derive(Debug, Clone)]
@@ -13,6 +13,7 @@ pub struct Problem {
     loads: Vec<Load>,
     floor: Option<Floor>,
     contact: Option<Arc<dyn Contact>>,
+    rigid: Vec<Rigid>,
     held: Vec<[bool; 3]>,
     conservative: bool,
 }
@@ -45,6 +46,7 @@ impl Problem {
             loads,
             floor,
             contact: None,
+            rigid: Vec::new(),
             held,
             conservative,
         })
@@ -63,6 +65,24 @@ impl Problem {
     pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
         self.body.attach(term)?;
         Ok(self)
+    }
+
+    /// The same with rigid bodies among its vertices, which something keeps rigid already, up to what it gives way.
+    pub fn with_rigid(mut self, rigid: Vec<Rigid>) -> Result<Self, ProblemError> {
+        let count = self.body.rest().len();
+        let vertices = rigid.iter().flat_map(|body| body.0);
+        check_indices(
+            "vertex of a rigid body",
+            &vertices.collect::<Vec<_>>(),
+            count,
+        )?;
+        self.rigid = rigid;
+        Ok(self)
+    }
+
+    /// What is rigid and moves freely.
+    pub fn rigid(&self) -> &[Rigid] {
+        &self.rigid
     }
 
     /// What touches.

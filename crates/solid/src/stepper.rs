@@ -48,6 +48,8 @@ pub struct Look {
     pub kinetic: f64,
     /// Where and when it broke down, for [`LiveStatus::Diverged`].
     pub breakdown: Option<Breakdown>,
+    /// Whether the last step was solved to its end; what touches may ask for more than there is time for.
+    pub settled: bool,
 }
 
 /// When a run asks whether to go on.

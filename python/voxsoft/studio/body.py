@@ -13,6 +13,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft import _core
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of
@@ -25,10 +26,11 @@ from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.choice import method_of
 from voxsoft.simulation.loads import read
+from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import events
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
-from voxsoft.studio.objects import not_live, objects_of
+from voxsoft.studio.objects import not_live, objects_of, touches_live
 from voxsoft.studio.surface import Surface
 from voxsoft.units import Point, format_quantity, parse
 from voxsoft.voxels import Voxels
@@ -135,6 +137,11 @@ class StudioBody:
         """Why time does not run, or an empty text."""
         return not_live(self.setup)
 
+    @property
+    def played(self) -> _core.Problem:
+        """The problem as it moves live: with what it touches, where that is found then."""
+        return self.setup.problem if touches_live(self.setup) else self.setup.problem_alone
+
     def under(self, factors: Sequence[float]) -> Setup:
         """The same body with each load so many times as large."""
         if all(factor == 1.0 for factor in factors):
@@ -193,6 +200,7 @@ class StudioBody:
             attachments=_attachments(setup, self.surface),
             objects=self.objects,
             not_live=self.not_live,
+            touches=has_contact(setup.design),
             seconds=self.seconds,
             memory=float(self.voxel_count * BYTES_PER_VOXEL),
         )

@@ -19,8 +19,9 @@ from voxsoft.studio.surface import tets_to_draw
 from voxsoft.studio.wire import FrameFlag
 
 _STILL: Final = FrameFlag.PAUSED
-#: As the core flags its own frames; a body with contact is never in motion.
+#: As the core flags its own frames.
 _FLAGS: Final = {
+    "playing": FrameFlag(0),
     "at-rest": FrameFlag.PAUSED | FrameFlag.AT_REST,
     "diverged": FrameFlag.PAUSED | FrameFlag.DIVERGED,
 }
@@ -116,7 +117,7 @@ class Canvas:
     def _surface(self) -> _core.Display:
         body = self._body
         triangles, size = body.mesh.triangles.astype(np.uint32), body.mesh.voxel_size or 0.0
-        return _core.Display.surface(body.setup.problem_alone, triangles, body.surface.tags, size)
+        return _core.Display.surface(body.played, triangles, body.surface.tags, size)
 
     @cached_property
     def _outline_of_tets(self) -> _core.Outline:
@@ -128,4 +129,4 @@ class Canvas:
     def _tets(self) -> _core.Display:
         body = self._body
         tets, tags = tets_to_draw(body.mesh, body.surface)
-        return _core.Display.tets(body.setup.problem_alone, tets, tags, body.mesh.voxel_size or 0.0)
+        return _core.Display.tets(body.played, tets, tags, body.mesh.voxel_size or 0.0)

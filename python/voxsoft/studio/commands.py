@@ -112,12 +112,16 @@ class Load(Command):
 
 
 class Grab(Command):
-    """Pull a vertex of the surface toward a point by a spring; the same id moves the point."""
+    """Pull a vertex of the surface toward a point by a spring; the same id moves the point.
+
+    A free object, by its place among those of the body, is held by its middle instead of a vertex.
+    """
 
     id: Count
     vertex: Count
     target: Triple
     stiffness: Positive = STIFFNESS
+    object: Count | None = None
 
 
 class Release(Command):

@@ -271,7 +271,8 @@ class Body(Event):
     """A new body: its topology follows as a binary message with the same id.
 
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
-    shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text.
+    shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
+    `touches` tells whether anything of the design may touch.
     """
 
     topology: int
@@ -296,13 +297,17 @@ class Body(Event):
     attachments: list[BodyAttachment]
     objects: list[BodyObject]
     not_live: str
+    touches: bool
     seconds: float
     memory: float
     smooth: bool = False
 
 
 class GrabState(Entry):
-    """A spring that pulls: force in N on the body, distance to its target in m."""
+    """A spring that pulls: force in N on the body, distance to its target in m.
+
+    Where it holds an object, that is its place among those of the body, and `vertex` means nothing.
+    """
 
     id: int
     vertex: int
@@ -310,6 +315,7 @@ class GrabState(Entry):
     stiffness: float
     force: Triple
     stretch: float
+    object: int | None = None
 
 
 class Stat(Event):
@@ -410,7 +416,8 @@ class Touch(Entry):
 class Moment(Entry):
     """A frame of a solution: its time in s, the pose of each object of the body, what touches.
 
-    `fields` tells whether the fields of contact are known of it.
+    `fields` tells whether the fields of contact are known of it. `depth` is how deep surfaces are
+    in each other in m, where that is more than live contact should let them.
     """
 
     frame: int
@@ -418,6 +425,14 @@ class Moment(Entry):
     poses: list[ObjectPose]
     contacts: list[Touch]
     fields: bool = False
+    depth: float | None = None
+
+
+class MomentNews(Event, tag="moment"):
+    """What touches in the newest frame of a body that moves; adds to what was known before."""
+
+    topology: int
+    moment: Moment
 
 
 class Moments(Event):
@@ -724,6 +739,7 @@ AnyEvent = (
     | Equilibrium
     | Overlap
     | Moments
+    | MomentNews
     | Plot
     | Picked
     | Job

@@ -55,6 +55,7 @@ class Hands:
             tuple(
                 _Pull(pull.id, rest[pull.vertex], pull.target, pull.stiffness)
                 for pull in stat.grabs
+                if pull.object is None
             ),
         )
 

@@ -109,11 +109,15 @@ def page_of_body(
     FileError
         The viewer was not built.
     VoxSoftError
-        The body cannot be solved, or has contact, which a page does not find.
+        The body cannot be solved, or is of the lattice material and has contact, which a page does
+        not find.
     """
     if body.refusal is not None:
         raise body.refusal
-    refuse_contact(body.setup.design, "exported pages")
+    if body.not_live:
+        bonded = body.setup.touching is not None and body.setup.touching.bonds
+        what = "with bonds" if bonded else "of the lattice material"
+        refuse_contact(body.setup.design, f"exported pages {what}")
     refuse_bodies(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design

@@ -10,13 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import VoxSoftError
+from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 
-#: Why time does not run for a body that may touch something.
-NOT_LIVE: Final = "Live motion knows no contact: press Solve."
+#: Why time does not run for a body of the lattice material that may touch something.
+NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice: press Solve."
+#: The same for what is bonded.
+BONDED: Final = "Live motion does not know bonds yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -42,7 +45,17 @@ def objects_of(setup: Setup) -> list[events.BodyObject]:
 
 def not_live(setup: Setup) -> str:
     """Why time does not run for a body, in a sentence; empty where it does."""
-    return NOT_LIVE if has_contact(setup.design) else ""
+    if not has_contact(setup.design):
+        return ""
+    if setup.touching is not None and setup.touching.bonds:
+        return BONDED
+    of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
+    return NOT_LIVE if of_lattice else ""
+
+
+def touches_live(setup: Setup) -> bool:
+    """Whether what the body touches is found while time runs."""
+    return has_contact(setup.design) and not not_live(setup)
 
 
 def film_of(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

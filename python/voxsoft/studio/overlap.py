@@ -40,7 +40,7 @@ class OverlapWatch:
         if body is None or body.refusal is not None:
             return
         # The frames of a film come as fast as those of a body that moves.
-        film = body.not_live != "" and playback.state == "past"
+        film = len(playback.moments) > 0 and playback.state == "past"
         if (playback.moving or film) and started < self._next:
             return
         key = (body.topology, playback.frame, playback.state == "past")

@@ -11,6 +11,7 @@ from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.result import Status
+from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas
@@ -111,7 +112,7 @@ class Playback:
         """Refuse what needs time to run where it cannot: objects would be passed through."""
         live = isinstance(command, commands.Play | commands.Step | commands.Grab)
         if live and self.body is not None and self.body.not_live:
-            what = "is not known to live motion, which would go through what the body touches"
+            what = "of the lattice is not known to live motion, which would go through it"
             raise SimulationError("contact", what, "press Solve")
 
     def advance(self, seconds: float, budget: float) -> list[Event]:
@@ -126,7 +127,7 @@ class Playback:
         if self.player is None:
             self.sentence = ""
             return [self.plot(), self.stat()]
-        return [*self.do(commands.Reset(seq=0)), *self.moments_event()]
+        return [*self.moments_event(), *self.do(commands.Reset(seq=0))]
 
     def choose_pace(self, factor: float | None) -> None:
         """Take the user's pace for this body and all that come, or None for the automatic one."""
@@ -197,6 +198,7 @@ class Playback:
             residual=result.residual,
             elastic=result.elastic_energy,
             time=result.time if len(times) > 0 else None,
+            poses=list(result.objects.values()),
         )
         self.moments += moments_of(result, player.frame)
         if result.contact_field is not None:
@@ -206,9 +208,13 @@ class Playback:
     def moments_event(self) -> list[events.Event]:
         """What is known of stored frames beside their pictures; nothing for most bodies."""
         body = self.body
-        if body is None or not body.not_live:
+        if body is None or not has_contact(body.setup.design):
             return []
         return [events.Moments(topology=body.topology, moments=self.moments)]
+
+    def newest_moment(self) -> events.MomentNews | None:
+        """What touches in the present of a body that moves."""
+        return None if self.player is None or self.result is not None else self.player.moment()
 
     @property
     def moving(self) -> bool:
@@ -283,7 +289,7 @@ class Playback:
             units=plot.units,
             rows=plot.rows,
             factors=self.factors,
-            pulls=[] if shown is None else shown.grabs,
+            pulls=[] if shown is None else [pull for pull in shown.grabs if pull.object is None],
             status=_KEPT.get(self.state, "not-at-rest"),
             sentence=self._standing(0.0 if shown is None else shown.time),
             time=0.0 if shown is None else shown.time,

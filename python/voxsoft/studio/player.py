@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.touching import Pose
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState
@@ -34,7 +35,7 @@ Command = (
     | commands.Probe
 )
 #: What it tells.
-Event = events.Stat | events.Plot | events.Picked
+Event = events.Stat | events.Plot | events.Picked | events.MomentNews
 
 
 class Shown(msgspec.Struct):
@@ -49,6 +50,7 @@ class Shown(msgspec.Struct):
 _EVENTS: Final = msgspec.json.Decoder(list[Event])
 _STAT: Final = msgspec.json.Decoder(events.Stat)
 _PLOT: Final = msgspec.json.Decoder(events.Plot)
+_MOMENT: Final = msgspec.json.Decoder(events.MomentNews)
 _SHOWN: Final = msgspec.json.Decoder(Shown)
 
 
@@ -97,9 +99,13 @@ class Player:
         residual: float,
         elastic: float,
         time: float | None = None,
+        poses: Sequence[Pose] = (),
     ) -> list[Event]:
-        """Take the state that a solver found, at a time [s] or now."""
-        reported = self._core.go_to_rest(positions, state, sentence, residual, elastic, time)
+        """Take the state that a solver found, at a time [s] or now, with the objects in poses."""
+        placed = [(pose.position, pose.rotation) for pose in poses]
+        reported = self._core.go_to_rest(
+            positions, state, sentence, residual, elastic, time, placed
+        )
         return _EVENTS.decode(reported)
 
     def take_motion(self, times: NDArray[np.float64], positions: NDArray[np.float64]) -> None:
@@ -146,6 +152,11 @@ class Player:
     def stat(self) -> events.Stat:
         """All numbers of the moment."""
         return _STAT.decode(self._core.stat())
+
+    def moment(self) -> events.MomentNews | None:
+        """What touches now, and where objects are; None for a body without contact."""
+        moment = self._core.moment()
+        return None if moment is None else _MOMENT.decode(moment)
 
     def plot(self) -> events.Plot:
         """All rows of the plots."""

@@ -6,9 +6,13 @@ from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.design.contact import names_of
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.message import Triple
+from voxsoft.studio.objects import touches_live
 from voxsoft.studio.probes import Probe, placed_probes
 
 #: Residual at which a body counts as at rest: small beside what a picture shows.
@@ -30,10 +34,15 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
     VoxSoftError
         The body cannot be solved.
     """
-    solver = body.setup.design.solver
+    design, solver = body.setup.design, body.setup.design.solver
+    surfaces: list[str] = []
+    middles: list[Triple] = []
+    if body.setup.touching is not None and touches_live(body.setup):
+        surfaces = names_of(design.objects, design.floor is not None)
+        middles = [_triple(surface.middle) for surface in body.setup.touching.surfaces]
     probes = placed_probes(body) if probes is None else probes
     return _core.Scene(
-        body.setup.problem_alone,
+        body.played,
         body.mesh.triangles.astype(np.uint32),
         body.surface.tags,
         body.mesh.voxel_size or 0.0,
@@ -44,7 +53,14 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
         damping=solver.damping if isinstance(solver.damping, float) else None,
         retardation=solver.retardation or 0.0,
         tolerance=TOLERANCE,
+        surfaces=surfaces,
+        middles=middles,
     )
+
+
+def _triple(point: NDArray[np.float64]) -> Triple:
+    x, y, z = point.tolist()
+    return (x, y, z)
 
 
 def _controls(body: StudioBody) -> list[tuple[float, list[int]]]:

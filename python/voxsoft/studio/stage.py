@@ -86,6 +86,9 @@ class Stage:
         self.overlaps.send_snapshot(tab)
         for event in self.playback.moments_event():
             self.bus.send_to(tab, event)
+        newest = self.playback.newest_moment()
+        if newest is not None:
+            self.bus.send_to(tab, newest)
         if self._equilibrium is not None:
             self.bus.send_to(tab, self._equilibrium)
 

@@ -77,6 +77,9 @@ export interface Studio {
 const LONGEST_LOG = 500;
 const MOST_TOASTS = 4;
 
+/** Frames of a body that moves of which it is kept what touches: half a minute of them. */
+const MOST_MOMENTS = 2000;
+
 export const useStudio = create<Studio>(() => ({
   link: { state: "connecting", attempt: 0, retryAt: null, reason: "" },
   hello: null,
@@ -167,6 +170,18 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "moments":
       if (useStudio.getState().body?.topology === event.topology)
         set({ moments: new Map(event.moments.map((moment) => [moment.frame, moment])) });
+      break;
+    case "moment":
+      set(({ body, moments, stat }) => {
+        if (body?.topology !== event.topology) return {};
+        const known = new Map(moments).set(event.moment.frame, event.moment);
+        // Frames that are stored no more are shown no more.
+        for (const frame of known.keys()) {
+          if (known.size <= MOST_MOMENTS && frame >= (stat?.first_frame ?? 0)) break;
+          known.delete(frame);
+        }
+        return { moments: known };
+      });
       break;
     case "plot":
       set((state) => {

@@ -22,7 +22,7 @@ export function ViewBar(props: { view: Viewport }) {
   const view = useView();
   // A new list in the selector would be another state each time, for ever, while the server has not said hello.
   const known = useStudio((state) => state.hello?.fields) ?? [];
-  const touches = useStudio((state) => (state.body?.not_live ?? "") !== "");
+  const touches = useStudio((state) => state.body?.touches ?? false);
   const fields = known.filter((field) => touches || !field.contact);
   const smooth = useStudio((state) => state.body?.smooth ?? false);
   const recording = useShown((shown) => shown.recording);

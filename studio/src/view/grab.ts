@@ -21,6 +21,8 @@ import type { Places } from "./target";
 interface Pull {
   readonly id: number;
   readonly vertex: number;
+  /** The object that is held by its middle instead of a vertex. */
+  readonly object: number | null;
   readonly target: Vector3;
   readonly stiffness: number;
   readonly line: Line<BufferGeometry, LineBasicMaterial>;
@@ -33,6 +35,8 @@ export class Grabs {
   private pulls = new Map<number, Pull>();
   private held: Pull | null = null;
   private readonly plane = new Plane();
+  /** From where the mouse holds something to what is told of it. */
+  private readonly offset = new Vector3();
   private nextId = 1;
   private sent: Vector3 | null = null;
 
@@ -43,19 +47,35 @@ export class Grabs {
   begin(vertex: number, at: Vector3, toEye: Vector3): void {
     const { stiffness } = useView.getState();
     this.held = this.spring(this.nextId++, vertex, at.clone(), stiffness);
+    this.offset.set(0, 0, 0);
+    this.plane.setFromNormalAndCoplanarPoint(toEye, at);
+    this.tell(this.held);
+  }
+
+  /** Take an object with the middle `middle` at a point of it. */
+  beginObject(object: number, at: Vector3, middle: Vector3, toEye: Vector3): void {
+    const { stiffness } = useView.getState();
+    this.held = this.spring(this.nextId++, 0, middle.clone(), stiffness, object);
+    this.offset.copy(middle).sub(at);
     this.plane.setFromNormalAndCoplanarPoint(toEye, at);
     this.tell(this.held);
   }
 
   /** Draw the springs that the engine has; a body that is meshed anew keeps them. */
   adopt(states: readonly GrabState[]): void {
-    for (const { id, vertex, target, stiffness } of states) {
-      if (!this.pulls.has(id)) this.spring(id, vertex, new Vector3(...target), stiffness);
+    for (const { id, vertex, target, stiffness, object } of states) {
+      if (!this.pulls.has(id)) this.spring(id, vertex, new Vector3(...target), stiffness, object);
       this.nextId = Math.max(this.nextId, id + 1);
     }
   }
 
-  private spring(id: number, vertex: number, target: Vector3, stiffness: number): Pull {
+  private spring(
+    id: number,
+    vertex: number,
+    target: Vector3,
+    stiffness: number,
+    object: number | null = null,
+  ): Pull {
     const line = new Line(
       new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(6), 3)),
       new LineBasicMaterial({ color: new Color(PULL_COLOR), depthTest: false, transparent: true }),
@@ -63,7 +83,7 @@ export class Grabs {
     line.frustumCulled = false;
     line.renderOrder = 8;
     this.group.add(line);
-    const pull = { id, vertex, target, stiffness, line };
+    const pull = { id, vertex, object, target, stiffness, line };
     this.pulls.set(id, pull);
     return pull;
   }
@@ -71,7 +91,7 @@ export class Grabs {
   /** Move what is held to where a ray meets the plane of the grab. */
   move(ray: Ray): void {
     if (!this.held) return;
-    ray.intersectPlane(this.plane, this.held.target);
+    if (ray.intersectPlane(this.plane, this.held.target)) this.held.target.add(this.offset);
   }
 
   /** Move the plane of the grab toward the eye, or away from it. */
@@ -87,8 +107,8 @@ export class Grabs {
   }
 
   private tell(pull: Pull): void {
-    const { id, vertex, target, stiffness } = pull;
-    send({ t: "grab", id, vertex, target: [target.x, target.y, target.z], stiffness });
+    const { id, vertex, object, target, stiffness } = pull;
+    send({ t: "grab", id, vertex, object, target: [target.x, target.y, target.z], stiffness });
     this.sent = target.clone();
   }
 
@@ -128,12 +148,14 @@ export class Grabs {
   }
 
   /** Draw the springs, and give their words. */
-  update(mesh: Places): Label[] {
+  update(mesh: Places, middleOf: (object: number) => Vector3 | undefined): Label[] {
     const states = useStudio.getState().stat?.grabs ?? [];
     const labels: Label[] = [];
     const from = new Vector3();
     for (const pull of this.pulls.values()) {
-      mesh.place(pull.vertex, 1, from);
+      const middle = pull.object === null ? undefined : middleOf(pull.object);
+      if (middle) from.copy(middle);
+      else mesh.place(pull.vertex, 1, from);
       const places = pull.line.geometry.getAttribute("position") as BufferAttribute;
       places.setXYZ(0, from.x, from.y, from.z);
       places.setXYZ(1, pull.target.x, pull.target.y, pull.target.z);

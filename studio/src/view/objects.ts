@@ -9,6 +9,8 @@ import {
   GLSL3,
   Group,
   type IUniform,
+  type Ray,
+  Raycaster,
   Matrix4,
   Mesh,
   ShaderMaterial,
@@ -182,7 +184,28 @@ export class RigidObjects {
     }));
   }
 
+  /** The free object that a ray meets first: its place in the list, where it is met, and its middle. */
+  hit(ray: Ray): { index: number; point: Vector3; middle: Vector3 } | null {
+    const caster = new Raycaster();
+    caster.ray.copy(ray);
+    let best: { index: number; point: Vector3; middle: Vector3; distance: number } | null = null;
+    for (const [index, { object, mesh, middle }] of this.drawn.entries()) {
+      if (object.motion !== "free") continue;
+      mesh.matrixWorld.copy(mesh.matrix);
+      const [met] = caster.intersectObject(mesh, false);
+      if (met && met.distance < (best?.distance ?? Number.POSITIVE_INFINITY)) {
+        best = { index, point: met.point, middle: middle.clone(), distance: met.distance };
+      }
+    }
+    return best;
+  }
+
   /** Where the middle of an object is drawn, m. */
+  middleAt(index: number): Vector3 | undefined {
+    return this.drawn[index]?.middle;
+  }
+
+  /** The same of one that is known by its name. */
   middleOf(name: string): [number, number, number] | null {
     return this.drawn.find((one) => one.object.name === name)?.middle.toArray() ?? null;
   }

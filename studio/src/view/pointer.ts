@@ -12,6 +12,7 @@ const STILL = 4;
 type Gesture =
   | { kind: "steer"; motion: Motion }
   | { kind: "maybe-pull"; hit: Target }
+  | { kind: "maybe-hold"; object: NonNullable<ReturnType<Viewport["hitObject"]>> }
   | { kind: "pull" };
 
 export function listen(view: Viewport): void {
@@ -25,8 +26,10 @@ export function listen(view: Viewport): void {
     canvas.setPointerCapture(event.pointerId);
     start = last = { x: event.clientX, y: event.clientY };
     const hit = event.button === 0 && !event.altKey ? view.hit(event.clientX, event.clientY) : null;
+    const object = event.button === 0 && !event.altKey ? view.hitObject(event.clientX, event.clientY) : null;
     const motion = hit ? null : motionOf(useView.getState().scheme, event);
-    if (hit) gesture = { kind: "maybe-pull", hit };
+    if (object && mayPull()) gesture = { kind: "maybe-hold", object };
+    else if (hit) gesture = { kind: "maybe-pull", hit };
     else gesture = motion && { kind: "steer", motion };
     event.preventDefault();
   });
@@ -52,6 +55,16 @@ export function listen(view: Viewport): void {
         canvas.style.cursor = "grabbing";
         if (useStudio.getState().stat?.state !== "playing") send({ t: "play" });
       } else gesture = { kind: "steer", motion: "turn" };
+    } else if (gesture.kind === "maybe-hold") {
+      const far = Math.hypot(event.clientX - start.x, event.clientY - start.y);
+      if (far < STILL) return;
+      const { index, point, middle } = gesture.object;
+      view.grabs.beginObject(index, point, middle, view.rig.toEye);
+      view.grabs.move(view.ray(event.clientX, event.clientY));
+      gesture = { kind: "pull" };
+      view.hoverOver(null);
+      canvas.style.cursor = "grabbing";
+      if (useStudio.getState().stat?.state !== "playing") send({ t: "play" });
     } else view.grabs.move(view.ray(event.clientX, event.clientY));
     view.request();
   });

@@ -231,7 +231,7 @@ export class Viewport {
     this.objects.build(body?.objects ?? []);
     // Only what may touch something has fields of contact.
     const shown = hello?.fields.find((one) => one.id === useView.getState().field);
-    if (body && !body.not_live && shown?.contact) setView({ field: 0, range: "auto" });
+    if (body && !body.touches && shown?.contact) setView({ field: 0, range: "auto" });
     this.takeIn();
     this.coverSurface();
     this.request();
@@ -506,7 +506,10 @@ export class Viewport {
     if (view.extremes && varies && view.coloring === "field")
       labels.push(...this.extremeWords(mesh, view));
     const places = this.places;
-    if (places) labels.push(...this.grabs.update(places));
+    if (places) {
+      const middleOf = (object: number) => this.objects.middleAt(object);
+      labels.push(...this.grabs.update(places, middleOf));
+    }
     if (places) labels.push(...this.spot.labels(places, view.exaggeration));
     const tape = places ? this.tape.update(places, view.exaggeration) : null;
     if (tape) labels.push(...tape.labels);
@@ -597,6 +600,15 @@ export class Viewport {
     return targetOf(this.ray(x, y), surface, mesh, positions, smooth, keep);
   }
 
+  /** The free object under the pointer, in front of the body. */
+  hitObject(x: number, y: number): ReturnType<RigidObjects["hit"]> {
+    if (!this.objects.group.visible) return null;
+    const found = this.objects.hit(this.ray(x, y));
+    const body = found && this.hit(x, y);
+    const far = (point: Vector3) => point.distanceToSquared(this.ray(x, y).origin);
+    return found && body && far(body.point) < far(found.point) ? null : found;
+  }
+
   /** Where the vertices of the surface are drawn, also where tetrahedra stand for it. */
   get places(): Places | null {
     const [surface, mesh] = [this.surface, this.shownMesh()];
@@ -633,7 +645,8 @@ export class Viewport {
     this.lastHover = now;
     const hit = this.hit(this.hoverAt.x, this.hoverAt.y);
     const frame = this.shownMesh()?.frame;
-    const pulled = hit && !useStudio.getState().body?.not_live;
+    const object = this.hitObject(this.hoverAt.x, this.hoverAt.y);
+    const pulled = (hit || object) && !useStudio.getState().body?.not_live;
     this.renderer.domElement.style.cursor = view.tape ? "crosshair" : pulled ? "grab" : "";
     if (!hit || !frame || view.coloring !== "field") {
       if (useShown.getState().hover) useShown.setState({ hover: null });

@@ -151,20 +151,50 @@ def test_objects_to_grip_are_added_beside_the_body_and_taken_back(served, open_t
     assert tab.errors == []
 
 
+RUBBER = '{ model = "neo-hookean", young = "1 MPa", poisson = 0.45, density = "1100 kg/m^3" }'
+LATTICE = '{ model = "lattice", edge = "400 kPa", bulk = "1 MPa", density = "1100 kg/m^3" }'
+
+
 @pytest.fixture
 def pinch(tmp_path, serving):
-    text = PINCH.read_text().replace('end_time = "0.5 s"', 'end_time = "0.2 s"')
-    server = serving(tmp_path, text, "pinch.toml")
+    server = serving(tmp_path, PINCH.read_text(), "pinch.toml")
     yield server
     server.stop()
 
 
-def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_solution(pinch, open_tab):
+@pytest.fixture
+def pinch_of_lattice(tmp_path, serving):
+    text = PINCH.read_text().replace('end_time = "0.5 s"', 'end_time = "0.2 s"')
+    assert RUBBER in text
+    server = serving(tmp_path, text.replace(RUBBER, LATTICE), "pinch.toml")
+    yield server
+    server.stop()
+
+
+def test_pads_touch_a_plate_live_and_it_is_told(pinch, open_tab):
     tab = open_tab(pinch.address, mode="simulate", size=(1000, 640))
+    tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
+    assert tab.find("not-live").count() == 0
+    began = tab.page.evaluate("voxsoft.objectPosition('plate')[2]")
+    tab.find("play").click()
+    tab.until(f"voxsoft.objectPosition('plate')[2] < {began} - 1e-6")
+    tab.until("document.querySelector('[data-testid=contacts] .touch') !== null")
+    assert "plate" in tab.find("contacts").inner_text()
+    tab.until("voxsoft.time > 0.3")
+    # Held by friction, not fallen: 0.2 s of a free fall would be 20 cm.
+    assert tab.page.evaluate("voxsoft.objectPosition('plate')[2]") > began - 2e-3
+    tab.shot("objects_live")
+    assert tab.errors == []
+
+
+def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_solution(
+    pinch_of_lattice, open_tab
+):
+    tab = open_tab(pinch_of_lattice.address, mode="simulate", size=(1000, 640))
     tab.until("window.voxsoft !== undefined && voxsoft.objectPosition('plate') !== null")
     banner = tab.find("not-live")
     banner.wait_for()
-    assert "Live motion knows no contact" in banner.inner_text()
+    assert "Live motion knows contact of rubber alone" in banner.inner_text()
     assert tab.find("play").is_disabled()
     tab.shot("objects_not_live")
     # A press on the body turns the view: nothing answers to a pull.

@@ -92,7 +92,10 @@ impl Touch {
             .map(|c| corners[c])
             .collect();
         let mut sum = [0.0; 3];
-        for &other in &self.around[on[0] as usize] {
+        let Some(&first) = on.first() else {
+            return sum; // The weights of points that are no numbers.
+        };
+        for &other in &self.around[first as usize] {
             let of_other = self.triangles[other as usize];
             if !on.iter().all(|point| of_other.contains(point)) {
                 continue;

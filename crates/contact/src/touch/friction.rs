@@ -4,7 +4,7 @@ use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::Touch;
-use super::state::State;
+use super::state::{Memory, State};
 
 /// How friction acts on a sample.
 #[derive(Debug, Clone, Copy)]
@@ -30,12 +30,24 @@ impl Touch {
         points: &[Vec3],
     ) -> Option<Friction> {
         let memory = &state.now[sample as usize];
-        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
         let k = state.stick * self.penalty(sample);
+        Friction::new(memory, k, point, |triangle| self.corners(triangle, points))
+    }
+}
+
+impl Friction {
+    /// That of a sample at `point` with a penalty of slip `k` (N/m); `None` without a bound or an anchor.
+    pub(super) fn new(
+        memory: &Memory,
+        k: f64,
+        point: Vec3,
+        corners_of: impl FnOnce(u32) -> [Vec3; 3],
+    ) -> Option<Self> {
+        let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
         let n = memory.plane;
         let along = |v: Vec3| sub(v, scale(dot(v, n), n));
         let mut slip = point;
-        for (weight, corner) in anchor.1.iter().zip(self.corners(anchor.0, points)) {
+        for (weight, corner) in anchor.1.iter().zip(corners_of(anchor.0)) {
             axpy(&mut slip, -weight, corner);
         }
         let trial = sub(along(memory.friction), scale(k, along(slip)));
@@ -58,7 +70,7 @@ impl Touch {
                 }
             })
         });
-        Some(Friction {
+        Some(Self {
             force,
             stiffness,
             energy,
@@ -66,7 +78,9 @@ impl Touch {
             slips,
         })
     }
+}
 
+impl Touch {
     /// Hands over the friction of every sample that has some.
     pub(super) fn each_friction(
         &self,

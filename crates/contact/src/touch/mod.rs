@@ -27,6 +27,7 @@ mod field;
 mod friction;
 pub(crate) mod gap;
 mod listing;
+pub mod live;
 mod mortar;
 mod path;
 mod predicted;
@@ -37,6 +38,7 @@ mod state;
 pub(crate) mod surface;
 mod term;
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use voxsoft_solid::vector::{Vec3, axpy, dot};
@@ -120,6 +122,8 @@ pub struct Touch {
     around: Vec<Vec<u32>>,
     /// For each sample the ties that it is in, with the surface that they are to.
     ties_at: Vec<Vec<(u32, u32)>>,
+    /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
+    penalty: AtomicU64,
     state: RwLock<State>,
 }
 
@@ -135,6 +139,28 @@ struct Meeting {
     gap: f64,
     /// From the triangle to the sample.
     normal: Vec3,
+}
+
+impl Meeting {
+    /// How a sample at `point` lies to what it faces, a triangle with these corners.
+    fn new(sample: u32, facing: Facing, point: Vec3, corners: [Vec3; 3]) -> Self {
+        let (weights, normal, inside) = match facing {
+            Facing::Plane(_) => (gap::affine(point, corners), normal(corners), true),
+            Facing::Edge(_, weights, normal) => (weights, normal, false),
+        };
+        let mut away = point;
+        for (weight, corner) in weights.iter().zip(corners) {
+            axpy(&mut away, -weight, corner);
+        }
+        Self {
+            sample,
+            triangle: facing.triangle(),
+            weights,
+            inside,
+            gap: dot(away, normal),
+            normal,
+        }
+    }
 }
 
 impl Touch {
@@ -194,6 +220,7 @@ impl Touch {
             surface_of,
             around,
             ties_at: Vec::new(),
+            penalty: AtomicU64::new(PENALTY.to_bits()),
             state: RwLock::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());
@@ -209,6 +236,11 @@ impl Touch {
         self.bodies = bodies;
         self.shares = shares;
         self
+    }
+
+    /// Who touches whom, and how.
+    pub fn description(&self) -> &Description {
+        &self.description
     }
 
     /// The vertices that stand for a point, as points are numbered over all surfaces.
@@ -246,7 +278,8 @@ impl Touch {
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
         let sample = &self.samples[sample as usize];
-        let per_area = PENALTY * self.description.young / self.description.voxel;
+        let penalty = f64::from_bits(self.penalty.load(Ordering::Relaxed));
+        let per_area = penalty * self.description.young / self.description.voxel;
         per_area * sample.area.max(self.least_area[sample.surface as usize]) / 2.0
     }
 
@@ -256,25 +289,8 @@ impl Touch {
 
     /// How a sample at `point` lies to what it faces.
     fn meeting(&self, sample: u32, facing: Facing, point: Vec3, points: &[Vec3]) -> Meeting {
-        let (triangle, weights, normal, inside) = match facing {
-            Facing::Plane(triangle) => {
-                let corners = self.corners(triangle, points);
-                (triangle, gap::affine(point, corners), normal(corners), true)
-            }
-            Facing::Edge(triangle, weights, normal) => (triangle, weights, normal, false),
-        };
-        let mut away = point;
-        for (weight, corner) in weights.iter().zip(self.corners(triangle, points)) {
-            axpy(&mut away, -weight, corner);
-        }
-        Meeting {
-            sample,
-            triangle,
-            weights,
-            inside,
-            gap: dot(away, normal),
-            normal,
-        }
+        let corners = self.corners(facing.triangle(), points);
+        Meeting::new(sample, facing, point, corners)
     }
 
     /// The force with which a sample is pushed away, N.

@@ -276,7 +276,7 @@ impl Touch {
     }
 
     /// How far any point has moved since candidates were listed, in voxels.
-    fn farthest_from_listed(&self, state: &State, points: &[Vec3]) -> f64 {
+    pub(super) fn farthest_from_listed(&self, state: &State, points: &[Vec3]) -> f64 {
         let moved = |(a, b): (&Vec3, &Vec3)| norm(sub(*a, *b));
         let farthest = points.iter().zip(&state.listed_points).map(moved);
         farthest.fold(0.0, f64::max) / self.description.voxel
@@ -366,7 +366,7 @@ impl Touch {
     }
 
     /// Lets samples look for what they face: all of them, or those that have strayed from it.
-    fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
+    pub(super) fn face(&self, state: &mut State, positions: &[Vec3], all: bool) {
         let points = self.points_at(positions);
         let facing = |index: usize| {
             if state.candidates[index].is_empty() {

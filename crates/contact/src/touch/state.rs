@@ -34,6 +34,14 @@ pub enum Facing {
     Edge(u32, [f64; 3], Vec3),
 }
 
+impl Facing {
+    pub fn triangle(self) -> u32 {
+        match self {
+            Self::Plane(triangle) | Self::Edge(triangle, ..) => triangle,
+        }
+    }
+}
+
 /// The state of all samples.
 #[derive(Debug, Clone, Default)]
 pub(super) struct State {

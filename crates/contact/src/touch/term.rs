@@ -6,6 +6,7 @@ use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, dot, scale};
 use voxsoft_solid::{ProblemError, Strain, Term};
 
+use super::friction::Friction;
 use super::gap::barycentric_gradients;
 use super::predicted::PredictedPressures;
 use super::state::State;
@@ -105,20 +106,13 @@ impl Touch {
             self.visit_gap(meeting, pressure, points, visit);
         });
         self.each_friction(state, positions, |sample, friction| {
-            let [b0, b1, b2] = friction.anchor.1;
-            let factors = [1.0, -b0, -b1, -b2];
-            let block = |a: usize, b: usize| {
-                friction
-                    .stiffness
-                    .map(|row| scale(factors[a] * factors[b], row))
-            };
-            self.visit_local(sample, friction.anchor.0, block, visit);
+            self.visit_friction(sample, &friction, visit);
         });
         self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
     /// Hands over a matrix on the sample and the corners of a triangle as one on the vertices that carry them.
-    fn visit_local(
+    pub(super) fn visit_local(
         &self,
         sample: u32,
         triangle: u32,
@@ -157,14 +151,36 @@ impl Touch {
         visit(&vertices, &matrix);
     }
 
+    /// The stiffness of friction.
+    pub(super) fn visit_friction(&self, sample: u32, friction: &Friction, visit: Visitor<'_>) {
+        let [b0, b1, b2] = friction.anchor.1;
+        let factors = [1.0, -b0, -b1, -b2];
+        let block = |a: usize, b: usize| {
+            friction
+                .stiffness
+                .map(|row| scale(factors[a] * factors[b], row))
+        };
+        self.visit_local(sample, friction.anchor.0, block, visit);
+    }
+
     /// The stiffness of a pressed gap: `k n nᵀ` and how the normal turns under the pressure.
-    fn visit_gap(&self, meeting: &Meeting, pressure: f64, points: &[Vec3], visit: Visitor<'_>) {
+    pub(super) fn visit_gap(
+        &self,
+        meeting: &Meeting,
+        pressure: f64,
+        points: &[Vec3],
+        visit: Visitor<'_>,
+    ) {
         let k = self.penalty(meeting.sample);
         let n = meeting.normal;
         let [b0, b1, b2] = meeting.weights;
         let factors = [1.0, -b0, -b1, -b2];
         let turning = meeting.inside && pressure > 0.0;
-        let gradients = barycentric_gradients(self.corners(meeting.triangle, points));
+        let gradients = if turning {
+            barycentric_gradients(self.corners(meeting.triangle, points))
+        } else {
+            [[0.0; 3]; 3]
+        };
         let block = |a: usize, b: usize| {
             let mut block: Mat3 = std::array::from_fn(|i| {
                 std::array::from_fn(|j| k * factors[a] * factors[b] * n[i] * n[j])

@@ -3,19 +3,47 @@
 use voxsoft_solid::vector::{Vec3, axpy, sub};
 
 use super::Implicit;
+use super::contact::restore;
+use super::objective::{Goal, Objective, Value};
 
 /// The kinetic energy over the elastic one above which a step looks whether the motion goes on as it did.
 const VIOLENT: f64 = 1e-3;
 
 impl Implicit {
+    /// Where the search begins, evaluated, and the potential of standing still where that is known.
+    pub(super) fn first_guess(&mut self, goal: Goal<'_>) -> (Vec<Vec3>, Value, f64) {
+        let (positions, value) = self.judged(self.predicted(goal.time), goal);
+        if !self.is_violent() && !self.touches(&positions) {
+            let bound = value.potential;
+            return (positions, value, bound);
+        }
+        // The motion may not go on as it did: a load has jumped, or something is met.
+        let (stayed, other) = self.judged(self.stayed(goal.time), goal);
+        let bound = other.potential;
+        if !(value.potential <= bound) {
+            return (stayed, other, bound);
+        }
+        let (positions, value) = self.judged(positions, goal);
+        (positions, value, bound)
+    }
+
+    /// A guess, what it faces being looked for there.
+    fn judged(&mut self, positions: Vec<Vec3>, goal: Goal<'_>) -> (Vec<Vec3>, Value) {
+        self.face(&positions, true);
+        let mut value = Value::default();
+        let problem = &self.problem;
+        Objective { problem, goal }.evaluate(&positions, &mut value);
+        (positions, value)
+    }
+
     /// Whether the body moves so fast, or has changed so much, that its motion cannot be foreseen.
-    pub(super) fn is_violent(&self) -> bool {
+    fn is_violent(&self) -> bool {
         let kinetic = self.state.kinetic_energy(self.problem.body().masses());
         !(kinetic <= VIOLENT * self.value.energy)
     }
 
     /// Where the search begins: the motion goes on as it did, clamps are where they belong.
-    pub(super) fn predicted(&self, time: f64) -> Vec<Vec3> {
+    fn predicted(&self, time: f64) -> Vec<Vec3> {
         let step = time - self.state.time;
         let mut positions = self.state.positions.clone();
         if let Some(before) = &self.before {
@@ -31,11 +59,12 @@ impl Implicit {
             }
         }
         self.place(time, &mut positions);
+        restore(&self.problem, &mut positions);
         positions
     }
 
     /// Where it begins instead: where the body is, but for its clamps.
-    pub(super) fn stayed(&self, time: f64) -> Vec<Vec3> {
+    fn stayed(&self, time: f64) -> Vec<Vec3> {
         let mut positions = self.state.positions.clone();
         self.place(time, &mut positions);
         positions

@@ -7,7 +7,7 @@
 
 use voxsoft_solid::brick::{Tangent, Within};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Load, Problem, elastic};
+use voxsoft_solid::{Load, Problem, elastic};
 
 use super::turns::Turns;
 use crate::direct::{DirectFactor, DirectSystem};
@@ -57,7 +57,7 @@ impl Lagged {
             factor: None,
             inertia: 0.0,
             patches: Vec::new(),
-            turns: Turns::new(problem.body(), problem.held()),
+            turns: Turns::new(problem),
         })
     }
 
@@ -73,40 +73,29 @@ impl Lagged {
         (self.system.factor_entries() as f64 / self.system.size() as f64 / 16.0).max(4.0)
     }
 
-    /// Takes the stiffness at `positions` and `time`, that of the loads included where they have a potential.
+    /// Takes the stiffness at `positions` and `time`, that of the loads included where they have a potential; or, where
+    /// it is to be [`Tangent::Stressless`], without what stress and loads add to it.
     pub fn assemble(
         &mut self,
         problem: &Problem,
         positions: &[Vec3],
         time: f64,
         within: &[Within],
+        tangent: Tangent,
     ) {
-        let loads = self.conservative;
+        let loads = self.conservative && tangent == Tangent::Exact;
         self.system.assemble_pieces(None, &mut [], |add| {
-            elastic::visit_tangent(problem.body(), positions, within, Tangent::Exact, add);
+            elastic::visit_tangent(problem.body(), positions, within, tangent, add);
             if loads {
                 let factor_of = |load: &Load| load.history.at(time);
                 problem.visit_load_stiffness(positions, &factor_of, add);
             }
         });
-        self.start(problem.body(), positions);
+        self.start(problem, positions);
     }
 
-    /// Takes the stiffness at `positions` without what stress and loads add to it.
-    pub fn assemble_stressless(
-        &mut self,
-        problem: &Problem,
-        positions: &[Vec3],
-        within: &[Within],
-    ) {
-        self.system.assemble_pieces(None, &mut [], |add| {
-            elastic::visit_tangent(problem.body(), positions, within, Tangent::Stressless, add);
-        });
-        self.start(problem.body(), positions);
-    }
-
-    fn start(&mut self, body: &Body, positions: &[Vec3]) {
-        self.turns.start(body, positions);
+    fn start(&mut self, problem: &Problem, positions: &[Vec3]) {
+        self.turns.start(problem, positions);
         self.assembled = true;
         self.factor = None;
     }
@@ -197,8 +186,8 @@ impl Lagged {
     }
 
     /// Takes the turns of all vertices up to `positions`; those on the floor do not turn.
-    pub fn turn(&mut self, body: &Body, positions: &[Vec3], carried: &[bool]) {
-        self.turns.take(body, positions, carried);
+    pub fn turn(&mut self, problem: &Problem, positions: &[Vec3], carried: &[bool]) {
+        self.turns.take(problem, positions, carried);
     }
 
     /// `R A⁻¹ Rᵀ` times forces on free coordinates: moves of all vertices, and of the free coordinates.

@@ -2,13 +2,17 @@
 
 use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::determinant;
-use voxsoft_solid::vector::{Vec3, add, norm, scale};
+use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 use voxsoft_solid::{Ask, Problem};
 
+use super::contact::{make_rigid, restore};
 use super::lagged::Lagged;
 use super::objective::{Objective, Value};
 use super::quasi_newton::{Memory, product};
 
+/// The parts of [`Tolerance`].
+const MOVE_OF_STEP: f64 = 1e-2;
+const MOVE_OF_FORCES: f64 = 3e-2;
 /// Armijo's condition: the part of the predicted gain that a move must bring.
 const SUFFICIENT: f64 = 1e-4;
 /// The largest stretch of a voxel after a move, unless it is stretched farther already: no elastomer follows.
@@ -29,6 +33,8 @@ const LEAST_VOLUME: f64 = 0.05;
 pub(super) enum End {
     /// The last move was as small as asked.
     Found,
+    /// As many moves as allowed, the last one being small enough where surfaces touch.
+    Rough,
     /// As many moves as allowed.
     Slow,
     /// No move along the direction helps.
@@ -44,8 +50,35 @@ pub(super) struct Search<'a> {
     pub memory: &'a mut Memory,
     /// Coordinates that do not move besides the clamped ones: vertices on the floor.
     pub carried: &'a [bool],
-    /// A move (m) after which the search ends.
-    pub tolerance: f64,
+    /// After which move it ends.
+    pub tolerance: Tolerance<'a>,
+}
+
+/// How small the last move of a search must be: as a part of how far the step has come, and of how far forces have
+/// driven it from where the body would be without them.
+pub(super) struct Tolerance<'a> {
+    /// The positions that the step starts from, m.
+    pub from: &'a [Vec3],
+    /// Where the body would be without forces, m.
+    pub free: &'a [Vec3],
+    /// What is small in any case, m.
+    pub least: f64,
+    /// How many times as large a last move may be that ends a search which has taken as many as allowed.
+    pub rough: f64,
+}
+
+impl Tolerance<'_> {
+    fn at(&self, positions: &[Vec3]) -> f64 {
+        (MOVE_OF_STEP * farthest(positions, self.from))
+            .min(MOVE_OF_FORCES * farthest(positions, self.free))
+            .max(self.least)
+    }
+}
+
+/// The largest distance between two places of a vertex.
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
+    let pairs = a.iter().zip(b);
+    pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
 impl Search<'_> {
@@ -60,24 +93,27 @@ impl Search<'_> {
         let problem = self.objective.problem;
         let mut trial = Vec::with_capacity(positions.len());
         let mut next = Value::default();
-        let mut force = self.free_force(value);
+        let mut force = self.free_force(positions, value);
         let mut extremes = Extremes::of(problem, positions);
+        let mut last = f64::INFINITY;
         for taken in 0..most {
             if !go_on(Ask::Within) {
                 return (End::Cancelled, taken);
             }
-            self.lagged.turn(problem.body(), positions, self.carried);
+            self.lagged.turn(problem, positions, self.carried);
             let lagged = &*self.lagged;
             let direction = self
                 .memory
                 .direction(force.clone(), |side| lagged.apply(side));
+            let mut moves = lagged.spread(&direction);
+            make_rigid(problem, positions, &mut moves);
+            let direction = lagged.gather(&moves);
             let gain = product(&direction, &force);
             if !(gain > 0.0) {
                 // A force of zero, or rounding.
                 let end = if gain == 0.0 { End::Found } else { End::Stuck };
                 return (end, taken);
             }
-            let moves = lagged.spread(&direction);
             let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
             let mut part = (LARGEST_CHANGE / largest_change(problem, &moves)).min(1.0);
             let mut halvings = 0;
@@ -85,6 +121,7 @@ impl Search<'_> {
                 trial.clear();
                 let pairs = positions.iter().zip(&moves);
                 trial.extend(pairs.map(|(x, m)| add(*x, scale(part, *m))));
+                restore(problem, &mut trial);
                 let new = Extremes::of(problem, &trial);
                 if new.are_sound_after(extremes) {
                     self.objective.evaluate(&trial, &mut next);
@@ -105,16 +142,18 @@ impl Search<'_> {
             }
             std::mem::swap(positions, &mut trial);
             std::mem::swap(value, &mut next);
-            let after = self.free_force(value);
+            let after = self.free_force(positions, value);
             let change = force.iter().zip(&after).map(|(a, b)| a - b).collect();
             let step = direction.iter().map(|d| part * d).collect();
-            self.memory.note(step, change);
+            self.memory.note(step, change, part * part * gain);
             force = after;
-            if part * largest <= self.tolerance {
+            last = part * largest;
+            if last <= self.tolerance.at(positions) {
                 return (End::Found, taken + 1);
             }
         }
-        (End::Slow, most)
+        let rough = last <= self.tolerance.rough * self.tolerance.at(positions);
+        (if rough { End::Rough } else { End::Slow }, most)
     }
 
     /// What potentials are known to, in J.
@@ -130,8 +169,15 @@ impl Search<'_> {
     }
 
     /// Minus the gradient on free coordinates.
-    fn free_force(&self, value: &Value) -> Vec<f64> {
-        let mut force = self.lagged.gather(&value.net);
+    fn free_force(&self, positions: &[Vec3], value: &Value) -> Vec<f64> {
+        let problem = self.objective.problem;
+        let mut force = if problem.rigid().is_empty() {
+            self.lagged.gather(&value.net)
+        } else {
+            let mut net = value.net.clone();
+            make_rigid(problem, positions, &mut net);
+            self.lagged.gather(&net)
+        };
         for (vertex, _) in self.carried.iter().enumerate().filter(|(_, c)| **c) {
             if let Some(row) = self.lagged.row_of(vertex, 2) {
                 force[row] = 0.0;

@@ -12,6 +12,7 @@
 //! steps ([`minimize`]) with a factor of the tangent that serves many steps ([`lagged`]); it is made anew where the
 //! moves that an old one costs would have paid for it.
 
+mod contact;
 mod floor;
 mod guess;
 mod lagged;
@@ -26,12 +27,14 @@ mod turns;
 mod viscosity;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::brick::Tangent;
 use voxsoft_solid::hands::{Hands, shortest_edge};
-use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
+use voxsoft_solid::vector::{Vec3, add, axpy, scale, sub};
 use voxsoft_solid::{Ask, Damping, LiveStatus, Problem, State};
 
+use self::contact::{DEEP_ROUNDS, FACING_ROUNDS};
 use self::lagged::Lagged;
-use self::minimize::{End, Search};
+use self::minimize::{End, Search, Tolerance};
 use self::objective::{Goal, Objective, Value};
 use self::pressures::Pressures;
 use self::quasi_newton::Memory;
@@ -45,11 +48,17 @@ use crate::system::{FactorError, Means};
 const MOST_MOVES: u32 = 8;
 /// Searches of one step, after which it counts as failed.
 const MOST_SEARCHES: u32 = 30;
-/// The last move of a search, as a part of how far the step goes, of how far forces drive it from where the body
-/// would be without them, and of the shortest edge.
-const MOVE_OF_STEP: f64 = 1e-2;
-const MOVE_OF_FORCES: f64 = 3e-2;
+/// A last move of a search that is small in any case, as a part of the shortest edge; where there is contact, a
+/// hundredth of its clearance.
 const MOVE_OF_EDGE: f64 = 1e-9;
+const MOVE_IN_CONTACT: f64 = 1e-5;
+/// Where there is contact: moves of one search, and how many times as large its last move may be after them. What comes
+/// into contact or leaves it is not in the factor.
+const MOST_MOVES_IN_CONTACT: u32 = 12;
+const ROUGH: f64 = 10.0;
+/// Tangents of one step where there is contact: it ends where it has come to then, unless it would have been better to
+/// stand still, and says that it has not settled.
+const SEARCHES_IN_CONTACT: u32 = 6;
 /// By how much the inertia of a factor may be off.
 const INERTIA_RANGE: f64 = 1.5;
 /// How fast an anchor goes, in shortest edges per second: one edge in a step of 1/60 s. Where time is shown slower
@@ -61,6 +70,11 @@ const ANCHOR_SPEED: f64 = 60.0;
 const MAX_BACK_OFFS: u32 = 10;
 /// Good steps after which a halved one is doubled again.
 const PATIENCE: u32 = 3;
+/// The tangent is factorized directly, whatever its size.
+const MEANS: Means = Means {
+    solver: LinearSolver::Direct,
+    memory: u64::MAX,
+};
 /// Rounds of a step in which vertices may touch the floor or leave it.
 const FLOOR_ROUNDS: u32 = 3;
 
@@ -135,6 +149,12 @@ pub struct Implicit {
     value: Value,
     /// Vertices that the floor carries.
     carried: Vec<bool>,
+    /// Whether the last step went on to the end of its search.
+    settled: bool,
+    /// Whether anything was pressed at the state.
+    touching: bool,
+    /// Whether contact joins other vertices than the tangent has room for.
+    pattern_changed: bool,
     damping_rate: f64,
     step: f64,
     steps: u64,
@@ -177,6 +197,9 @@ impl Implicit {
             before: None,
             value: Value::default(),
             carried: vec![false; state.positions.len()],
+            settled: true,
+            touching: false,
+            pattern_changed: false,
             damping_rate: initial_rate(settings.damping),
             step: settings.step.clamp(STEPS[0], STEPS[1]),
             steps: 0,
@@ -222,9 +245,27 @@ impl Implicit {
         }
     }
 
+    /// By the second-order formula, but for what touches.
     fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        let second_order = self.before.is_some() && !self.touching;
+        let mut found = self.find(second_order, go_on);
+        if second_order && matches!(&found, Ok((next, _)) if self.touches(&next.positions)) {
+            self.go_back();
+            found = self.find(false, go_on);
+        }
+        let (next, value) = found.inspect_err(|_| self.go_back())?;
+        self.accept(next, value)
+    }
+
+    /// The end of a step that starts from the state, by the second-order formula or by backward Euler.
+    fn find(
+        &mut self,
+        second_order: bool,
+        go_on: &mut dyn FnMut(Ask) -> bool,
+    ) -> Result<(State, Value), Failure> {
         let step = self.step;
-        let start = Start::new(&self.state, self.before.as_ref(), step);
+        let before = self.before.as_ref().filter(|_| second_order);
+        let start = Start::new(&self.state, before, step);
         let braked = start.rate + self.damping_rate;
         let inertia = start.rate * braked;
         let free: Vec<Vec3> = start
@@ -234,8 +275,8 @@ impl Implicit {
             .map(|(x, v)| std::array::from_fn(|i| x[i] + v[i] / braked))
             .collect();
         let time = self.state.time + step;
-        let anchors = self.hands.clone();
-        let grabs = self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
+        let mut hands = self.hands.clone();
+        let grabs = hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         let dead = (!self.problem.is_conservative()).then(|| {
             let mut forces = vec![[0.0; 3]; free.len()];
             self.problem
@@ -255,14 +296,7 @@ impl Implicit {
             dead: dead.as_deref(),
             within: &within,
         };
-        let found = self.minimize(goal, go_on);
-        let (mut positions, value) = match found {
-            Ok(found) => found,
-            Err(failure) => {
-                self.hands = anchors;
-                return Err(failure);
-            }
-        };
+        let (mut positions, value) = self.minimize(goal, go_on)?;
         self.keep_momentum(inertia, &mut positions, &value);
         let velocities = positions.iter().zip(&start.positions);
         let velocities = velocities.map(|(x, from)| scale(start.rate, sub(*x, *from)));
@@ -271,13 +305,30 @@ impl Implicit {
             positions,
             time,
         };
+        Ok((next, value))
+    }
+
+    /// Goes on from the end of a step, if it is sound.
+    fn accept(&mut self, next: State, value: Value) -> Result<(), Failure> {
+        let step = next.time - self.state.time;
         if let Some(place) =
-            Breakdown::find(&self.problem, &next.positions, self.travel_limit, time)
+            Breakdown::find(&self.problem, &next.positions, self.travel_limit, next.time)
         {
-            self.hands = anchors;
             self.breakdown = Some(place);
+            self.go_back();
             return Err(Failure::Lost);
         }
+        let touching = self.touches(&next.positions);
+        let taken = self
+            .problem
+            .contact()
+            .is_none_or(|contact| contact.take_step(&next.positions));
+        if !taken {
+            self.go_back();
+            return Err(Failure::Lost);
+        }
+        self.touching = touching;
+        self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if let Some(viscosity) = &mut self.viscosity {
             viscosity.end(self.problem.body(), &next.positions, step);
         }
@@ -290,53 +341,42 @@ impl Implicit {
         Ok(())
     }
 
+    /// Forgets what contact has learned since the state.
+    fn go_back(&self) {
+        if let Some(contact) = self.problem.contact() {
+            contact.go_back();
+        }
+    }
+
     /// The minimum of a step's potential.
     fn minimize(
         &mut self,
         goal: Goal<'_>,
         go_on: &mut dyn FnMut(Ask) -> bool,
     ) -> Result<(Vec<Vec3>, Value), Failure> {
-        let Goal { time, inertia, .. } = goal;
-        if self.lagged.is_none() {
-            let means = Means {
-                solver: LinearSolver::Direct,
-                memory: u64::MAX,
-            };
-            self.lagged = Some(Lagged::new(&self.problem, means)?);
-        }
-        let mut value = Value::default();
-        let mut positions = self.predicted(time);
-        let objective = Objective {
-            problem: &self.problem,
-            goal,
-        };
-        objective.evaluate(&positions, &mut value);
-        if self.is_violent() {
-            // The motion may not go on as it did: a load has jumped, or something is met.
-            let stayed = self.stayed(time);
-            let mut other = Value::default();
-            objective.evaluate(&stayed, &mut other);
-            if !(value.potential <= other.potential) {
-                (positions, value) = (stayed, other);
-            }
-        }
+        let Goal { inertia, .. } = goal;
+        let (mut positions, mut value, mut bound) = self.first_guess(goal);
+        self.settled = true;
         let mut rounds = 0;
         let mut searches = 0;
         let mut fresh = false;
+        let (least, most, rough) = self.patience();
         loop {
-            let springs = self.springs(inertia, goal.grabs);
-            let lagged = self.lagged.as_mut().expect("made above");
-            if !lagged.is_assembled() {
-                lagged.assemble(&self.problem, &positions, time, goal.within);
+            if !self.lagged.as_ref().is_some_and(Lagged::is_assembled) {
+                self.assemble(&positions, goal, Tangent::Exact)?;
                 fresh = true;
             }
+            let springs = self.springs(inertia, goal.grabs);
+            let lagged = self.lagged.as_mut().expect("assembled above");
             if !lagged.serves(inertia, INERTIA_RANGE) || !lagged.patch(&springs) {
                 if !go_on(Ask::Within) {
                     return Err(Failure::Cancelled);
                 }
                 if !lagged.factorize(inertia, &springs)? {
                     // Compressed, or swollen on the way: without what stress adds it is positive definite.
-                    lagged.assemble_stressless(&self.problem, &positions, goal.within);
+                    let (time, within) = (goal.time, goal.within);
+                    let tangent = Tangent::Stressless;
+                    lagged.assemble(&self.problem, &positions, time, within, tangent);
                     lagged.factorize_lifted(inertia, &springs)?;
                 }
                 self.memory.clear();
@@ -344,9 +384,6 @@ impl Implicit {
             if !value.potential.is_finite() {
                 return Err(Failure::Lost);
             }
-            let tolerance = (MOVE_OF_STEP * farthest(&positions, &self.state.positions))
-                .min(MOVE_OF_FORCES * farthest(&positions, goal.free))
-                .max(MOVE_OF_EDGE * self.shortest_edge);
             let mut search = Search {
                 objective: Objective {
                     problem: &self.problem,
@@ -355,48 +392,87 @@ impl Implicit {
                 lagged,
                 memory: &mut self.memory,
                 carried: &self.carried,
-                tolerance,
+                tolerance: Tolerance {
+                    from: &self.state.positions,
+                    free: goal.free,
+                    least,
+                    rough,
+                },
             };
-            let (end, moves) = search.run(&mut positions, &mut value, MOST_MOVES, go_on);
+            let (end, moves) = search.run(&mut positions, &mut value, most, go_on);
             if !fresh {
                 self.excess += f64::from(moves.saturating_sub(2));
             }
             match end {
                 End::Cancelled => return Err(Failure::Cancelled),
-                End::Found => {
+                End::Found | End::Rough => {
+                    if end == End::Rough {
+                        self.excess = f64::INFINITY;
+                    }
                     rounds += 1;
                     let changed = self.touch_floor(&mut positions, &value);
-                    if !changed || rounds > FLOOR_ROUNDS {
+                    if changed {
+                        let problem = &self.problem;
+                        Objective { problem, goal }.evaluate(&positions, &mut value);
+                    }
+                    let mut faced =
+                        self.faces_other(goal, &positions, &mut value) && rounds <= FACING_ROUNDS;
+                    if rounds <= DEEP_ROUNDS {
+                        let deep = self.stiffens(goal, &positions, &mut value);
+                        if deep {
+                            // Potentials under other penalties do not compare.
+                            bound = f64::INFINITY;
+                        }
+                        faced |= deep;
+                    }
+                    if !(changed && rounds <= FLOOR_ROUNDS || faced) {
                         break;
                     }
-                    let problem = &self.problem;
-                    Objective { problem, goal }.evaluate(&positions, &mut value);
                     continue;
                 }
                 End::Slow | End::Stuck => {}
             }
             searches += 1;
+            let contact = self.problem.contact().is_some();
+            let hopeless = searches > SEARCHES_IN_CONTACT || (fresh && end == End::Stuck);
+            if contact && hopeless {
+                self.settled = false;
+                self.faces_other(goal, &positions, &mut value);
+                if value.potential <= bound {
+                    break;
+                }
+                return Err(Failure::Lost);
+            }
             if searches > MOST_SEARCHES || (fresh && end == End::Stuck) {
                 return Err(Failure::Lost);
             }
-            if let Some(lagged) = &mut self.lagged {
-                lagged.assemble_stressless(&self.problem, &positions, goal.within);
-            }
-            self.excess = 0.0;
+            self.faces_other(goal, &positions, &mut value);
+            self.assemble(&positions, goal, Tangent::Stressless)?;
             fresh = true;
         }
         if self.excess > self.lagged.as_ref().map_or(0.0, Lagged::factor_cost) {
             // For the next step.
-            self.renew(&positions, goal);
+            self.assemble(&positions, goal, Tangent::Exact)?;
         }
         Ok((positions, value))
     }
 
-    fn renew(&mut self, positions: &[Vec3], goal: Goal<'_>) {
-        if let Some(lagged) = &mut self.lagged {
-            lagged.assemble(&self.problem, positions, goal.time, goal.within);
-        }
+    /// Takes the tangent at `positions`, where what is faced was looked for last.
+    fn assemble(
+        &mut self,
+        positions: &[Vec3],
+        goal: Goal<'_>,
+        tangent: Tangent,
+    ) -> Result<(), Failure> {
+        let problem = &self.problem;
+        let lagged = match &mut self.lagged {
+            Some(lagged) if !self.pattern_changed => lagged,
+            lagged => lagged.insert(Lagged::new(problem, MEANS)?),
+        };
+        self.pattern_changed = false;
+        lagged.assemble(problem, positions, goal.time, goal.within, tangent);
         self.excess = 0.0;
+        Ok(())
     }
 
     /// Moves a body that nothing holds as a whole, until all forces on it account for its momentum: the search ends
@@ -427,6 +503,10 @@ impl Implicit {
         self.pressures = Pressures::at(self.problem.body(), &state.positions);
         self.state = state;
         self.before = None;
+        self.touching = false;
+        if let Some(contact) = self.problem.contact() {
+            contact.start(&self.state.positions);
+        }
         self.value = Value::default();
         self.carried.fill(false);
         if let Some(viscosity) = &mut self.viscosity {
@@ -442,12 +522,6 @@ impl Implicit {
         self.excess = 0.0;
         self.wake();
     }
-}
-
-/// The largest distance between two places of a vertex.
-fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
-    let pairs = a.iter().zip(b);
-    pairs.map(|(a, b)| norm(sub(*a, *b))).fold(0.0, f64::max)
 }
 
 fn initial_rate(damping: Damping) -> f64 {

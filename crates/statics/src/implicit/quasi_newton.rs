@@ -3,6 +3,8 @@
 
 use std::collections::VecDeque;
 
+/// The least part of the curvature that was expected (Powell 1978, doi 10.1007/BFb0067703).
+const LEAST_CURVATURE: f64 = 0.2;
 /// Pairs that are kept.
 const MEMORY: usize = 6;
 
@@ -25,11 +27,12 @@ impl Memory {
         self.pairs.clear();
     }
 
-    /// Notes a move and the change of the gradient, if it shows a positive curvature.
-    pub fn note(&mut self, step: Vec<f64>, change: Vec<f64>) {
+    /// Notes a move and the change of the gradient along it, if that shows a curvature that is positive and not much less
+    /// than was `expected`: where contact was lost on the way, a pair would promise that nothing resists.
+    pub fn note(&mut self, step: Vec<f64>, change: Vec<f64>, expected: f64) {
         let along = product(&step, &change);
         let least = 1e-10 * product(&step, &step).sqrt() * product(&change, &change).sqrt();
-        if along > least {
+        if along > least.max(LEAST_CURVATURE * expected) {
             if self.pairs.len() == MEMORY {
                 self.pairs.pop_front();
             }

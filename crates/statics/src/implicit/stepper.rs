@@ -65,6 +65,7 @@ impl Stepper for Implicit {
             elastic: self.value.energy,
             kinetic: self.state.kinetic_energy(self.problem.body().masses()),
             breakdown: self.breakdown,
+            settled: self.settled,
         }
     }
 

@@ -4,7 +4,7 @@
 //! the mean of its voxels, that is off by what one voxel turns against the next, not by how far the body has gone:
 //! so a factor lasts while a finger curls up.
 
-use voxsoft_solid::Body;
+use voxsoft_solid::Problem;
 use voxsoft_solid::matrix::{IDENTITY, Mat3, apply, apply_transposed, multiply, polar, transpose};
 use voxsoft_solid::vector::{Vec3, add, axpy, cross, dot, norm, scale, sub};
 
@@ -16,12 +16,16 @@ pub(super) struct Turns {
     now: Vec<Mat3>,
     /// Vertices that do not turn, because some of their axes are held.
     fixed: Vec<bool>,
+    /// The positions when the tangent was taken: what is rigid turns from there.
+    from: Vec<Vec3>,
 }
 
 impl Turns {
-    /// `held` axes stay as they are.
-    pub fn new(body: &Body, held: &[[bool; 3]]) -> Self {
+    /// Axes that are held stay as they are.
+    pub fn new(problem: &Problem) -> Self {
+        let (body, held) = (problem.body(), problem.held());
         Self {
+            from: body.rest().to_vec(),
             before: vec![IDENTITY; body.voxels().len()],
             now: vec![IDENTITY; held.len()],
             fixed: held.iter().map(|axes| axes.contains(&true)).collect(),
@@ -29,17 +33,18 @@ impl Turns {
     }
 
     /// Counts from `positions` on.
-    pub fn start(&mut self, body: &Body, positions: &[Vec3]) {
-        for (before, voxel) in self.before.iter_mut().zip(body.voxels()) {
+    pub fn start(&mut self, problem: &Problem, positions: &[Vec3]) {
+        self.from.copy_from_slice(positions);
+        for (before, voxel) in self.before.iter_mut().zip(problem.body().voxels()) {
             *before = rotation(voxel, positions);
         }
         self.now.fill(IDENTITY);
     }
 
     /// Takes the turns up to `positions`; vertices on the floor do not turn.
-    pub fn take(&mut self, body: &Body, positions: &[Vec3], carried: &[bool]) {
+    pub fn take(&mut self, problem: &Problem, positions: &[Vec3], carried: &[bool]) {
         self.now.fill([[0.0; 3]; 3]);
-        for (before, voxel) in self.before.iter().zip(body.voxels()) {
+        for (before, voxel) in self.before.iter().zip(problem.body().voxels()) {
             let turn = multiply(&rotation(voxel, positions), &transpose(before));
             for &vertex in voxel {
                 for (sum, row) in self.now[vertex as usize].iter_mut().zip(turn) {
@@ -54,6 +59,12 @@ impl Turns {
             } else {
                 orthonormal(turn)
             };
+        }
+        for rigid in problem.rigid() {
+            let turn = rigid.turn(&self.from, positions);
+            for vertex in rigid.0 {
+                self.now[vertex as usize] = turn;
+            }
         }
     }
 

@@ -229,6 +229,7 @@ impl Stepper for Live {
             elastic,
             kinetic: self.state.kinetic_energy(self.problem.body().masses()),
             breakdown: self.breakdown,
+            settled: true,
         }
     }
 

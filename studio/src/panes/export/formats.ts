@@ -88,7 +88,7 @@ export function obstacle(
 ): string | null {
   if (!open) return "Open a design first.";
   if (format.live && touches) {
-    return "A live page knows no contact: leave objects and [contact] out of the design.";
+    return "A live page knows contact of rubber alone: choose a rubber, or leave objects and [contact] out.";
   }
   if (format.asksUnit && options.unit === null) {
     return "Choose the unit: the file itself does not tell it.";

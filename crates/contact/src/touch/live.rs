@@ -1,0 +1,416 @@
+//! Contact for steps that are not solved to the end, as someone watches.
+//!
+//! A step minimizes with the multipliers as they are and corrects them once, at its end: what is held still settles
+//! within some steps, and what sticks keeps its anchor. The penalty is moderate, of the stiffness of the voxels that
+//! touch, so that a factor of the tangent from before serves where contact has come or gone since. How deep samples go
+//! in one step is pressure over penalty, `2 p h/(50 E)`, until multipliers bear it.
+//!
+//! - A multiplier takes on what two steps have borne, the smaller of the two: the pressure of an impact would else push
+//!   again in the step after it, and what meets would rebound with the velocity that it had.
+//! - Friction begins in the step after the first touch.
+//! - Candidates are listed anew only where something has moved by half of their reach, and energies and forces go through
+//!   the samples that have some.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::Ordering;
+use std::sync::{RwLock, RwLockReadGuard};
+
+use voxsoft_solid::assembly::Visitor;
+use voxsoft_solid::brick::Tangent;
+use voxsoft_solid::vector::{Vec3, scale};
+use voxsoft_solid::{Contact, ProblemError, Term};
+
+use super::friction::Friction;
+use super::state::{Memory, State};
+use super::{Description, LOOKS, Meeting, Touch, gap, listing};
+
+/// The penalty in units of Young's modulus over the voxel size, and that of slip relative to it.
+const PENALTY: f64 = 8.0;
+const STICK: f64 = 1.0;
+/// How deep a sample may be before the penalty grows within a step, in voxels, and by how much.
+const DEEP: f64 = 0.05;
+const STIFFER: f64 = 4.0;
+/// How deep a step may leave a sample, in voxels: beyond [`listing::DEPTH`] its side is lost.
+const DEEPEST: f64 = 0.8 * listing::DEPTH;
+/// How often a step that is too deep is taken again, before what is too deep is let go.
+const REFUSALS: u32 = 2;
+
+/// Contact of surfaces, for live motion.
+#[derive(Debug)]
+pub struct LiveTouch {
+    touch: Touch,
+    /// What it remembers beside the state of `touch`.
+    run: RwLock<Run>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Run {
+    /// The samples that face something.
+    near: Vec<u32>,
+    /// The pressure of each sample at the end of the last step, N.
+    borne: Vec<f64>,
+    /// How often in a row a step was too deep.
+    refused: u32,
+    /// How deep samples were that were let go since the start, m.
+    lost: f64,
+    /// Samples and triangles that the pattern of the stiffness has.
+    pattern: BTreeSet<(u32, u32)>,
+}
+
+impl LiveTouch {
+    /// Makes contact ready for a problem with the vertices `rest` (m).
+    pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
+        let touch = Touch::new(description, rest)?;
+        let live = Self {
+            touch,
+            run: RwLock::default(),
+        };
+        Contact::start(&live, rest);
+        Ok(live)
+    }
+
+    fn set_penalty(&self, penalty: f64) {
+        self.touch
+            .penalty
+            .store(penalty.to_bits(), Ordering::Relaxed);
+    }
+
+    /// The contact with the multipliers of the last step: what touches, and the fields of contact.
+    pub fn touch(&self) -> &Touch {
+        &self.touch
+    }
+
+    /// The same where it is more than contact lets it in a step; from then on, too, where something had to be let go that
+    /// was too deep to be held.
+    pub fn excess_depth(&self, positions: &[Vec3]) -> Option<f64> {
+        let depth = self.depth(positions).max(self.run().lost);
+        Some(depth).filter(|depth| *depth > DEEP * self.touch.description.voxel)
+    }
+
+    /// How deep the deepest sample is in what it faces at `positions`, m.
+    pub fn depth(&self, positions: &[Vec3]) -> f64 {
+        let state = self.touch.read();
+        let mut deepest = 0.0f64;
+        self.each_near(&state, positions, |meeting, _| {
+            deepest = deepest.max(-meeting.gap);
+        });
+        deepest
+    }
+
+    fn run(&self) -> RwLockReadGuard<'_, Run> {
+        self.run.read().expect("no holder of the lock panics")
+    }
+
+    fn corners(&self, triangle: u32, positions: &[Vec3]) -> [Vec3; 3] {
+        let touch = &self.touch;
+        touch.triangles[triangle as usize].map(|p| touch.points[p as usize].at(positions))
+    }
+
+    /// Hands over every sample that faces something, and where it is.
+    fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting, Vec3)) {
+        for &sample in &self.run().near {
+            let Some(facing) = state.facing[sample as usize] else {
+                continue;
+            };
+            let point = self.touch.samples[sample as usize].point.at(positions);
+            let corners = self.corners(facing.triangle(), positions);
+            take(&Meeting::new(sample, facing, point, corners), point);
+        }
+    }
+
+    /// Those that are pressed, with their pressure in N.
+    fn each_pressed(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(&Meeting, f64, Vec3),
+    ) {
+        self.each_near(state, positions, |meeting, point| {
+            let memory = &state.now[meeting.sample as usize];
+            let pressure = self.touch.pressure(memory, meeting);
+            if pressure > 0.0 {
+                take(meeting, pressure, point);
+            }
+        });
+    }
+
+    fn friction(
+        &self,
+        state: &State,
+        sample: u32,
+        point: Vec3,
+        positions: &[Vec3],
+    ) -> Option<Friction> {
+        let memory = &state.now[sample as usize];
+        let k = state.stick * self.touch.penalty(sample);
+        Friction::new(memory, k, point, |triangle| {
+            self.corners(triangle, positions)
+        })
+    }
+
+    fn each_friction(
+        &self,
+        state: &State,
+        positions: &[Vec3],
+        mut take: impl FnMut(u32, Friction),
+    ) {
+        for &sample in &self.run().near {
+            if state.now[sample as usize].bound > 0.0 {
+                let point = self.touch.samples[sample as usize].point.at(positions);
+                if let Some(friction) = self.friction(state, sample, point, positions) {
+                    take(sample, friction);
+                }
+            }
+        }
+    }
+
+    /// The pairs that have stiffness at `positions`.
+    fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
+        let mut pairs = BTreeSet::new();
+        self.each_pressed(state, positions, |meeting, _, _| {
+            pairs.insert((meeting.sample, meeting.triangle));
+        });
+        self.each_friction(state, positions, |sample, friction| {
+            pairs.insert((sample, friction.anchor.0));
+        });
+        pairs
+    }
+
+    /// Notes which samples face something, or hold on to something.
+    fn note_near(&self, state: &State) {
+        let near = |sample: &u32| {
+            let sample = *sample as usize;
+            state.facing[sample].is_some() || state.now[sample].bound > 0.0
+        };
+        let all = 0..self.touch.samples.len() as u32;
+        let mut run = self.run.write().expect("no holder of the lock panics");
+        run.near = all.filter(near).collect();
+    }
+
+    /// What a sample remembers after a step that ended with a pressure on it.
+    fn remembered(
+        &self,
+        state: &State,
+        meeting: &Meeting,
+        (pressure, borne): (f64, f64),
+        point: Vec3,
+        positions: &[Vec3],
+    ) -> Memory {
+        let friction = self.friction(state, meeting.sample, point, positions);
+        let before = &state.now[meeting.sample as usize];
+        let sticks = friction.is_some_and(|friction| !friction.slips);
+        let anchor = match before.anchor {
+            Some(anchor) if sticks => anchor,
+            _ => {
+                let corners = self.corners(meeting.triangle, positions);
+                (meeting.triangle, gap::affine(point, corners))
+            }
+        };
+        let coefficient = self.touch.coefficient(meeting.sample, meeting.triangle);
+        Memory {
+            normal: pressure.min(borne),
+            friction: friction.map_or([0.0; 3], |friction| friction.force),
+            plane: meeting.normal,
+            bound: coefficient * pressure,
+            anchor: Some(anchor),
+            ..Memory::default()
+        }
+    }
+}
+
+impl Contact for LiveTouch {
+    fn start(&self, positions: &[Vec3]) {
+        self.set_penalty(PENALTY);
+        self.touch.start(positions);
+        let mut state = self.touch.write();
+        state.stick = STICK;
+        self.note_near(&state);
+        let mut run = self.run.write().expect("no holder of the lock panics");
+        run.borne = vec![0.0; self.touch.samples.len()];
+        (run.refused, run.lost) = (0, 0.0);
+        run.pattern.clear();
+    }
+
+    fn follow(&self, positions: &[Vec3]) -> bool {
+        let mut state = self.touch.write();
+        let points = self.touch.points_at(positions);
+        let moved = self.touch.farthest_from_listed(&state, &points);
+        if !(moved <= listing::REACH / 2.0) {
+            self.touch.list(&mut state, points);
+            state.listed_at_rest = false;
+        }
+        let all = state.looks > 0;
+        state.looks = state.looks.saturating_sub(1);
+        self.touch.face(&mut state, positions, all);
+        self.note_near(&state);
+        let pairs = self.pairs_of_stiffness(&state, positions);
+        let mut run = self.run.write().expect("no holder of the lock panics");
+        let outgrown = !pairs.is_subset(&run.pattern);
+        if outgrown {
+            run.pattern = pairs;
+        }
+        outgrown
+    }
+
+    fn look_anew(&self) {
+        self.touch.write().looks = LOOKS;
+    }
+
+    fn stiffen(&self, positions: &[Vec3]) -> bool {
+        if self.depth(positions) <= DEEP * self.touch.description.voxel {
+            return false;
+        }
+        let penalty = f64::from_bits(self.touch.penalty.load(Ordering::Relaxed));
+        self.set_penalty(STIFFER * penalty);
+        true
+    }
+
+    fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool {
+        let settled = self.touch.correct(positions, negligible, precision);
+        self.touch.write().stick = STICK;
+        settled
+    }
+
+    fn length(&self) -> f64 {
+        self.touch.length()
+    }
+
+    /// Bonds do not move live: designs with them wait for a solution.
+    fn let_go(&self, _positions: &[Vec3]) -> bool {
+        false
+    }
+
+    fn depends_on_way(&self) -> bool {
+        self.touch.depends_on_way()
+    }
+
+    /// A step begins with the multipliers that the last one ended with.
+    fn extrapolate(&self, _ratio: f64) {}
+
+    fn accept(&self, positions: &[Vec3]) {
+        self.touch.accept(positions);
+        self.note_near(&self.touch.read());
+    }
+
+    fn take_step(&self, positions: &[Vec3]) -> bool {
+        let depth = self.depth(positions);
+        if depth > DEEPEST * self.touch.description.voxel {
+            let mut run = self.run.write().expect("no holder of the lock panics");
+            run.refused += 1;
+            if run.refused <= REFUSALS {
+                return false;
+            }
+            run.lost = run.lost.max(depth);
+        }
+        let mut state = self.touch.write();
+        let mut moved = vec![Memory::default(); self.touch.samples.len()];
+        let mut pressures = vec![0.0; moved.len()];
+        let deepest = DEEPEST * self.touch.description.voxel;
+        let borne = std::mem::take(
+            &mut self
+                .run
+                .write()
+                .expect("no holder of the lock panics")
+                .borne,
+        );
+        self.each_pressed(&state, positions, |meeting, pressure, point| {
+            let sample = meeting.sample as usize;
+            if -meeting.gap > deepest {
+                return; // It is let go, and told of.
+            }
+            pressures[sample] = pressure;
+            let both = (pressure, borne[sample]);
+            moved[sample] = self.remembered(&state, meeting, both, point, positions);
+        });
+        let points = self.touch.points_at(positions);
+        state.accepted_samples.clone_from(&points); // Samples are numbered as their points are.
+        state.accepted_points = points;
+        state.accepted.clone_from(&moved);
+        state.now = moved;
+        state.looks = LOOKS;
+        drop(state);
+        self.set_penalty(PENALTY);
+        let mut run = self.run.write().expect("no holder of the lock panics");
+        (run.borne, run.refused) = (pressures, 0);
+        true
+    }
+
+    fn is_touching(&self, positions: &[Vec3]) -> bool {
+        let state = self.touch.read();
+        let mut touching = false;
+        self.each_pressed(&state, positions, |_, _, _| touching = true);
+        touching
+    }
+
+    fn go_back(&self) {
+        let mut state = self.touch.write();
+        state.now = state.accepted.clone();
+        state.looks = LOOKS;
+        self.set_penalty(PENALTY);
+        self.note_near(&state);
+    }
+}
+
+impl Term for LiveTouch {
+    fn name(&self) -> &'static str {
+        "contact"
+    }
+
+    fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+        self.touch.check(vertices)
+    }
+
+    fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        for &(sample, triangle) in &self.run().pattern {
+            let nothing = |_, _| [[0.0; 3]; 3];
+            self.touch
+                .visit_local(sample, triangle, nothing, &mut |vertices, _| {
+                    visit(vertices);
+                });
+        }
+    }
+
+    fn energy(&self, positions: &[Vec3]) -> f64 {
+        let state = self.touch.read();
+        let mut energy = 0.0;
+        self.each_pressed(&state, positions, |meeting, pressure, _| {
+            energy += pressure * pressure / (2.0 * self.touch.penalty(meeting.sample));
+        });
+        self.each_friction(&state, positions, |_, friction| energy += friction.energy);
+        energy
+    }
+
+    fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
+        let state = self.touch.read();
+        self.each_pressed(&state, positions, |meeting, pressure, _| {
+            let place = (meeting.triangle, meeting.weights);
+            let force = scale(pressure, meeting.normal);
+            self.touch.add_force(force, meeting.sample, place, forces);
+        });
+        self.each_friction(&state, positions, |sample, friction| {
+            self.touch
+                .add_force(friction.force, sample, friction.anchor, forces);
+        });
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        self.visit_tangent(positions, Tangent::Exact, visit);
+    }
+
+    /// Without how normals turn under pressures, whatever is asked for: so it is positive, and serves longer. Pairs for
+    /// which the pattern has no room are left out; the search learns of them as it goes.
+    fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
+        let state = self.touch.read();
+        let pattern = self.run().pattern.clone();
+        self.each_pressed(&state, positions, |meeting, _, _| {
+            if pattern.contains(&(meeting.sample, meeting.triangle)) {
+                self.touch.visit_gap(meeting, 0.0, &[], visit);
+            }
+        });
+        self.each_friction(&state, positions, |sample, friction| {
+            if pattern.contains(&(sample, friction.anchor.0)) {
+                self.touch.visit_friction(sample, &friction, visit);
+            }
+        });
+    }
+}

@@ -1,0 +1,105 @@
+//! What touches what, and where rigid objects are.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use voxsoft_contact::touch::live::LiveTouch;
+use voxsoft_solid::Rigid;
+use voxsoft_solid::matrix::{Mat3, apply};
+use voxsoft_solid::vector::{Vec3, add, scale, sub};
+
+use crate::event::{Moment, Pose, Touch};
+
+/// A rigid object: the vertices that carry it, and the middle of its box at first in m, by which its pose is told.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Placed {
+    /// Of the problem.
+    pub vertices: [u32; 4],
+    /// In m.
+    pub middle: Vec3,
+}
+
+impl Placed {
+    /// Where its middle is, and its rotation from its first pose.
+    pub(crate) fn pose(&self, rest: &[Vec3], positions: &[Vec3]) -> (Vec3, Mat3) {
+        let mean = |all: &[Vec3]| {
+            let sum = self.vertices.iter().map(|v| all[*v as usize]);
+            scale(0.25, sum.fold([0.0; 3], add))
+        };
+        let turn = Rigid(self.vertices).turn(rest, positions);
+        let from = sub(self.middle, mean(rest));
+        (add(mean(positions), apply(&turn, from)), turn)
+    }
+}
+
+/// The contact of what is played.
+#[derive(Debug, Clone)]
+pub struct Touching {
+    /// What finds it.
+    pub contact: Arc<LiveTouch>,
+    /// What each of its surfaces is called.
+    pub names: Vec<String>,
+    /// The objects that are drawn.
+    pub objects: Vec<Placed>,
+}
+
+impl Touching {
+    /// What there is to tell of the frame of a number at a time (s), its vertices being at `positions`.
+    pub(crate) fn moment(
+        &self,
+        (frame, time): (u64, f64),
+        rest: &[Vec3],
+        positions: &[Vec3],
+    ) -> Moment {
+        let pose = |object: &Placed| {
+            let (position, turn) = object.pose(rest, positions);
+            Pose {
+                position,
+                rotation: turn.as_flattened().to_vec(),
+            }
+        };
+        let name = |surface: u32| {
+            self.names
+                .get(surface as usize)
+                .cloned()
+                .unwrap_or_default()
+        };
+        let pairs = self.contact.touch().pairs(positions);
+        let touches = pairs.into_iter().map(|pair| Touch {
+            of: pair.of.map(name),
+            force: pair.force,
+            pressed: pair.pressed,
+            area: pair.area,
+            gap: pair.gap,
+            slipping: pair.slipping,
+        });
+        Moment {
+            frame,
+            time,
+            poses: self.objects.iter().map(pose).collect(),
+            contacts: touches.collect(),
+            fields: false,
+            depth: self.contact.excess_depth(positions),
+        }
+    }
+
+    /// All positions, of which those of the body alone may be known; objects stand in poses that are given.
+    pub(crate) fn completed(
+        &self,
+        rest: &[Vec3],
+        mut positions: Vec<Vec3>,
+        poses: &[(Vec3, Mat3)],
+    ) -> Vec<Vec3> {
+        if positions.len() >= rest.len() {
+            return positions;
+        }
+        positions.extend_from_slice(&rest[positions.len()..]);
+        for (object, (place, turn)) in self.objects.iter().zip(poses) {
+            for vertex in object.vertices {
+                let from = sub(rest[vertex as usize], object.middle);
+                positions[vertex as usize] = add(*place, apply(turn, from));
+            }
+        }
+        positions
+    }
+}
