@@ -77,12 +77,13 @@ impl From<&Touching> for Form {
             let points = surface.points.iter().map(point).collect();
             (points, surface.triangles.clone())
         };
+        // Designs with bonds are not played.
         let Description {
             surfaces,
             friction,
             voxel,
             young,
-            bonds: _, // Live motion knows none.
+            bonds: _,
         } = &touching.description;
         Self {
             surfaces: surfaces.iter().map(surface).collect(),
@@ -117,9 +118,9 @@ impl Form {
         };
         good.then(|| Touching {
             description: Description {
+                bonds: Vec::new(),
                 surfaces: self.surfaces.into_iter().map(surface).collect(),
                 friction: self.friction,
-                bonds: Vec::new(),
                 voxel: self.voxel,
                 young: self.young,
             },

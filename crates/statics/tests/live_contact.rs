@@ -74,6 +74,7 @@ impl Scene {
         let count = surfaces.len();
         let table = |i: usize, j: usize| if i == j && i > 0 { NONE } else { friction };
         let description = Description {
+            bonds: Vec::new(),
             friction: (0..count)
                 .map(|i| (0..count).map(|j| table(i, j)).collect())
                 .collect(),

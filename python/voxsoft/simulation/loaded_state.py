@@ -15,6 +15,7 @@ from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
+from voxsoft.simulation.apart import Surface
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads.actions import SurfacePressure
 from voxsoft.simulation.motion import moved_by
@@ -22,7 +23,7 @@ from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.setup import Setup
-from voxsoft.simulation.touching import ContactState, Surface
+from voxsoft.simulation.touching import ContactState
 
 Floats = NDArray[np.float64]
 

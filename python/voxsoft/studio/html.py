@@ -115,9 +115,9 @@ def page_of_body(
     if body.refusal is not None:
         raise body.refusal
     if body.not_live:
-        refuse_contact(
-            body.setup.design, "exported pages of the lattice, of several bodies or of bonds"
-        )
+        bonded = body.setup.touching is not None and body.setup.touching.bonds
+        what = "with bonds" if bonded else "of the lattice material"
+        refuse_contact(body.setup.design, f"exported pages {what}")
     refuse_bodies(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design

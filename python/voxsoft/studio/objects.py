@@ -16,10 +16,10 @@ from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
 
-#: Why time does not run for a body that may touch something.
+#: Why time does not run for a body of the lattice material that may touch something.
 NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice: press Solve."
-NOT_LIVE_BODIES: Final = "Live motion knows contact of one body alone: press Solve."
-NOT_LIVE_BONDS: Final = "Live motion knows no bonded pairs: press Solve."
+#: The same for what is bonded.
+BONDED: Final = "Live motion does not know bonds yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -47,16 +47,10 @@ def not_live(setup: Setup) -> str:
     """Why time does not run for a body, in a sentence; empty where it does."""
     if not has_contact(setup.design):
         return ""
+    if setup.touching is not None and setup.touching.bonds:
+        return BONDED
     of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
-    if of_lattice:
-        return NOT_LIVE
-    design = setup.design
-    if design.bodies:
-        return NOT_LIVE_BODIES
-    bonded = design.contact is not None and any(
-        pair.kind == "bonded" for pair in design.contact.pairs
-    )
-    return NOT_LIVE_BONDS if bonded else ""
+    return NOT_LIVE if of_lattice else ""
 
 
 def touches_live(setup: Setup) -> bool:

@@ -275,17 +275,17 @@ impl Contact for LiveTouch {
         self.touch.length()
     }
 
-    fn let_go(&self, positions: &[Vec3]) -> bool {
-        self.touch.let_go(positions)
+    /// Bonds do not move live: designs with them wait for a solution.
+    fn let_go(&self, _positions: &[Vec3]) -> bool {
+        false
     }
 
     fn depends_on_way(&self) -> bool {
         self.touch.depends_on_way()
     }
 
-    fn extrapolate(&self, ratio: f64) {
-        self.touch.extrapolate(ratio);
-    }
+    /// A step begins with the multipliers that the last one ended with.
+    fn extrapolate(&self, _ratio: f64) {}
 
     fn accept(&self, positions: &[Vec3]) {
         self.touch.accept(positions);

@@ -120,10 +120,10 @@ pub struct Touch {
     surface_of: Vec<u32>,
     /// The triangles at each point.
     around: Vec<Vec<u32>>,
-    /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
-    penalty: AtomicU64,
     /// For each sample the ties that it is in, with the surface that they are to.
     ties_at: Vec<Vec<(u32, u32)>>,
+    /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
+    penalty: AtomicU64,
     state: RwLock<State>,
 }
 
@@ -219,8 +219,8 @@ impl Touch {
             triangles,
             surface_of,
             around,
-            penalty: AtomicU64::new(PENALTY.to_bits()),
             ties_at: Vec::new(),
+            penalty: AtomicU64::new(PENALTY.to_bits()),
             state: RwLock::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());

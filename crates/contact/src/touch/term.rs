@@ -163,7 +163,7 @@ impl Touch {
         self.visit_local(sample, friction.anchor.0, block, visit);
     }
 
-    /// The stiffness of a pressed gap: `k n nᵀ` and, under a pressure, how the normal turns.
+    /// The stiffness of a pressed gap: `k n nᵀ` and how the normal turns under the pressure.
     pub(super) fn visit_gap(
         &self,
         meeting: &Meeting,
