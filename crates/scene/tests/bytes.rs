@@ -45,7 +45,6 @@ fn with_ball(mut vertices: Vec<Vec3>, body: &[[u32; 3]]) -> (Vec<Vec3>, u32, Tou
             bonds: Vec::new(),
             surfaces: vec![Surface::of_triangles(body), ball],
             friction: vec![vec![0.1, 0.2], vec![0.2, 0.0]],
-            bonds: vec![],
             voxel: SIDE,
             young: 6e4,
         },

@@ -79,7 +79,6 @@ impl Scene {
                 .map(|i| (0..count).map(|j| table(i, j)).collect())
                 .collect(),
             surfaces,
-            bonds: vec![],
             voxel: SIDE,
             young: YOUNG,
         };
