@@ -14,7 +14,12 @@ from voxsoft.design import Design, set_values
 from voxsoft.errors import VoxSoftError
 from voxsoft.files.designs import load
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
+# Documents here are in no folder, where designs that they name could be.
+EXAMPLES = sorted(
+    path
+    for path in (Path(__file__).parents[2] / "examples").glob("*.toml")
+    if b"[[bodies]]" not in path.read_bytes()
+)
 TEXTS = [path.read_bytes() for path in EXAMPLES]
 DOCUMENTS = [tomllib.loads(text.decode()) for text in TEXTS]
 

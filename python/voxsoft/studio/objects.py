@@ -18,6 +18,8 @@ from voxsoft.studio.message import Triple
 
 #: Why time does not run for a body of the lattice material that may touch something.
 NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice: press Solve."
+#: The same for several bodies.
+SEVERAL: Final = "Live motion does not know several bodies yet: press Solve."
 #: The same for what is bonded.
 BONDED: Final = "Live motion does not know bonds yet: press Solve."
 
@@ -47,6 +49,8 @@ def not_live(setup: Setup) -> str:
     """Why time does not run for a body, in a sentence; empty where it does."""
     if not has_contact(setup.design):
         return ""
+    if setup.design.bodies:
+        return SEVERAL
     if setup.touching is not None and setup.touching.bonds:
         return BONDED
     of_lattice = any(isinstance(material, Lattice) for material in setup.materials)
