@@ -148,7 +148,7 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
     (Body, "design"): {"parts": None},
-    **{(Body, name): {"parts": None, "design": INNER} for name in ("set", "motion")},
+    **{(Body, name): {"parts": None, "design": INNER} for name in ("set", "mirror", "motion")},
     (Object, "mass"): {"motion": "free"},
 }
 

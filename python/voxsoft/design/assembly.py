@@ -11,9 +11,11 @@ from numpy.typing import NDArray
 
 from voxsoft.design.attachment import Attachment
 from voxsoft.design.body import Body
-from voxsoft.design.clamp import Clamp, Motion, Rotation
+from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, FLOOR
+from voxsoft.design.isometry import SAME, Isometry, rotation_of
 from voxsoft.design.layer import Layer
+from voxsoft.design.mirrored import mirrored_part, mirrored_region
 from voxsoft.design.part import Part
 from voxsoft.design.references import operand_names
 from voxsoft.design.region import Region
@@ -26,8 +28,6 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-#: How far from an axis a turned one may point and still be along it.
-_ALONG: Final = 1e-9
 #: Parts of a mesh are numbered from 1 to this, with room for objects.
 _MOST_PARTS: Final = 250
 
@@ -262,17 +262,32 @@ class _Included:
             if getattr(self.body, key) is not None:
                 what = "is that of one body, and the design has several"
                 raise DesignError(f"{self.where}.{key}", what, "set it in that design")
+        mirror = self._mirror
         for inner in self.inner.bodies:
             turn, way = inner.pose
+            # Their parts are mirrored in their own frames: M (R x + p) = (M R M) M x + M p.
             yield Body(
                 name=self._name(inner.name),
                 voxel_size=inner.voxel_size or self.inner.voxel_size,
                 fill=inner.fill or self.inner.fill,
-                position=tuple((rotation @ way + position).tolist()),
-                rotation=_rotation(rotation @ turn),
+                position=tuple((rotation @ mirror @ way + position).tolist()),
+                rotation=rotation_of(rotation @ mirror @ turn @ mirror),
             )
 
+    @property
+    def _mirror(self) -> Floats:
+        """The matrix of the mirror, (3, 3); that of no change without one."""
+        return np.diag([-1.0 if axis == self.body.mirror else 1.0 for axis in "xyz"])
+
+    @property
+    def _frame(self) -> tuple[Floats, Floats]:
+        """From points of the inner design to those of the outer one: ``x = A @ inner + b``."""
+        rotation, position = self.body.pose
+        return rotation @ self._mirror, position
+
     def _part(self, part: Part) -> Part:
+        if self.body.mirror is not None:
+            part = mirrored_part(part, self.body.mirror)
         material = part.material
         if isinstance(material, str) and material in {
             **self.inner.materials,
@@ -287,6 +302,8 @@ class _Included:
         )
 
     def _region(self, region: Region, where: str) -> Any:  # noqa: ANN401 - of the same class
+        if self.body.mirror is not None:
+            region = mirrored_region(region, self.body.mirror)
         shape = None if region.shape is None else _renamed(region.shape, self.body.name)
         return region.replace(body=self._of_body(region.body, where), shape=shape)
 
@@ -295,10 +312,10 @@ class _Included:
         return layer.replace(region=self._region(layer.region, f"layers[{index}]"), name=name)
 
     def _attachment(self, index: int, attachment: Attachment) -> Attachment:
-        rotation, position = self.body.pose
+        frame, position = self._frame
 
         def point(at: tuple[float, float, float]) -> tuple[float, float, float]:
-            x, y, z = (rotation @ at + position).tolist()
+            x, y, z = (frame @ at + position).tolist()
             return x, y, z
 
         placed = attachment.placed(lambda region: self._region(region, f"springs[{index}]"), point)
@@ -313,18 +330,17 @@ class _Included:
             changes["cavity"] = f"{self.body.name}.{cavity}"
         value = getattr(load, "value", None)
         if isinstance(value, tuple):
-            changes["value"] = tuple((self.body.pose[0] @ value).tolist())
+            changes["value"] = tuple((self._frame[0] @ value).tolist())
         return load.replace(**changes)
 
     def _clamp(self, index: int, clamp: Clamp) -> Clamp:
-        rotation, position = self.body.pose
         where = f"clamps[{index}]"
         motion = clamp.motion
         if motion is not None and self.body.motion is not None:
             what = f"a clamp of the design has a motion of its own ({where})"
             raise DesignError(f"{self.where}.motion", what, "keep one of the two")
         if motion is not None:
-            motion = _placed_motion(motion, rotation, position)
+            motion = Isometry(*self._frame).motion(motion)
         axes = "".join(sorted(self._axis("xyz".index(axis), where) for axis in clamp.axes))
         return clamp.replace(
             region=self._region(clamp.region, where),
@@ -337,7 +353,7 @@ class _Included:
         along = np.abs(self.body.pose[0][:, axis])
         best = int(np.argmax(along))
         inner = self.inner.clamps
-        if along[best] < 1.0 - _ALONG and any(clamp.axes != "xyz" for clamp in inner):
+        if along[best] < 1.0 - SAME and any(clamp.axes != "xyz" for clamp in inner):
             if self._holds_all(where):
                 return "xyz"[best]
             what = f"turns {where}, which holds along some axes only, away from the axes"
@@ -386,22 +402,3 @@ def _renamed(shape: Any, prefix: str) -> Any:  # noqa: ANN401 - a name, or a sha
     if isinstance(operands, tuple):
         return shape.replace(of=tuple(_renamed(each, prefix) for each in operands))
     return shape.replace(of=_renamed(operands, prefix))
-
-
-def _rotation(matrix: Floats) -> Rotation | None:
-    """The turn of a matrix; None where there is none."""
-    from scipy.spatial.transform import Rotation as Turn
-
-    vector = Turn.from_matrix(matrix).as_rotvec()
-    angle = float(np.linalg.norm(vector))
-    return None if angle < _ALONG else Rotation(axis=tuple(vector.tolist()), angle=angle)
-
-
-def _placed_motion(motion: Motion, rotation: Floats, position: Floats) -> Motion:
-    """A motion within a frame, in the frame around it."""
-    turn = motion.rotation
-    if turn is not None:
-        axis, center = rotation @ turn.axis, rotation @ turn.center + position
-        turn = turn.replace(axis=tuple(axis.tolist()), center=tuple(center.tolist()))
-    way = tuple((rotation @ motion.displacement).tolist())
-    return motion.replace(displacement=way, rotation=turn)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
@@ -21,6 +21,8 @@ from pydantic import (
 
 from voxsoft.design.clamp import Motion, Rotation
 from voxsoft.design.included import inner_design
+from voxsoft.design.isometry import Isometry
+from voxsoft.design.mirrored import Axis, Triple
 from voxsoft.design.operands import Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
@@ -88,6 +90,10 @@ class Body(Record):
     position, rotation
         Where it is: first turned about its own origin, or the center that the rotation gives in the
         frame of the body, then moved.
+    mirror
+        ``"x"``, ``"y"`` or ``"z"``: the mirror image of `design` in the plane through its origin
+        across that axis, before it is turned and moved. Shapes, fibers, places, forces and the
+        motions of its clamps are mirrored, and so is the frame of the body.
     motion
         The way that all clamps of `design` go, as a robot's flange would move them; in the frame of
         the outer design. Default: they stay, or go the way that they have themselves.
@@ -95,7 +101,8 @@ class Body(Record):
     Raises
     ------
     DesignError
-        Both a design and parts, a file that cannot be read, a parameter that is none.
+        Both a design and parts, a file that cannot be read, a parameter that is none, a mirror
+        for parts of its own.
 
     Examples
     --------
@@ -140,6 +147,7 @@ class Body(Record):
     fill: Literal["binary", "fraction"] | None = None
     position: Point = (0.0, 0.0, 0.0)
     rotation: Rotation | None = None
+    mirror: Axis | None = None
     motion: Motion | None = None
 
     _included: Any = PrivateAttr(None)
@@ -147,7 +155,7 @@ class Body(Record):
     @model_validator(mode="after")
     def _read_design(self, info: ValidationInfo) -> Self:
         if self.design is None:
-            for key in ("set", "motion"):
+            for key in ("set", "mirror", "motion"):
                 if getattr(self, key):
                     hint = f"name a design, or leave {key} out"
                     raise DesignError(key, "is for the design of a body, and there is none", hint)
@@ -176,6 +184,8 @@ class Body(Record):
     def pose(self) -> tuple[Floats, Floats]:
         """Rotation matrix, (3, 3), and position [m], (3,): ``x = rotation @ own + position``.
 
+        With a mirror, `own` is a point of the mirror image.
+
         Examples
         --------
         >>> turned = Rotation(axis=(0, 0, 1), angle="90 deg")
@@ -189,6 +199,68 @@ class Body(Record):
         matrix = rotation_matrix(self.rotation.axis, self.rotation.angle)
         center = np.asarray(self.rotation.center)
         return matrix, position + center - matrix @ center
+
+    def mirrored(self, name: str, axis: Axis, at: float = 0.0) -> Self:
+        """Return the mirror image of this body in a plane of the outer design.
+
+        Parameters
+        ----------
+        name
+            Of the image.
+        axis
+            Across which the plane is.
+        at
+            Where the plane is along the axis [m].
+
+        Raises
+        ------
+        DesignError
+            The body has parts of its own: only a design can be mirrored.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> left = Body(name="left", design=families.beam(), position=(0.03, 0, 0))
+        >>> right = left.mirrored("right", "x")
+        >>> right.position, right.mirror, right.rotation
+        ((-0.03, 0.0, 0.0), 'x', None)
+        """
+        return self.replace(name=name, **Isometry.mirror(axis, at).changes(self))
+
+    def arranged(
+        self, names: Sequence[str], axis: Triple, center: Triple = (0.0, 0.0, 0.0)
+    ) -> tuple[Self, ...]:
+        """Return this body and copies of it, at equal angles around an axis.
+
+        Parameters
+        ----------
+        names
+            Of the copies.
+        axis
+            Direction of the axis.
+        center
+            A point on it [m].
+
+        Returns
+        -------
+        tuple of Body
+            This one, and one for each name.
+
+        Examples
+        --------
+        >>> from voxsoft.design import families
+        >>> first = Body(name="first", design=families.beam(), position=(0.03, 0, 0))
+        >>> fingers = first.arranged(["second", "third"], axis=(0, 0, 1))
+        >>> [round(float(np.rad2deg(finger.rotation.angle))) for finger in fingers[1:]]
+        [120, 120]
+        """
+        step = 2.0 * np.pi / (len(names) + 1)
+        turns = (Isometry.turn(axis, step * i, center) for i in range(1, len(names) + 1))
+        copies = (
+            self.replace(name=name, **turn.changes(self))
+            for name, turn in zip(names, turns, strict=True)
+        )
+        return (self, *copies)
 
 
 def _value(parameter: Parameter, info: ValidationInfo) -> str | float:

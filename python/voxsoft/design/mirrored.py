@@ -1,0 +1,64 @@
+"""The mirror image of what a design says: shapes, places and directions."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, TypeVar
+
+from voxsoft.design.part import Part
+from voxsoft.design.region import Region
+from voxsoft.shapes import Mirror, Shape
+
+Triple = tuple[float, float, float]
+Axis = Literal["x", "y", "z"]
+_Region = TypeVar("_Region", bound=Region)
+
+
+def mirrored_point(at: Triple, axis: Axis) -> Triple:
+    """Return the image of a point or direction in the plane through the origin across an axis.
+
+    Examples
+    --------
+    >>> mirrored_point((1.0, 2.0, 3.0), "y")
+    (1.0, -2.0, 3.0)
+    """
+    x, y, z = (
+        0.0 - value if name == axis else value for name, value in zip("xyz", at, strict=True)
+    )
+    return x, y, z
+
+
+def mirrored_shape(shape: str | Shape, axis: Axis) -> Shape:
+    """Return the image of a shape, or of the one that a name means."""
+    return Mirror(of=shape, normal=axis)
+
+
+def mirrored_region(region: _Region, axis: Axis) -> _Region:
+    """Return the image of a place: a region, probe or chamber.
+
+    Examples
+    --------
+    >>> mirrored_region(Region(x=("-1 mm", "5 mm"), z=(0, 0)), "x").x
+    (-0.005, 0.001)
+    """
+    changes: dict[str, Any] = {}
+    bounds = getattr(region, axis)
+    if bounds is not None:
+        changes[axis] = (0.0 - bounds[1], 0.0 - bounds[0])
+    for key in ("center", "point"):
+        at = getattr(region, key, None)
+        if at is not None:
+            changes[key] = mirrored_point(at, axis)
+    if region.shape is not None:
+        changes["shape"] = mirrored_shape(region.shape, axis)
+    return region.replace(**changes)
+
+
+def mirrored_part(part: Part, axis: Axis) -> Part:
+    """Return the image of a part with its fibers, under its name or else that of its shape."""
+    named = part.shape if isinstance(part.shape, str) else None
+    fibers = [
+        fiber.replace(direction=mirrored_point(fiber.direction, axis)) for fiber in part.fibers
+    ]
+    return part.replace(
+        shape=mirrored_shape(part.shape, axis), fibers=fibers, name=part.name or named
+    )
