@@ -140,6 +140,66 @@ export interface EditCommand {
   value?: unknown;
 }
 
+/** A copy that is moved by a vector, m. */
+export interface Beside {
+  kind: "beside";
+  by: Triple;
+}
+
+/** The mirror image in the plane across an axis, `at` m along it. */
+export interface InMirror {
+  kind: "mirror";
+  axis: "x" | "y" | "z";
+  at?: number;
+}
+
+/** Copies at equal angles around an axis through a center, m: `count` with the original. */
+export interface Around {
+  kind: "around";
+  count: number;
+  axis?: Triple;
+  center?: Triple;
+}
+
+/**
+ * Copy a body or a rigid object of the design, by its name.
+ *
+ * The body of a design that has no others becomes the first of a new design of several.
+ */
+export interface CopyCommand {
+  t: "copy";
+  seq: number;
+  name: string;
+  way: Beside | InMirror | Around;
+}
+
+/** Take a body or a rigid object out of the design, with the pairs of contact that name it. */
+export interface RemoveCommand {
+  t: "remove";
+  seq: number;
+  name: string;
+}
+
+/**
+ * Add a body: a design file of the folder, a template, or a file that was uploaded.
+ *
+ * It stands `beyond` so many m along x. The body of a design that has no others becomes the first
+ * of a new design of several.
+ */
+export interface AddBodyCommand {
+  t: "add_body";
+  seq: number;
+  what: "file" | "template" | "upload";
+  name: string;
+  beyond?: number;
+}
+
+/** Ask for the design files beside the document. */
+export interface DesignsCommand {
+  t: "designs";
+  seq: number;
+}
+
 /** Take back the last change of the document. */
 export interface UndoCommand {
   t: "undo";
@@ -590,6 +650,19 @@ export interface DocumentEvent {
   can_redo: boolean;
 }
 
+/** A design file beside the document: its name there, and that of the design. */
+export interface DesignFile {
+  file: string;
+  title: string;
+}
+
+/** The design files in the folder of the document, without its own. */
+export interface DesignFilesEvent {
+  t: "design_files";
+  folder: string;
+  files: DesignFile[];
+}
+
 /** An enclosed space: its name or an empty text, volume in m³, area in m². */
 export interface Cavity {
   name: string;
@@ -647,11 +720,12 @@ export interface BodyProbe {
   vertices: number[];
 }
 
-/** A part; `color` is a CSS color. */
+/** A part; `color` is a CSS color, and `body` the body that it is of where there are several. */
 export interface BodyPart {
   name: string;
   material: string;
   color: string;
+  body: string;
 }
 
 /** A layer: its stiffness in N/m, its center, and triangles of drawn vertices, three each. */
@@ -688,12 +762,19 @@ export interface BodyObject {
   triangles: string;
 }
 
+/** One of several bodies, unloaded: its bounds in m, and its first and last drawn vertex. */
+export interface BodyOfSeveral {
+  name: string;
+  bounds: [Triple, Triple];
+  vertices: [number, number];
+}
+
 /**
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
  * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
- * `touches` tells whether anything of the design may touch.
+ * `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
  */
 export interface BodyEvent {
   t: "body";
@@ -723,6 +804,7 @@ export interface BodyEvent {
   seconds: number;
   memory: number;
   smooth: boolean;
+  bodies: BodyOfSeveral[];
 }
 
 /**
@@ -1119,7 +1201,7 @@ export interface ExportedEvent {
 /** A file that was written. */
 export interface SavedEvent {
   t: "saved";
-  what: "card" | "document" | "run";
+  what: "card" | "design" | "document" | "run";
   path: string;
 }
 
@@ -1150,6 +1232,10 @@ export type AnyCommand =
   | OpenCommand
   | TextCommand
   | EditCommand
+  | CopyCommand
+  | RemoveCommand
+  | AddBodyCommand
+  | DesignsCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
@@ -1187,6 +1273,7 @@ export type AnyCommand =
 export type AnyEvent =
   | HelloEvent
   | DocumentEvent
+  | DesignFilesEvent
   | BodyEvent
   | StatEvent
   | EquilibriumEvent

@@ -129,6 +129,8 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         for key, inner in value.items():
             table[key] = _item(inner)
         if index == len(here):
+            if _followed(here):
+                table.add(tomlkit.nl())
             here.append(table)
         else:
             here[index] = table
@@ -136,6 +138,11 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         here.append(_item(value))
     else:
         here[index] = _item(value)
+
+
+def _followed(sections: AoT) -> bool:
+    """Whether an empty line parts a list of sections from what follows."""
+    return len(sections) > 0 and sections[-1].as_string().endswith("\n\n")
 
 
 def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401

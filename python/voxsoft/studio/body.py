@@ -203,6 +203,7 @@ class StudioBody:
             touches=has_contact(setup.design),
             seconds=self.seconds,
             memory=float(self.voxel_count * BYTES_PER_VOXEL),
+            bodies=_bodies(mesh, self.surface),
         )
 
     def _probes(self) -> list[events.BodyProbe]:
@@ -362,7 +363,22 @@ def _parts(design: Design) -> list[events.BodyPart]:
         shape = part.shape if isinstance(part.shape, str) else part.shape.kind
         material = part.material if isinstance(part.material, str) else part.material.model
         color = PART_COLORS[index % len(PART_COLORS)]
-        found.append(events.BodyPart(name=part.name or shape, material=material, color=color))
+        name, body = part.name or shape, part.body or ""
+        found.append(events.BodyPart(name=name, material=material, color=color, body=body))
+    return found
+
+
+def _bodies(mesh: Mesh, surface: Surface) -> list[events.BodyOfSeveral]:
+    found = []
+    for body in mesh.bodies:
+        of_body = body.vertices
+        first, end = np.searchsorted(surface.vertices, (of_body.start, of_body.stop))
+        rest = mesh.vertices[of_body]
+        bounds = _point(rest.min(axis=0)), _point(rest.max(axis=0))
+        own = events.BodyOfSeveral(
+            name=body.name, bounds=bounds, vertices=(int(first), int(end) - 1)
+        )
+        found.append(own)
     return found
 
 

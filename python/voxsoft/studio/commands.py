@@ -57,6 +57,59 @@ class Edit(Command):
     value: Json = None
 
 
+class Beside(Entry, tag_field="kind", tag="beside"):
+    """A copy that is moved by a vector, m."""
+
+    by: Triple
+
+
+class InMirror(Entry, tag_field="kind", tag="mirror"):
+    """The mirror image in the plane across an axis, `at` m along it."""
+
+    axis: Literal["x", "y", "z"]
+    at: float = 0.0
+
+
+class Around(Entry, tag_field="kind", tag="around"):
+    """Copies at equal angles around an axis through a center, m: `count` with the original."""
+
+    count: Annotated[int, Meta(ge=2, le=100)]
+    axis: Triple = (0.0, 0.0, 1.0)
+    center: Triple = (0.0, 0.0, 0.0)
+
+
+class Copy(Command):
+    """Copy a body or a rigid object of the design, by its name.
+
+    The body of a design that has no others becomes the first of a new design of several.
+    """
+
+    name: ShortText
+    way: Beside | InMirror | Around
+
+
+class Remove(Command):
+    """Take a body or a rigid object out of the design, with the pairs of contact that name it."""
+
+    name: ShortText
+
+
+class AddBody(Command):
+    """Add a body: a design file of the folder, a template, or a file that was uploaded.
+
+    It stands `beyond` so many m along x. The body of a design that has no others becomes the first
+    of a new design of several.
+    """
+
+    what: Literal["file", "template", "upload"]
+    name: ShortText
+    beyond: float = 0.0
+
+
+class Designs(Command):
+    """Ask for the design files beside the document."""
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -338,6 +391,10 @@ AnyCommand = (
     | Open
     | Text
     | Edit
+    | Copy
+    | Remove
+    | AddBody
+    | Designs
     | Undo
     | Redo
     | Save

@@ -160,6 +160,20 @@ class Document(Event):
     can_redo: bool
 
 
+class DesignFile(Entry):
+    """A design file beside the document: its name there, and that of the design."""
+
+    file: str
+    title: str
+
+
+class DesignFiles(Event):
+    """The design files in the folder of the document, without its own."""
+
+    folder: str
+    files: list[DesignFile]
+
+
 class Cavity(Entry):
     """An enclosed space: its name or an empty text, volume in m³, area in m²."""
 
@@ -260,11 +274,20 @@ class BodyObject(Entry):
 
 
 class BodyPart(Entry):
-    """A part; `color` is a CSS color."""
+    """A part; `color` is a CSS color, and `body` the body that it is of where there are several."""
 
     name: str
     material: str
     color: str
+    body: str = ""
+
+
+class BodyOfSeveral(Entry):
+    """One of several bodies, unloaded: its bounds in m, and its first and last drawn vertex."""
+
+    name: str
+    bounds: tuple[Triple, Triple]
+    vertices: tuple[int, int]
 
 
 class Body(Event):
@@ -272,7 +295,7 @@ class Body(Event):
 
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
     shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
-    `touches` tells whether anything of the design may touch.
+    `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
     """
 
     topology: int
@@ -301,6 +324,7 @@ class Body(Event):
     seconds: float
     memory: float
     smooth: bool = False
+    bodies: list[BodyOfSeveral] = field(default_factory=list)
 
 
 class GrabState(Entry):
@@ -705,7 +729,7 @@ class Exported(Event):
 class Saved(Event):
     """A file that was written."""
 
-    what: Literal["document", "card", "run"]
+    what: Literal["document", "card", "run", "design"]
     path: str
 
 
@@ -734,6 +758,7 @@ class Log(Event):
 AnyEvent = (
     Hello
     | Document
+    | DesignFiles
     | Body
     | Stat
     | Equilibrium

@@ -14,7 +14,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft._folders import folder_name
-from voxsoft.errors import FileError, MeasurementError, StudyError, VoxSoftError
+from voxsoft.design import Design
+from voxsoft.design.contact import BODY
+from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.errors import DesignError, FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import card_name, load_card_file, save_card
 from voxsoft.files.figures import save_thumbnail
@@ -26,6 +29,7 @@ from voxsoft.studio.asked import spec_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
 from voxsoft.studio.compared import compared
+from voxsoft.studio.copies import Change, copied, removed
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
@@ -43,6 +47,14 @@ from voxsoft.studio.opening import (
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.recipes import recipe_of
 from voxsoft.studio.runs import RunList, card_of, kind_of
+from voxsoft.studio.several import (
+    added,
+    changed_text,
+    design_files,
+    file_of_document,
+    file_of_template,
+    several_of,
+)
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
 from voxsoft.studio.tab import Tab
@@ -180,6 +192,68 @@ class Session:
         self._changed(self.document.edit(command.path, command.value))
 
     @_execute.register
+    def _on_copy(self, command: commands.Copy, tab: Tab) -> None:
+        self._author = tab
+        document, name = self._of_several(command.name)
+        source, design = self._good(document)
+        found = copied(source, design, name, command.way)
+        self._change(document, found.changes)
+        if found.left:
+            text = f"{', '.join(found.left)}: of {name} alone, as a copy needs others"
+            self.tabs.publish(events.Log(level="warning", text=text))
+
+    @_execute.register
+    def _on_remove(self, command: commands.Remove, tab: Tab) -> None:
+        self._author = tab
+        source, design = self._good(self.document)
+        self._change(self.document, removed(source, design, command.name))
+
+    @_execute.register
+    def _on_add_body(self, command: commands.AddBody, tab: Tab) -> None:
+        self._author = tab
+        document, _ = self._of_several(BODY)
+        self._good(document)
+        file = Path(command.name)
+        if command.what == "template":
+            file = file_of_template(command.name, document.folder)
+        elif command.what == "upload":
+            upload = uploaded_document(self._upload(command.name), document.folder)
+            file = file_of_document(upload, document.folder)
+        if command.what != "file":
+            self.tabs.publish(events.Saved(what="design", path=str(file)))
+            file = Path(file.name)
+        changes, _ = added(document, file.as_posix(), command.beyond)
+        self._change(document, changes)
+
+    @_execute.register
+    def _on_designs(self, command: commands.Designs, tab: Tab) -> None:
+        self.tabs.send_to(tab, design_files(self.document))
+
+    def _of_several(self, name: str) -> tuple[DesignDocument, str]:
+        """A document in which bodies have names, and what there is called by a name."""
+        _, design = self._good(self.document)
+        if name != BODY or design.bodies:
+            return self.document, name
+        return several_of(self.document)
+
+    def _good(self, document: DesignDocument) -> tuple[PlainDocument, Design]:
+        if document.source is None or document.design is None or not document.valid:
+            raise DesignError("design", "is not valid", "fix what the editor underlines")
+        return document.source, document.design
+
+    def _change(self, document: DesignDocument, changes: list[Change]) -> None:
+        """Change a document as one step that is undone together; a new one is shown."""
+        text = changed_text(document.text, changes)
+        if document is self.document:
+            self._changed(document.replace(text))
+            return
+        document = DesignDocument(text, document.name, folder=document.folder)
+        document.follow(self.document)
+        # Undo leads back also to a document that is saved: this was a change of it.
+        document.before, self.document.after = self.document, document
+        self._show(document)
+
+    @_execute.register
     def _on_undo(self, command: commands.Undo, tab: Tab) -> None:
         self._author = tab
         if self.document.undo():
@@ -246,10 +320,14 @@ class Session:
         self.engine.forget()
         self._announce()
 
-    def _open_upload(self, name: str) -> None:
+    def _upload(self, name: str) -> Path:
         file = self.own / "uploads" / safe_name(name)
         if not file.is_file():
             raise FileError(name, "was not uploaded", "drop the file on the page again")
+        return file
+
+    def _open_upload(self, name: str) -> None:
+        file = self._upload(name)
         if file.suffix == ".zip":
             folder = unpack_folder(file, self._free_folder(file.stem))
             self._open(document_at(folder, self._home))
