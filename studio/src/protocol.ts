@@ -650,10 +650,15 @@ export interface DocumentEvent {
   can_redo: boolean;
 }
 
-/** A design file beside the document: its name there, and that of the design. */
+/**
+ * A design file beside the document: its name there, and that of the design.
+ *
+ * `parameters` holds the values that a body may set, as they are written.
+ */
 export interface DesignFile {
   file: string;
   title: string;
+  parameters: Record<string, string>;
 }
 
 /** The design files in the folder of the document, without its own. */

@@ -20,6 +20,7 @@ const BODY: BodyEvent = {
     layers: [],
     attachments: [],
     objects: [],
+    bodies: [],
     not_live: "",
     touches: false,
     parts: [],

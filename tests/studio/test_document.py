@@ -49,6 +49,18 @@ def test_an_error_stands_under_what_is_wrong(old, new, reported, under):
         assert marked(text, found) == under
 
 
+@pytest.mark.parametrize(
+    ("text", "there"),
+    [
+        ("a = 1\n\n[[b]]\nx = 1\n", "x = 1\n\n[[b]]\nx = 9\n"),
+        ("[[b]]\nx = 1\n\n[c]\ny = 1\n", "x = 1\n\n[[b]]\nx = 9\n\n[c]\n"),
+        ("[[b]]\nx = 1\n[[b]]\nx = 2\n", "x = 2\n[[b]]\nx = 9\n"),
+    ],
+)
+def test_a_section_that_is_added_stands_apart_as_the_others_do(text, there):
+    assert there in with_value(text, ["b", text.count("[[b]]")], {"x": 9})
+
+
 def test_the_last_good_design_stays():
     edited = document()
     good = edited.design

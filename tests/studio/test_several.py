@@ -1,4 +1,4 @@
-"""Bodies of a design in the studio: copied, mirrored, arranged, added, taken out, told of."""
+"""Bodies of a design in the studio: copied, mirrored, arranged, added, taken out, shown."""
 
 import shutil
 from pathlib import Path
@@ -116,16 +116,16 @@ class Tabs:
     """What a session tells, kept."""
 
     def __init__(self):
-        self.told = []
+        self.sent = []
 
     def publish(self, event):
-        self.told.append(event)
+        self.sent.append(event)
 
     def send_to(self, tab, event):
-        self.told.append(event)
+        self.sent.append(event)
 
     def of(self, kind):
-        return [event for event in self.told if isinstance(event, kind)]
+        return [event for event in self.sent if isinstance(event, kind)]
 
 
 @pytest.fixture
@@ -260,9 +260,9 @@ def test_a_copy_touches_as_the_original_and_what_names_that_is_copied_where_it_c
     design = do(session, commands.Copy(seq=1, name="left", way=commands.Around(count=2)))
     assert len(design.loads) == 2
     assert len(design.clamps) == 3
-    [told] = session.tabs.of(events.Log)
-    assert told.level == "warning"
-    assert told.text == "loads[0]: of left alone, as a copy needs others"
+    [warning] = session.tabs.of(events.Log)
+    assert warning.level == "warning"
+    assert warning.text == "loads[0]: of left alone, as a copy needs others"
 
 
 @pytest.mark.parametrize("way", WAYS)
@@ -312,6 +312,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
     session.handle(object(), commands.Designs(seq=1))
     [listed] = session.tabs.of(events.DesignFiles)
     assert [(each.file, each.title) for each in listed.files] == [("finger.toml", "finger")]
+    assert listed.files[0].parameters == {"long": "30 mm"}
     add = commands.AddBody(seq=2, what="file", name="finger.toml", beyond=0.061)
     design = do(session, add)
     # Free of what is there, and on voxels of its own.
@@ -333,7 +334,7 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
 
 
 @pytest.mark.parametrize(
-    ("command", "said"),
+    ("command", "expected"),
     [
         (commands.Copy(seq=1, name="thumb", way=WAYS["around"][0]), "thumb: is no body or object"),
         (
@@ -346,8 +347,8 @@ def test_bodies_are_added_from_the_folder_from_templates_and_from_uploads(opened
         (commands.AddBody(seq=1, what="upload", name="none.toml"), "was not uploaded"),
     ],
 )
-def test_what_cannot_be_done_is_refused_and_changes_nothing(opened, command, said):
-    assert said in refused(opened(), command)
+def test_what_cannot_be_done_is_refused_and_changes_nothing(opened, command, expected):
+    assert expected in refused(opened(), command)
 
 
 def test_a_body_of_parts_of_its_own_is_copied_and_not_mirrored(opened):
@@ -360,8 +361,8 @@ def test_a_body_of_parts_of_its_own_is_copied_and_not_mirrored(opened):
     design = do(session, commands.Copy(seq=1, name="pad", way=beside))
     assert [part.body for part in design.parts] == ["pad", "pad-2"]
     assert same_points(vertices(design, "pad-2"), vertices(design, "pad") + np.array([0, 0.06, 0]))
-    said = refused(session, commands.Copy(seq=2, name="pad", way=WAYS["mirror"][0]))
-    assert "pad: has parts of its own, and only a design can be mirrored" in said
+    answer = refused(session, commands.Copy(seq=2, name="pad", way=WAYS["mirror"][0]))
+    assert "pad: has parts of its own, and only a design can be mirrored" in answer
 
 
 def test_copying_the_body_of_a_design_makes_a_new_design_of_several(opened, folder):
@@ -392,8 +393,8 @@ def test_copying_the_body_of_a_design_makes_a_new_design_of_several(opened, fold
 def test_a_design_that_is_not_saved_is_asked_to_be(opened):
     session = opened("finger.toml")
     session.document.replace(FINGER.replace("30 mm", "35 mm"))
-    said = refused(session, commands.Copy(seq=1, name="body", way=WAYS["beside"][0]))
-    assert "is not saved, and its bodies name its file (save it first" in said
+    answer = refused(session, commands.Copy(seq=1, name="body", way=WAYS["beside"][0]))
+    assert "is not saved, and its bodies name its file (save it first" in answer
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
@@ -407,7 +408,7 @@ def test_every_example_of_one_body_becomes_one_of_several(path, tmp_path):
     assert several.valid
 
 
-def test_the_page_is_told_which_part_of_the_picture_is_which_body(folder):
+def test_the_page_knows_which_part_of_the_picture_is_which_body(folder):
     body = StudioBody.of(load(folder / "hand.toml"), 1, 1)
     sent = body.event()
     assert [part.body for part in sent.parts] == ["left", "right"]

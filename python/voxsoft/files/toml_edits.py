@@ -8,7 +8,7 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import AoT
+from tomlkit.items import AoT, Table
 
 from voxsoft.errors import DesignError
 from voxsoft.files.toml_text import write_toml
@@ -129,8 +129,7 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         for key, inner in value.items():
             table[key] = _item(inner)
         if index == len(here):
-            if _followed(here):
-                table.add(tomlkit.nl())
+            _part_sections(here, table)
             here.append(table)
         else:
             here[index] = table
@@ -140,9 +139,16 @@ def _set_entry(here: Any, index: int, value: object, path: list[str | int]) -> N
         here[index] = _item(value)
 
 
-def _followed(sections: AoT) -> bool:
-    """Whether an empty line parts a list of sections from what follows."""
-    return len(sections) > 0 and sections[-1].as_string().endswith("\n\n")
+def _part_sections(sections: AoT, added: Table) -> None:
+    """Put an empty line between a section that is added to a list and its neighbors.
+
+    Where the sections of the list stand close together, so does the new one.
+    """
+    ends = [section.as_string().endswith("\n\n") for section in sections]
+    if ends and ends[-1]:
+        added.add(tomlkit.nl())
+    elif len(ends) == 1 or any(ends):
+        sections[-1].add(tomlkit.nl())
 
 
 def _item(value: object, *, top: bool = False) -> Any:  # noqa: ANN401

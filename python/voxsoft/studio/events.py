@@ -161,10 +161,14 @@ class Document(Event):
 
 
 class DesignFile(Entry):
-    """A design file beside the document: its name there, and that of the design."""
+    """A design file beside the document: its name there, and that of the design.
+
+    `parameters` holds the values that a body may set, as they are written.
+    """
 
     file: str
     title: str
+    parameters: dict[str, str] = field(default_factory=dict)
 
 
 class DesignFiles(Event):

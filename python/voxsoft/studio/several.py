@@ -43,8 +43,16 @@ def design_files(document: DesignDocument) -> events.DesignFiles:
             continue
         if "voxel_size" in read and ("parts" in read or "bodies" in read):
             title = str(read.get("name", path.stem))
-            found.append(events.DesignFile(file=path.name, title=title))
+            parameters = dict(_parameters(read.get("parameters")))
+            found.append(events.DesignFile(file=path.name, title=title, parameters=parameters))
     return events.DesignFiles(folder=str(document.folder), files=found)
+
+
+def _parameters(tables: object) -> Iterator[tuple[str, str]]:
+    """The parameters of a document that are no formulas of others, and their values as text."""
+    for name, table in tables.items() if isinstance(tables, Mapping) else ():
+        if not _is_derived(table):
+            yield name, str(table.get("value", "") if isinstance(table, Mapping) else table)
 
 
 def changed_text(text: str, changes: Collection[Change]) -> str:

@@ -16,8 +16,8 @@ export function ContactCard() {
         {moment.contacts.length === 0 && <p className="muted">Nothing touches in this frame.</p>}
         {(moment.depth ?? 0) > 0 && (
           <p className="warn" data-testid="contact-depth">
-            Surfaces are {formatNumber(1e3 * (moment.depth ?? 0), 2)} mm in each other: pressed too hard
-            to be told live.
+            Surfaces are {formatNumber(1e3 * (moment.depth ?? 0), 2)} mm in each other: pressed too
+            hard to be told live.
           </p>
         )}
         {moment.contacts.map((touch) => (

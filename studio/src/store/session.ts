@@ -74,6 +74,9 @@ export function present(next: Stage): void {
 /** Commands that speak of the document, which must hold what was typed by then. */
 const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "edit",
+  "copy",
+  "remove",
+  "add_body",
   "undo",
   "redo",
   "open",

@@ -6,6 +6,7 @@ import type {
   BodyEvent,
   CalibratedEvent,
   ComparedEvent,
+  DesignFilesEvent,
   DocumentEvent,
   EquilibriumEvent,
   GenerationEvent,
@@ -44,6 +45,8 @@ export interface Studio {
   link: Link;
   hello: HelloEvent | null;
   document: DocumentEvent | null;
+  /** Design files beside it. */
+  designs: DesignFilesEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
   /** The pace that was asked for and is not confirmed yet: null is the automatic one. */
@@ -84,6 +87,7 @@ export const useStudio = create<Studio>(() => ({
   link: { state: "connecting", attempt: 0, retryAt: null, reason: "" },
   hello: null,
   document: null,
+  designs: null,
   body: null,
   stat: null,
   askedPace: undefined,
@@ -147,6 +151,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "document":
       set({ document: event });
+      break;
+    case "design_files":
+      set({ designs: event });
       break;
     case "body":
       set(({ body, moments }) => ({
@@ -236,6 +243,7 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "log":
       note(event.level, event.text);
+      if (event.level === "warning") toast({ level: "warning", what: event.text, hint: "" });
   }
 }
 

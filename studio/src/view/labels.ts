@@ -8,6 +8,7 @@ export interface Label {
     | "clamp"
     | "layer"
     | "attachment"
+    | "body"
     | "object"
     | "load"
     | "probe"

@@ -9,10 +9,10 @@ import {
   GLSL3,
   Group,
   type IUniform,
-  type Ray,
-  Raycaster,
   Matrix4,
   Mesh,
+  type Ray,
+  Raycaster,
   ShaderMaterial,
   Vector3,
   type Vector4,
@@ -22,10 +22,10 @@ import type { BodyObject, Moment, ObjectPose } from "../protocol";
 import { showPane } from "../shell/actions";
 import { setView } from "../store/view";
 import type { Label } from "./labels";
+import { CHOSEN_COLOR } from "./several";
 import { CUT } from "./shaders";
 
 const COLOR = "#8d959e";
-const CHOSEN_COLOR = "#f0b429";
 /** How much of a picture an object takes: what it presses must be seen through it. */
 const OPACITY = 0.42;
 const CHOSEN_OPACITY = 0.5;

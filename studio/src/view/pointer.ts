@@ -26,7 +26,8 @@ export function listen(view: Viewport): void {
     canvas.setPointerCapture(event.pointerId);
     start = last = { x: event.clientX, y: event.clientY };
     const hit = event.button === 0 && !event.altKey ? view.hit(event.clientX, event.clientY) : null;
-    const object = event.button === 0 && !event.altKey ? view.hitObject(event.clientX, event.clientY) : null;
+    const object =
+      event.button === 0 && !event.altKey ? view.hitObject(event.clientX, event.clientY) : null;
     const motion = hit ? null : motionOf(useView.getState().scheme, event);
     if (object && mayPull()) gesture = { kind: "maybe-hold", object };
     else if (hit) gesture = { kind: "maybe-pull", hit };
@@ -114,6 +115,7 @@ export function listen(view: Viewport): void {
       view.grabs.end(false);
       gesture = null;
     } else if (useView.getState().tape) setView({ tape: false });
+    else setView({ chosen: null });
     view.request();
   });
 }
@@ -129,5 +131,8 @@ function mayPull(): boolean {
 
 function clicked(view: Viewport, hit: Target): void {
   if (useView.getState().tape) view.tape.add(hit);
-  else send({ t: "pick", vertex: hit.vertex });
+  else {
+    send({ t: "pick", vertex: hit.vertex });
+    view.choose(hit.vertex);
+  }
 }

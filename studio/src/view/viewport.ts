@@ -31,6 +31,7 @@ import { listen } from "./pointer";
 import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
 import { SectionHandle } from "./sectionHandle";
+import { partColors, Several } from "./several";
 import { SmoothMesh } from "./smooth";
 import { Spot } from "./spot";
 import { Stopwatch } from "./stopwatch";
@@ -69,6 +70,7 @@ export class Viewport {
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
   private readonly objects = new RigidObjects(this.section);
+  private readonly several = new Several();
   private readonly labels = new Labels();
   private legend: Rect | null = null;
   private ink = themeColor("--ink");
@@ -119,6 +121,7 @@ export class Viewport {
       this.section.group,
       this.symbols.group,
       this.objects.group,
+      this.several.group,
       this.attachments.group,
       this.grabs.group,
       this.tape.group,
@@ -237,11 +240,13 @@ export class Viewport {
     this.request();
   }
 
-  // Objects come before the body's surface, with it or later: a picture that no hand has turned takes them in.
+  // Bodies that are added stand beside those that were there, and objects come before the body's surface, with
+  // it or later: a picture that no hand has turned takes them in.
   private takeIn(): void {
     const { body } = useStudio.getState();
     const mesh = this.shownMesh();
-    if (!mesh || body?.topology !== mesh.topology.id || body.objects.length === 0) return;
+    if (!mesh || body?.topology !== mesh.topology.id) return;
+    if (body.objects.length + body.bodies.length === 0) return;
     const box = this.objects.around(mesh.box(1).clone());
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
@@ -438,7 +443,7 @@ export class Viewport {
   }
 
   private style(view: View, mesh: BodyMesh | null): void {
-    const parts = useStudio.getState().body?.parts.map((part) => part.color) ?? [];
+    const parts = partColors(useStudio.getState().body, view.chosen);
     const colors = { parts, ink: this.ink };
     const smooth = view.appearance === "smooth" && this.smooth !== null;
     const [low, high] = this.range(view);
@@ -460,6 +465,7 @@ export class Viewport {
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
     const moment = moments.get(this.latest?.number ?? 0);
     this.objects.place(moment, view.exaggeration, view.chosen, this.ofContact);
+    this.several.place(body, this.surface, view.chosen, view.exaggeration);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
   }
@@ -500,6 +506,7 @@ export class Viewport {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
       labels.push(...this.attachments.update(mesh, view.exaggeration));
       labels.push(...this.objects.labels());
+      labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
     // Where all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
@@ -587,6 +594,12 @@ export class Viewport {
     );
     this.raycaster.setFromCamera(at, this.rig.camera);
     return this.raycaster.ray;
+  }
+
+  /** Choose the body that has a drawn vertex, where there are several. */
+  choose(vertex: number): void {
+    const entry = this.several.entryAt(useStudio.getState().body, vertex);
+    if (entry) setView({ chosen: entry });
   }
 
   /** What of the body is at a place of the page. */

@@ -94,6 +94,44 @@ describe("renamed", () => {
   });
 });
 
+it("renames a body or an object where they are spoken of", () => {
+  const text = [
+    "[shapes]",
+    'left = { kind = "box" }',
+    'all = { kind = "union", of = ["left", "other"] }',
+    "[[bodies]]",
+    'name = "left" # the left one',
+    'set = { left = "= left" }',
+    "[[clamps]]",
+    'region = { body = "left", z = [0, 0] }',
+    "[[loads]]",
+    'cavity = "left.air"',
+    "[[objects]]",
+    'name = "lefty"',
+    'shape = "left"',
+    "[contact]",
+    'pairs = [{ of = ["left", "lefty"] }]',
+    "[objectives]",
+    'a = { minimize = "displacement", probe = "left.tip" }',
+    'b = { minimize = "contact_area", object = "lefty" }',
+  ].join("\n");
+  const body = renamed(text, "bodies", "left", "thumb").split("\n");
+  const changed = body.filter((line, i) => line !== text.split("\n")[i]);
+  expect(changed).toEqual([
+    'name = "thumb" # the left one',
+    'region = { body = "thumb", z = [0, 0] }',
+    'cavity = "thumb.air"',
+    'pairs = [{ of = ["thumb", "lefty"] }]',
+    'a = { minimize = "displacement", probe = "thumb.tip" }',
+  ]);
+  const object = renamed(text, "objects", "lefty", "cube").split("\n");
+  expect(object.filter((line, i) => line !== text.split("\n")[i])).toEqual([
+    'name = "cube"',
+    'pairs = [{ of = ["left", "cube"] }]',
+    'b = { minimize = "contact_area", object = "cube" }',
+  ]);
+});
+
 it("orders shapes below what uses them, each once", () => {
   const shapes = {
     a: { kind: "box" },

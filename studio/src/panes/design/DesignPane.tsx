@@ -1,6 +1,7 @@
 // The form of the design: one document with the text beside it.
 import { Button, Empty, Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
+import { Bodies } from "./Bodies";
 import { Adder, EntryList, EntryMap } from "./Entries";
 import { edit } from "./edits";
 import { type Form, FormContext } from "./form";
@@ -20,6 +21,7 @@ export default function DesignPane() {
   const form = useFormOfDocument();
   const connected = useStudio((state) => state.hello !== null);
   const document = useStudio((state) => state.document);
+  const several = Array.isArray(form?.source.bodies) && form.source.bodies.length > 0;
   if (!connected) {
     return (
       <Empty title="Waiting for VoxSoft">
@@ -35,6 +37,7 @@ export default function DesignPane() {
         <FormContext value={form}>
           <Parameters />
           <General form={form} />
+          <Bodies />
           <Shapes />
           <EntryMap
             section="materials"
@@ -47,7 +50,11 @@ export default function DesignPane() {
             section="parts"
             title="Parts"
             what="a part"
-            empty="None yet. A part is a shape made of a material."
+            empty={
+              several
+                ? "None of its own: the bodies have theirs."
+                : "None yet. A part is a shape made of a material."
+            }
             note="Where parts overlap, the upper one wins."
           />
           <EntryList
@@ -63,7 +70,11 @@ export default function DesignPane() {
             section="clamps"
             title="Clamps"
             what="a clamp"
-            empty="None yet. Without one the body floats away."
+            empty={
+              several
+                ? "None of its own: the bodies have theirs."
+                : "None yet. Without one the body floats away."
+            }
           />
           <EntryList
             section="loads"
@@ -116,7 +127,7 @@ function Faults() {
 }
 
 /** Lists that have their own place and words in the form. */
-const PLACED = ["parts", "layers", "objects", "clamps", "loads"];
+const PLACED = ["bodies", "parts", "layers", "objects", "clamps", "loads"];
 
 /** All other lists of the schema, in its words. */
 function OtherLists(props: { root: Schema }) {

@@ -3,6 +3,8 @@ import { type ReactNode, useEffect, useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
+import { send } from "../../store/session";
+import { useStudio } from "../../store/studio";
 import { textNow } from "../../store/typing";
 import { setView, useView } from "../../store/view";
 import { edit, problemsAt, replaceText } from "./edits";
@@ -197,15 +199,19 @@ export function EntryList(props: {
   );
 }
 
-/** An object in the list of them: the one whose fields are open is marked in the picture. */
-export function ObjectEntry(props: {
+/** A body or an object in the list of them: the one whose fields are open is marked in the picture. */
+export function ThingEntry(props: {
+  section: "bodies" | "objects";
   index: number;
   value: Table;
   about: string;
   children: ReactNode;
 }) {
   const { diagnostics } = useForm();
-  const name = String(props.value.name ?? `Object ${props.index + 1}`);
+  const { section, index } = props;
+  const named = typeof props.value.name === "string";
+  const name = named ? String(props.value.name) : `${single(section)} ${index + 1}`;
+  const valid = useStudio((state) => state.document?.valid ?? false);
   const chosen = useView((view) => view.chosen === name);
   const box = useRef<HTMLDivElement>(null);
   // It may have been added, or chosen in the picture.
@@ -217,14 +223,16 @@ export function ObjectEntry(props: {
       <Entry
         title={name}
         about={props.about}
-        wrong={problemsAt(diagnostics, ["objects", props.index]).length > 0}
-        testId={`objects-${props.index}`}
+        wrong={problemsAt(diagnostics, [section, index]).length > 0}
+        testId={`${section}-${index}`}
         open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
         actions={[
           {
             glyph: "trash",
             label: `Remove ${name}`,
-            run: () => edit(["objects", props.index], null),
+            // With the pairs of contact that name it, unless the text is not good as it is.
+            run: () =>
+              named && valid ? send({ t: "remove", name }) : edit([section, index], null),
           },
         ]}
       >

@@ -9,6 +9,7 @@ import { EntryMap, type Table } from "./Entries";
 import { edit } from "./edits";
 import { useForm } from "./form";
 import { labelOf } from "./schema";
+import { bodyNames } from "./several";
 
 const AXES = [
   { value: "", label: "magnitude" },
@@ -95,10 +96,10 @@ function MetricFields(props: {
   );
 }
 
-/** What a body may touch: objects by their names, and itself. */
+/** What may be touched: objects by their names, and bodies. */
 function objectsOf(source: Table): string[] {
   const objects = Array.isArray(source.objects) ? source.objects : [];
-  return [...objects.map((one) => String((one as Table).name ?? "")), "body"];
+  return [...objects.map((one) => String((one as Table).name ?? "")), ...bodyNames(source)];
 }
 
 /** A percentile as a user types it, or its formula; null for none, which is the largest value. */

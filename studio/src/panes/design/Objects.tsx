@@ -5,7 +5,8 @@ import { NumberField } from "../../controls/NumberField";
 import { sendFile } from "../../shell/DropZone";
 import { toast, useStudio } from "../../store/studio";
 import { setView } from "../../store/view";
-import { ObjectEntry } from "./Entries";
+import { CopyTools } from "./CopyTools";
+import { NameField, ThingEntry } from "./Entries";
 import { edit } from "./edits";
 import { useForm } from "./form";
 import {
@@ -23,6 +24,7 @@ import {
 import { boxOf, type Surroundings, surroundingsOf } from "./placing";
 import { TableFields } from "./SchemaField";
 import { resolve, type Schema } from "./schema";
+import { bodyNames } from "./several";
 import { freeName } from "./starters";
 
 const MOTIONS: readonly { value: Motion; label: string }[] = [
@@ -42,15 +44,16 @@ export function Objects() {
         <p className="muted">None. Add an object to grip: a rigid thing that the body touches.</p>
       )}
       {values.map((value, i) => (
-        <ObjectEntry
+        <ThingEntry
           // biome-ignore lint/suspicious/noArrayIndexKey: entries may have no other name
           key={i}
+          section="objects"
           index={i}
           value={value}
           about={`${motionOf(value)}, ${describeShape(value.shape)}`}
         >
-          <ObjectFields index={i} value={value} count={values.length} schema={schema} />
-        </ObjectEntry>
+          <ObjectFields index={i} value={value} all={values} schema={schema} />
+        </ThingEntry>
       ))}
     </Section>
   );
@@ -143,15 +146,22 @@ async function readObject(
   }
 }
 
-function ObjectFields(props: { index: number; value: Table; count: number; schema: Schema }) {
-  const { index, value, count } = props;
+function ObjectFields(props: {
+  index: number;
+  value: Table;
+  all: readonly Table[];
+  schema: Schema;
+}) {
+  const { index, value, all } = props;
   const { root, source } = useForm();
   const path = ["objects", index];
   const motion = motionOf(value);
   const name = String(value.name);
-  const friction = frictionOf(source.contact, name);
+  const bodies = bodyNames(source);
+  const friction = frictionOf(source.contact, name, bodies);
   return (
     <>
+      <NameField section="objects" name={name} taken={all.map((one) => String(one.name))} />
       <Select
         label="Motion"
         title="Whether it stays, goes a way as a clamp does, or falls and is pushed, over time."
@@ -179,14 +189,15 @@ function ObjectFields(props: { index: number; value: Table; count: number; schem
           slider
           onChange={(next, settled) => {
             if (!settled) return;
-            const change = frictionEdit(source.contact, name, count, next);
+            const change = frictionEdit(source.contact, name, all.length, next, bodies);
             edit(change.path, change.value);
           }}
         />
       ) : (
         <p className="muted">Friction: {String(friction)}, as the text says.</p>
       )}
-      <TableFields path={path} schema={props.schema} value={value} without={["motion"]} />
+      <CopyTools name={name} />
+      <TableFields path={path} schema={props.schema} value={value} without={["motion", "name"]} />
     </>
   );
 }

@@ -362,7 +362,7 @@ export function TableFields(props: {
     string,
     unknown
   >;
-  let schema = resolve(root, props.schema);
+  let schema = control.is === "table" ? control.schema : resolve(root, props.schema);
   let tagField: ReactNode = null;
   let kind: string | undefined;
   if (control.is === "variant") {

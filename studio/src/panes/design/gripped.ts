@@ -77,31 +77,45 @@ interface Pair {
 const pairsOf = (contact: unknown): readonly Pair[] =>
   ((contact as { pairs?: readonly Pair[] } | undefined)?.pairs ?? []) as readonly Pair[];
 
-const isPair = (pair: Pair, name: string) =>
-  pair.of.length === 2 && pair.of.includes(name) && pair.of.includes("body");
+const isPair = (pair: Pair, name: string, body: string) =>
+  pair.of.length === 2 && pair.of.includes(name) && pair.of.includes(body);
 
-/** The friction of an object with the body: that of their pair, or of all. */
-export function frictionOf(contact: unknown, name: string): unknown {
-  const own = pairsOf(contact).findLast((pair) => isPair(pair, name))?.friction;
+/** The friction of an object with the bodies: that of a pair, or of all. */
+export function frictionOf(contact: unknown, name: string, bodies: readonly string[]): unknown {
+  const own = pairsOf(contact).findLast((pair) =>
+    bodies.some((body) => isPair(pair, name, body)),
+  )?.friction;
   return own ?? (contact as { friction?: unknown } | undefined)?.friction ?? 0;
 }
 
-/** Where the friction of an object with the body is written, and as what. */
+/** Where the friction of an object with the bodies is written, and as what. */
 export function frictionEdit(
   contact: unknown,
   name: string,
   objects: number,
   friction: number,
+  bodies: readonly string[],
 ): { path: (string | number)[]; value: unknown } {
   const pairs = pairsOf(contact);
-  const own = pairs.findLastIndex((pair) => isPair(pair, name));
-  if (own >= 0) return { path: ["contact", "pairs", own, "friction"], value: friction };
+  const of = bodies.map((body) => pairs.findLastIndex((pair) => isPair(pair, name, body)));
+  const [own, ...others] = of.filter((at) => at >= 0);
+  if (own !== undefined && others.length === 0 && bodies.length === 1)
+    return { path: ["contact", "pairs", own, "friction"], value: friction };
   // All that touches has it while there is one object; of several each has its own.
-  if (objects < 2) {
+  if (objects < 2 && own === undefined) {
     const path = contact === undefined ? ["contact"] : ["contact", "friction"];
     return { path, value: contact === undefined ? { friction } : friction };
   }
-  const pair = { of: ["body", name], friction };
+  if (bodies.length > 1) {
+    // The same with each of them, one pair each.
+    const changed = pairs.map((pair, at) => (of.includes(at) ? { ...pair, friction } : pair));
+    const missing = bodies.filter((_, i) => (of[i] ?? -1) < 0);
+    const value = [...changed, ...missing.map((body) => ({ of: [body, name], friction }))];
+    return contact === undefined
+      ? { path: ["contact"], value: { pairs: value } }
+      : { path: ["contact", "pairs"], value };
+  }
+  const pair = { of: [bodies[0], name], friction };
   if (contact === undefined) return { path: ["contact"], value: { pairs: [pair] } };
   return pairs.length === 0
     ? { path: ["contact", "pairs"], value: [pair] }

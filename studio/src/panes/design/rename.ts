@@ -1,6 +1,8 @@
 // Give a named thing of a design another name, everywhere the text speaks of it.
 
 export type Named =
+  | "bodies"
+  | "objects"
   | "parameters"
   | "shapes"
   | "materials"
@@ -8,6 +10,9 @@ export type Named =
   | "probes"
   | "objectives"
   | "constraints";
+
+/** What has its name in an entry of a list, and not before its table. */
+const THINGS: ReadonlySet<Named> = new Set(["bodies", "objects"]);
 
 export const NAME = /^[A-Za-z_][\w-]*$/;
 
@@ -57,12 +62,17 @@ function mention(code: string, section: Named, from: string, to: string): string
       );
       return `${quote}${text.replace(word, to)}${quote}`;
     }
+    // What is of a body begins with its name: left.tip.
+    if (section === "bodies" && text.startsWith(`${from}.`))
+      return `${quote}${to}${text.slice(from.length)}${quote}`;
     return text === from ? `${quote}${to}${quote}` : whole;
   });
 }
 
 // What names are spoken of where: a probe called like a shape must not rename the shape.
 const SPEAKS: Readonly<Record<Named, RegExp | null>> = {
+  bodies: /\b(?:body|object|cavity|probe)\s*=/,
+  objects: /\bobject\s*=/,
   parameters: /./,
   shapes: /\b(?:of|shape|by|base|inner|outer)\s*=/,
   materials: /\bmaterial\s*=/,
@@ -79,8 +89,14 @@ export function renamed(text: string, section: Named, from: string, to: string):
     const [code, comment] = splitComment(line);
     const header = /^\s*\[\[?\s*([\w-]+)/.exec(code);
     if (header) current = header[1] ?? "";
-    let next = redefine(code, current === section && !header, section, from, to);
-    if (SPEAKS[section]?.test(next)) next = mention(next, section, from, to);
+    let next = THINGS.has(section)
+      ? code
+      : redefine(code, current === section && !header, section, from, to);
+    const things = THINGS.has(section);
+    // Names of bodies and objects stand in entries of their own, and in pairs of contact.
+    const named = things && current === section && /^\s*name\s*=/.test(next);
+    const paired = things && current === "contact";
+    if (named || paired || SPEAKS[section]?.test(next)) next = mention(next, section, from, to);
     return next + comment;
   });
   return lines.join("\n");
