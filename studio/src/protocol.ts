@@ -926,6 +926,8 @@ export interface ObjectPose {
  * What touches what: the force on the first in N, the area in m² and the smallest gap in m.
  *
  * `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
+ * `friction` is the size of that part of the force and `bound` the most that it can be, in N;
+ * null where motion is live.
  */
 export interface Touch {
   of: [string, string];
@@ -934,6 +936,8 @@ export interface Touch {
   area: number;
   gap: number;
   slipping: number;
+  friction: number | null;
+  bound: number | null;
 }
 
 /**

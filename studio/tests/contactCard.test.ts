@@ -1,14 +1,22 @@
 import { expect, it } from "vitest";
 import type { Touch } from "../src/protocol";
-import { forceOf, holdOf } from "../src/run/ContactCard";
+import { forceOf, frictionOf } from "../src/run/ContactCard";
+import { holdOf } from "../src/run/hold";
 
 const touch = (first: string, second: string): Touch => ({
   ...{ of: [first, second], force: [0, 3, 4], pressed: 12, area: 1e-6, gap: 0, slipping: 0 },
+  ...{ friction: 3, bound: 4 },
 });
 
 it("gives the force on the first, and of the body on itself all that presses", () => {
   expect(forceOf(touch("body", "plate"))).toBe(5);
   expect(forceOf(touch("body", "body"))).toBe(12);
+});
+
+it("says how much of the friction is used", () => {
+  expect(frictionOf(touch("body", "plate"))).toBe("3 N of 4 N (75 %)");
+  const none = { ...touch("body", "plate"), friction: 1e-9, bound: 0 };
+  expect(frictionOf(none)).toContain("(0 %)");
 });
 
 it("says whether surfaces hold", () => {

@@ -431,6 +431,8 @@ class Touch(Entry):
     """What touches what: the force on the first in N, the area in m² and the smallest gap in m.
 
     `pressed` is the sum of the sizes of all forces, and `slipping` the part of it that slips.
+    `friction` is the size of that part of the force and `bound` the most that it can be, in N;
+    null where motion is live.
     """
 
     of: tuple[str, str]
@@ -439,6 +441,8 @@ class Touch(Entry):
     area: float
     gap: float
     slipping: float
+    friction: float | None = None
+    bound: float | None = None
 
 
 class Moment(Entry):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
@@ -114,6 +115,8 @@ def _moment(
                 area=each.area,
                 gap=each.gap,
                 slipping=each.slipping,
+                friction=math.hypot(*each.friction),
+                bound=each.bound,
             )
             for each in contacts
         ],

@@ -2,9 +2,8 @@ import { Section } from "../controls/Choice";
 import { formatNumber, formatQuantity } from "../controls/units";
 import type { Touch } from "../protocol";
 import { useStudio } from "../store/studio";
-
-/** Parts of the pressure under which all sticks, or all slips: bounds are right to a few percent. */
-const FEW = 0.02;
+import { holdColor } from "../view/forces";
+import { holdOf } from "./hold";
 
 /** What touches what in the frame that is shown: with how much force, over which area, and whether it holds. */
 export function ContactCard() {
@@ -32,9 +31,18 @@ export function ContactCard() {
                 <dt>Area</dt>
                 <dd>{formatNumber(1e6 * touch.area, 3)} mm²</dd>
               </div>
+              {(touch.bound ?? 0) > 0 && (
+                <div title="The part of the force that is friction, and the most that it can be">
+                  <dt>Friction</dt>
+                  <dd>{frictionOf(touch)}</dd>
+                </div>
+              )}
               <div>
                 <dt>Hold</dt>
-                <dd>{holdOf(touch.slipping)}</dd>
+                <dd>
+                  <i className="hold" style={{ background: holdColor(touch.slipping) }} />
+                  {holdOf(touch.slipping)}
+                </dd>
               </div>
             </dl>
           </div>
@@ -48,14 +56,15 @@ function whoOf({ of: [first, second] }: Touch): string {
   return first === second ? `${first} on itself` : `${first} on ${second}`;
 }
 
+/** How much of the friction that there can be is there: both in N, and as a part. */
+export function frictionOf({ friction, bound }: Touch): string {
+  const most = bound ?? 0;
+  const share = most > 0 ? Math.min(1, (friction ?? 0) / most) : 0;
+  const of = `${formatQuantity(friction ?? 0, "N", 3)} of ${formatQuantity(most, "N", 3)}`;
+  return `${of} (${formatNumber(100 * share, 2)} %)`;
+}
+
 /** The force on the first; of the body on itself, which cancels, the sum of the sizes. */
 export function forceOf({ of: [first, second], force, pressed }: Touch): number {
   return first === second ? pressed : Math.hypot(...force);
-}
-
-/** Whether surfaces hold, by the part of the pressure under which they slip. */
-export function holdOf(slipping: number): string {
-  if (slipping < FEW) return "sticks";
-  if (slipping > 1 - FEW) return "slips";
-  return `${formatNumber(100 * slipping, 2)} % slips`;
 }

@@ -26,6 +26,8 @@ export interface View {
   edges: boolean;
   ghost: boolean;
   symbols: boolean;
+  /** Arrows for forces of contact. */
+  forces: boolean;
   cavities: boolean;
   extremes: boolean;
   grid: boolean;
@@ -52,6 +54,7 @@ const KEPT = [
   "bands",
   "edges",
   "symbols",
+  "forces",
   "grid",
   "orthographic",
   "scheme",
@@ -70,6 +73,7 @@ export const useView = create<View>(() => ({
   edges: true,
   ghost: false,
   symbols: true,
+  forces: true,
   cavities: false,
   extremes: false,
   grid: true,
@@ -101,6 +105,8 @@ export interface Shown {
   fps: number;
   /** Milliseconds from a command to the first picture that knows of it. */
   latency: number | null;
+  /** The field that the frame is colored by. */
+  field: number;
   /** Range of colors, and that of the values in the frame, SI. */
   low: number;
   high: number;
@@ -108,6 +114,8 @@ export interface Shown {
   max: number;
   /** Values beyond the colors. */
   clipped: readonly Clipped[];
+  /** Length of a newton in arrows of contact forces, m; 0 where there are none. */
+  forceScale: number;
   /** Length of the scale bar: meters, and pixels. */
   barLength: number;
   barPixels: number;
@@ -122,11 +130,13 @@ export const useShown = create<Shown>(() => ({
   time: 0,
   fps: 0,
   latency: null,
+  field: 0,
   low: 0,
   high: 1,
   min: 0,
   max: 1,
   clipped: [],
+  forceScale: 0,
   barLength: 0,
   barPixels: 0,
   diverged: false,

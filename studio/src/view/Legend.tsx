@@ -29,6 +29,8 @@ export function Legend() {
   const clipped = useShown((shown) => shown.clipped);
   const about = useStudio((state) => state.hello?.fields.find((one) => one.id === field));
   const frame = useShown((shown) => shown.frame);
+  // Until a frame with the values of another field comes, its range is that of the field before.
+  const here = useShown((shown) => shown.field) === field;
   const solved = useStudio((state) => state.moments.get(frame)?.fields ?? false);
   const [shut, setShut] = useState(false);
   if (coloring !== "field" || !about) return null;
@@ -58,10 +60,10 @@ export function Legend() {
           known where Solve has ended
         </p>
       )}
-      {!shut && !unknown && high <= low && range !== "locked" && (
+      {!shut && !unknown && here && high <= low && range !== "locked" && (
         <p className="muted legend-flat">{formatNumber(low / factor, 3)} everywhere</p>
       )}
-      {!shut && !unknown && (high > low || range === "locked") && (
+      {!shut && !unknown && here && (high > low || range === "locked") && (
         <>
           <div className="legend-scale">
             <div className="legend-bar" style={{ background: gradient(colormap, bands) }} />

@@ -174,6 +174,11 @@ function More() {
           onChange={(symbols) => setView({ symbols })}
         />
         <Toggle
+          label="Contact forces"
+          checked={view.forces}
+          onChange={(forces) => setView({ forces })}
+        />
+        <Toggle
           label="Mark min and max"
           checked={view.extremes}
           onChange={(extremes) => setView({ extremes })}

@@ -8,6 +8,7 @@ import { useStudio } from "../store/studio";
 import { setView, useShown, useView } from "../store/view";
 import { ContactBanner } from "./ContactBanner";
 import { Cube } from "./Cube";
+import { ForceLegend } from "./ForceLegend";
 import { viewport } from "./instance";
 import { Legend } from "./Legend";
 import { OverlapBanner } from "./OverlapBanner";
@@ -32,6 +33,7 @@ export default function ViewPane() {
             <ViewBar view={view} />
             <Legend />
             <Cube view={view} />
+            <ForceLegend />
             <ScaleBar />
             <Badges />
             <Hover />

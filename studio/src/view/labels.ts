@@ -18,6 +18,7 @@ export interface Label {
     | "extreme"
     | "spot"
     | "force"
+    | "touch"
     | "tape";
   readonly text: string;
   readonly title?: string;

@@ -184,6 +184,19 @@ export class RigidObjects {
     }));
   }
 
+  /** The points of an object where a moment has it; null where there is none of that name. */
+  pointsOf(name: string, moment: Moment, exaggeration: number): Float32Array | null {
+    const index = this.drawn.findIndex((one) => one.object.name === name);
+    const found = this.drawn[index];
+    if (!found) return null;
+    const place = placedBy(moment.poses[index], found.object.middle, exaggeration);
+    const points = Float32Array.from(found.mesh.geometry.getAttribute("position").array);
+    const at = new Vector3();
+    for (let i = 0; i < points.length; i += 3)
+      at.fromArray(points, i).applyMatrix4(place).toArray(points, i);
+    return points;
+  }
+
   /** The free object that a ray meets first: its place in the list, where it is met, and its middle. */
   hit(ray: Ray): { index: number; point: Vector3; middle: Vector3 } | null {
     const caster = new Raycaster();

@@ -20,6 +20,7 @@ import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { type ColorRange, colorRange } from "./colorRange";
 import { withoutDust } from "./dust";
+import { ContactForces } from "./forces";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
 import type { Rect } from "./labelLayout";
@@ -71,6 +72,7 @@ export class Viewport {
   private readonly symbols = new Symbols();
   private readonly objects = new RigidObjects(this.section);
   private readonly several = new Several();
+  private readonly forces = new ContactForces();
   private readonly labels = new Labels();
   private legend: Rect | null = null;
   private ink = themeColor("--ink");
@@ -122,6 +124,7 @@ export class Viewport {
       this.symbols.group,
       this.objects.group,
       this.several.group,
+      this.forces.group,
       this.attachments.group,
       this.grabs.group,
       this.tape.group,
@@ -465,6 +468,9 @@ export class Viewport {
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
     const moment = moments.get(this.latest?.number ?? 0);
     this.objects.place(moment, view.exaggeration, view.chosen, this.ofContact);
+    this.forces.group.visible = view.forces;
+    if (view.forces)
+      this.forces.place(body, moments, moment, this.surface, this.objects, view.exaggeration);
     this.several.place(body, this.surface, view.chosen, view.exaggeration);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
@@ -506,6 +512,7 @@ export class Viewport {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
       labels.push(...this.attachments.update(mesh, view.exaggeration));
       labels.push(...this.objects.labels());
+      if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
     // Where all values are the same there is no least and no greatest.
@@ -568,11 +575,13 @@ export class Viewport {
       time: frame?.time ?? 0,
       fps: this.times.length,
       latency: this.latency,
+      field: frame?.field ?? 0,
       low,
       high,
       min: frame?.min ?? 0,
       max: frame?.max ?? 0,
       clipped: view.range === "locked" ? [] : this.colorRange().clipped,
+      forceScale: this.forces.scale,
       barLength,
       barPixels: barLength * pixels,
       diverged: frame?.diverged ?? false,

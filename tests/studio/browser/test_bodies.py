@@ -214,5 +214,22 @@ def test_two_bodies_are_pressed_together_and_the_card_says_so(stack, open_tab, s
     card = tab.find("contacts")
     card.wait_for()
     assert card.locator("strong").all_inner_texts() == ["lower on upper"]
+    assert "Friction" in card.inner_text()
+    # The force as an arrow, with what it and its color mean; it can be switched off.
+    legend = tab.find("force-legend")
+    legend.wait_for()
+    assert "10 mm = " in legend.inner_text()
+    label = tab.find("label-force-lower-upper")
+    assert "sticks" in label.inner_text()
     tab.shot(f"bodies_solved_{scheme}")
+    fields = tab.page.get_by_label("Color by")
+    fields.select_option(label="Contact pressure")
+    tab.find("legend").get_by_text("kPa").wait_for()
+    tab.until("document.querySelector('.legend-ticks') !== null")
+    tab.page.get_by_label("Show as").select_option(label="Smooth shape")
+    tab.shot(f"bodies_pressure_{scheme}")
+    tab.find("view-more").click()
+    tab.page.get_by_label("Contact forces").uncheck()
+    tab.until("document.querySelector('[data-testid=force-legend]') === null")
+    assert label.count() == 0
     assert tab.errors == []

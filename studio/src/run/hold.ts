@@ -1,0 +1,12 @@
+// Whether surfaces hold, in words.
+import { formatNumber } from "../controls/units";
+
+/** Parts of the pressure under which all sticks, or all slips: bounds are right to a few percent. */
+export const FEW = 0.02;
+
+/** Whether surfaces hold, by the part of the pressure under which they slip. */
+export function holdOf(slipping: number): string {
+  if (slipping < FEW) return "sticks";
+  if (slipping > 1 - FEW) return "slips";
+  return `${formatNumber(100 * slipping, 2)} % slips`;
+}
