@@ -173,6 +173,14 @@ export interface CopyCommand {
   way: Beside | InMirror | Around;
 }
 
+/** Move a body or a rigid object of the design by a vector, m. */
+export interface MoveCommand {
+  t: "move";
+  seq: number;
+  name: string;
+  by: Triple;
+}
+
 /** Take a body or a rigid object out of the design, with the pairs of contact that name it. */
 export interface RemoveCommand {
   t: "remove";
@@ -1242,6 +1250,7 @@ export type AnyCommand =
   | TextCommand
   | EditCommand
   | CopyCommand
+  | MoveCommand
   | RemoveCommand
   | AddBodyCommand
   | DesignsCommand

@@ -288,6 +288,39 @@ def test_an_object_is_copied_with_the_way_that_it_goes(opened, way):
     assert pair.of == ("left", "cube-2")
 
 
+def test_bodies_and_objects_are_moved_and_formulas_stay(opened):
+    session = opened()
+    before = session.document.text
+    by = (0.005, 0, -0.002)
+    own = vertices(session.document.design, "left")
+    design = do(session, commands.Move(seq=1, name="left", by=by))
+    assert same_points(vertices(design, "left"), own + np.array(by))
+    assert session.document.source["bodies"][0]["position"] == ["= apart + 5 mm", 0, "-2 mm"]
+    do(session, commands.Move(seq=2, name="cube", by=by))
+    shape = session.document.source["objects"][0]["shape"]
+    assert shape == {"kind": "translate", "of": "cube", "by": ["5 mm", 0, "-2 mm"]}
+    # Moves of one thing that follow each other, as by keys, are undone together.
+    do(session, commands.Move(seq=3, name="cube", by=by))
+    shape = session.document.source["objects"][0]["shape"]
+    assert shape["by"] == ["10 mm", 0, "-4 mm"]
+    do(session, commands.Undo(seq=4))
+    do(session, commands.Undo(seq=5))
+    assert session.document.text == before
+
+
+def test_the_center_of_a_turning_motion_is_moved_along(opened):
+    session = opened()
+    turning = 'rotation = { axis = [0, 0, 1], angle = "9 deg", center = ["1 mm", 0, 0] }, '
+    still = "motion = { displacement"
+    text = session.document.text.replace(still, f"motion = {{ {turning}displacement", 1)
+    session.document.replace(text)
+    before = session.document.design.bodies[1]
+    design = do(session, commands.Move(seq=1, name="right", by=(0, 0.01, 0)))
+    moved = design.bodies[1]
+    assert moved.motion.rotation.center == pytest.approx((0.001, 0.01, 0))
+    assert moved.motion.displacement == before.motion.displacement
+
+
 def test_an_object_that_is_copied_again_and_again_is_moved_once(opened):
     session = opened()
     beside = commands.Beside(by=(0.02, 0, 0))

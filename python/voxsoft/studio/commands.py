@@ -88,6 +88,13 @@ class Copy(Command):
     way: Beside | InMirror | Around
 
 
+class Move(Command):
+    """Move a body or a rigid object of the design by a vector, m."""
+
+    name: ShortText
+    by: Triple
+
+
 class Remove(Command):
     """Take a body or a rigid object out of the design, with the pairs of contact that name it."""
 
@@ -392,6 +399,7 @@ AnyCommand = (
     | Text
     | Edit
     | Copy
+    | Move
     | Remove
     | AddBody
     | Designs

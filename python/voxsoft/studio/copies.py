@@ -111,6 +111,28 @@ def copied(source: Table, design: Design, name: str, way: Way) -> Copying:
     return found
 
 
+def moved(source: Table, design: Design, name: str, by: Triple) -> list[Change]:
+    """Move a body or an object, with the center that its own motion turns about.
+
+    Raises
+    ------
+    DesignError
+        There is nothing of that name.
+    """
+    key, index, original = _found(design, name)
+    written, way = source[key][index], commands.Beside(by=by)
+    isometry = Isometry.move(by)
+    if isinstance(original, Body):
+        posed = _posed(written, original, isometry, way, 1)
+        changes: list[Change] = [([key, index, "position"], posed["position"])]
+    else:
+        changes = [([key, index, "shape"], _placed_shape(written["shape"], way, 1))]
+    if isinstance(original.motion, Motion) and original.motion.rotation is not None:
+        motion = _motion(written["motion"], original.motion, isometry)
+        changes.append(([key, index, "motion"], motion))
+    return changes
+
+
 def removed(source: Table, design: Design, name: str) -> list[Change]:
     """Take a body or an object out of a design, with the pairs of contact that name it.
 

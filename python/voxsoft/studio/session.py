@@ -29,7 +29,7 @@ from voxsoft.studio.asked import spec_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
 from voxsoft.studio.compared import compared
-from voxsoft.studio.copies import Change, copied, removed
+from voxsoft.studio.copies import Change, copied, moved, removed
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
@@ -203,6 +203,13 @@ class Session:
             self.tabs.publish(events.Log(level="warning", text=text))
 
     @_execute.register
+    def _on_move(self, command: commands.Move, tab: Tab) -> None:
+        self._author = tab
+        source, design = self._good(self.document)
+        changes = moved(source, design, command.name, command.by)
+        self._change(self.document, changes, ("move", command.name))
+
+    @_execute.register
     def _on_remove(self, command: commands.Remove, tab: Tab) -> None:
         self._author = tab
         source, design = self._good(self.document)
@@ -241,11 +248,13 @@ class Session:
             raise DesignError("design", "is not valid", "fix what the editor underlines")
         return document.source, document.design
 
-    def _change(self, document: DesignDocument, changes: list[Change]) -> None:
+    def _change(
+        self, document: DesignDocument, changes: list[Change], place: object = None
+    ) -> None:
         """Change a document as one step that is undone together; a new one is shown."""
         text = changed_text(document.text, changes)
         if document is self.document:
-            self._changed(document.replace(text))
+            self._changed(document.replace(text, place))
             return
         document = DesignDocument(text, document.name, folder=document.folder)
         document.follow(self.document)

@@ -75,6 +75,7 @@ export function present(next: Stage): void {
 const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "edit",
   "copy",
+  "move",
   "remove",
   "add_body",
   "undo",

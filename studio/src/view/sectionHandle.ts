@@ -2,14 +2,13 @@
 // turns it. Both are buttons over the picture, so that the keyboard reaches them too.
 import { Vector3 } from "three";
 import type { CameraRig } from "./camera";
+import { drags, GRIP, grip, keys, put } from "./grips";
 import type { Rect } from "./labelLayout";
 import { type Section, turned } from "./section";
 
 /** Least distance of the two grips, pixels: they stay apart also where the normal meets the eye. */
 const APART = 48;
 const LONGEST = 110;
-/** Half the size of a grip, as .section-grip has it. */
-const GRIP = 12;
 /** Radians for each pixel, and for each press of a key. */
 const TURN = 0.01;
 const KEY_TURN = Math.PI / 36;
@@ -120,50 +119,4 @@ export class SectionHandle {
     }));
     this.mover.setAttribute("aria-valuenow", String(Math.round(100 * this.section.share)));
   }
-}
-
-function grip(testId: string, label: string, sign: string): HTMLButtonElement {
-  const button = document.createElement("button");
-  button.type = "button";
-  button.className = "section-grip";
-  button.dataset.testid = testId;
-  button.title = label;
-  button.setAttribute("aria-label", label);
-  const glyph = document.createElement("span");
-  glyph.textContent = sign;
-  button.append(glyph);
-  return button;
-}
-
-function put(button: HTMLButtonElement, at: { x: number; y: number }, angle: number): void {
-  button.style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
-  (button.firstChild as HTMLElement).style.transform = `rotate(${angle.toFixed(3)}rad)`;
-}
-
-/** While a grip is held, call what `begin` gives with the pixels of each move. */
-function drags(button: HTMLButtonElement, begin: () => (dx: number, dy: number) => void): void {
-  let held: { move: (dx: number, dy: number) => void; x: number; y: number } | null = null;
-  button.addEventListener("pointerdown", (event) => {
-    button.setPointerCapture(event.pointerId);
-    held = { move: begin(), x: event.clientX, y: event.clientY };
-  });
-  button.addEventListener("pointermove", (event) => {
-    if (!held) return;
-    held.move(event.clientX - held.x, event.clientY - held.y);
-    held = { ...held, x: event.clientX, y: event.clientY };
-  });
-  const end = () => {
-    held = null;
-  };
-  button.addEventListener("pointerup", end);
-  button.addEventListener("pointercancel", end);
-}
-
-/** Keys that a grip handles do not reach the page, which has other uses for them. */
-function keys(button: HTMLButtonElement, handle: (event: KeyboardEvent) => boolean): void {
-  button.addEventListener("keydown", (event) => {
-    if (!handle(event)) return;
-    event.preventDefault();
-    event.stopPropagation();
-  });
 }

@@ -1,7 +1,7 @@
 // Several bodies in the picture: each with its name, and a box around the one that is chosen.
 import { Box3, Box3Helper, Color, Group, type LineBasicMaterial, Vector3 } from "three";
-import { bodyNames, entryOf, isOf } from "../panes/design/several";
-import type { BodyEvent } from "../protocol";
+import { bodyNames, entryOf, isOf, roomOf } from "../panes/design/several";
+import type { BodyEvent, Triple } from "../protocol";
 import { showPane } from "../shell/actions";
 import { useStudio } from "../store/studio";
 import { setView } from "../store/view";
@@ -50,6 +50,16 @@ export class Several {
     (this.frame.material as LineBasicMaterial).transparent = true;
     this.group.add(this.frame);
     this.frame.visible = false;
+  }
+
+  /** Draw the box of a body or object that is being moved by a shift, m. */
+  placeMoved(body: BodyEvent, chosen: string, shift: Triple): void {
+    const room = roomOf(chosen, body);
+    this.frame.visible = room !== null;
+    this.drawn = "";
+    if (!room) return;
+    this.box.set(new Vector3(...room.low), new Vector3(...room.high));
+    this.box.translate(new Vector3(...shift));
   }
 
   /** Draw the box around the chosen body where its surface is drawn. */

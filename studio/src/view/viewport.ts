@@ -11,7 +11,9 @@ import {
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
+import { BODY, roomOf } from "../panes/design/several";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
+import { usePage } from "../store/page";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView, type View } from "../store/view";
@@ -25,6 +27,7 @@ import { Grabs } from "./grab";
 import { roundLength } from "./ground";
 import type { Rect } from "./labelLayout";
 import { type Label, Labels } from "./labels";
+import { MoveHandle } from "./moveHandle";
 import { RigidObjects } from "./objects";
 import { drawnAt, overlapLabels, overlapOf } from "./overlap";
 import { Painter } from "./painter";
@@ -68,6 +71,14 @@ export class Viewport {
   private readonly scene = new Scene();
   private readonly section = new Section();
   private readonly sectionHandle = new SectionHandle(this.section, this.rig);
+  private readonly mover = new MoveHandle(
+    this.rig,
+    () => this.request(),
+    (by) => {
+      const { chosen } = useView.getState();
+      if (chosen) send({ t: "move", name: chosen, by });
+    },
+  );
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
   private readonly objects = new RigidObjects(this.section);
@@ -118,7 +129,12 @@ export class Viewport {
     );
     this.renderer.domElement.setAttribute("aria-label", "The body");
     this.renderer.domElement.tabIndex = 0;
-    this.element.append(this.renderer.domElement, this.labels.element, this.sectionHandle.element);
+    this.element.append(
+      this.renderer.domElement,
+      this.labels.element,
+      this.sectionHandle.element,
+      this.mover.element,
+    );
     this.scene.add(
       this.section.group,
       this.symbols.group,
@@ -135,6 +151,7 @@ export class Viewport {
     });
     listen(this);
     useView.subscribe((now, before) => this.viewChanged(now, before));
+    usePage.subscribe((now, before) => now.mode !== before.mode && this.request());
     useStudio.subscribe((now, before) => {
       if (now.body !== before.body) this.bodyChanged();
       if (now.stat !== before.stat) {
@@ -377,7 +394,12 @@ export class Viewport {
     this.labels.set(labels);
     const { clientWidth: width, clientHeight: height } = this.element;
     this.sectionHandle.place(width, height);
-    const pressed = [...this.sectionHandle.grips, ...(this.legend ? [this.legend] : [])];
+    this.mover.place(this.middleToMove(view), width, height);
+    const pressed = [
+      ...this.sectionHandle.grips,
+      ...this.mover.grips,
+      ...(this.legend ? [this.legend] : []),
+    ];
     this.labels.place(this.rig.camera, width, height, pressed);
     this.hover(now, view);
     this.tell(now, view);
@@ -401,6 +423,17 @@ export class Viewport {
     if (!this.moving(now)) return WHOLE;
     const lasts = this.lastMoved - this.movingSince > LASTING;
     return lasts ? ladder.quality : { ...ladder.quality, share: this.painter.share };
+  }
+
+  // The middle of what is chosen in the form, where it can be moved: while the design is drawn as it was built.
+  private middleToMove(view: View): Vector3 | null {
+    const { body, stat, document } = useStudio.getState();
+    if (!view.chosen || !body || usePage.getState().mode !== "design") return null;
+    if (currentEngine()?.kind !== "server") return null;
+    if (!document?.valid || (stat?.time ?? 0) !== 0 || stat?.state === "at-rest") return null;
+    if (body.bodies.length === 0 && view.chosen === BODY) return null;
+    const room = roomOf(view.chosen, body);
+    return room && new Vector3(...room.low).add(new Vector3(...room.high)).multiplyScalar(0.5);
   }
 
   // What is recorded is whole, however long it takes.
@@ -471,7 +504,9 @@ export class Viewport {
     this.forces.group.visible = view.forces;
     if (view.forces)
       this.forces.place(body, moments, moment, this.surface, this.objects, view.exaggeration);
-    this.several.place(body, this.surface, view.chosen, view.exaggeration);
+    const moved = this.mover.shift.some((one) => one !== 0);
+    if (moved && body && view.chosen) this.several.placeMoved(body, view.chosen, this.mover.shift);
+    else this.several.place(body, this.surface, view.chosen, view.exaggeration);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
   }

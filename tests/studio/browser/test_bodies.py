@@ -95,6 +95,21 @@ def test_a_body_is_chosen_moved_turned_and_renamed(stack, open_tab):
     entry = tab.find("bodies-1")
     entry.locator(".entry-body").wait_for()
     tab.shot("bodies_chosen")
+    # A grip for each axis moves it: with the mouse, and with keys by a millimeter.
+    grip = tab.find("move-x")
+    box = grip.bounding_box()
+    start = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.page.mouse.move(*start)
+    tab.page.mouse.down()
+    tab.page.mouse.move(start[0] + 40, start[1] + 4, steps=4)
+    tab.shot("bodies_dragged")
+    tab.page.mouse.up()
+    value = "document.querySelector('[aria-label=\"Position x\"]').value"
+    tab.until(f"{value}.endsWith(' mm')")
+    dragged = tab.page.evaluate(value)
+    assert float(dragged.removesuffix(" mm")) > 1
+    grip.press("ArrowRight")
+    tab.until(f"Math.abs(parseFloat({value}) - parseFloat('{dragged}') - 1) < 1e-6")
     x = entry.get_by_label("Position x")
     x.fill("40")
     x.press("Enter")
