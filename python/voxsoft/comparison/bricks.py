@@ -16,6 +16,7 @@ from typing import Final, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.comparison.brick_contact import BrickContact, check_contact, facing_walls, tools_of
 from voxsoft.design import Clamp
 from voxsoft.design.attachment import attachments_of
 from voxsoft.errors import SimulationError
@@ -23,7 +24,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh, MeshCavity
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loads import LoadReceiver
-from voxsoft.simulation.touching import refuse_bodies, refuse_contact
+from voxsoft.simulation.touching import refuse_bodies
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -107,6 +108,8 @@ class BrickModel:
         Edge of a brick in m.
     split
         Bricks along each edge of a voxel.
+    contact
+        What touches, if anything does.
     """
 
     nodes: Floats = field(repr=False)
@@ -122,6 +125,7 @@ class BrickModel:
     clamp_nodes: tuple[Ints, ...] = field(repr=False)
     edge: float
     split: int
+    contact: BrickContact | None = field(default=None, repr=False)
 
     @classmethod
     def of(cls, setup: Setup, *, split: int = 1, nodes: NodeCount = 20) -> Self:
@@ -139,7 +143,8 @@ class BrickModel:
         Raises
         ------
         SimulationError
-            A mesh that is not made of full voxels, or a floor, which no outside code is given.
+            A mesh that is not made of full voxels, or what no outside code is given: a floor,
+            layers, springs, fibers, objects that are free or turn, bonds.
 
         Examples
         --------
@@ -153,8 +158,8 @@ class BrickModel:
             raise SimulationError(
                 "floor", "cannot be given to an outside code", "clamp the foot instead"
             )
-        refuse_contact(setup.design, "outside codes")
         refuse_bodies(setup.design, "outside codes")
+        check_contact(setup)
         if setup.design.layers:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
@@ -200,7 +205,8 @@ class BrickModel:
             split=split,
         )
         spread = _Spread(grid, places, split)
-        return model._with_clamps(setup, spread)._with_loads(setup, grid, spread)
+        loaded = model._with_clamps(setup, spread)._with_loads(setup, grid, spread)
+        return loaded._with_contact(setup, grid)
 
     @cached_property
     def volumes(self) -> Floats:
@@ -242,6 +248,20 @@ class BrickModel:
                 action.give_to(taken)
         pressures = tuple(taken.pressures)
         return replace(self, forces=taken.dead, gravity=taken.gravity, pressures=pressures)
+
+    def _with_contact(self, setup: Setup, grid: _Lattice) -> Self:
+        if setup.touching is None:
+            return self
+        faces, walls = facing_walls(grid.cells)
+        friction = float(setup.touching.friction[0, 0])
+        pairs = () if np.isnan(friction) else walls
+        contact = BrickContact(
+            outer=split_faces(faces, self.split),
+            walls=tuple((split_faces(a, self.split), split_faces(b, self.split)) for a, b in pairs),
+            friction=friction,
+            tools=tools_of(setup.touching),
+        )
+        return replace(self, contact=contact)
 
     def face_nodes(self, faces: Ints) -> Ints:
         """Nodes of faces (f, 4, 8 or 9): corners, then middles of edges, then center."""
@@ -313,7 +333,7 @@ class _Lattice:
         parts = mesh.tet_part[::5].astype(np.int64) - 1
         return cls(origin, mesh.voxel_size, vertices.max(axis=0), vertices, cells, parts)
 
-    def split_faces(self, triangles: NDArray[np.integer], split: int) -> Ints:
+    def faces_under(self, triangles: NDArray[np.integer], split: int) -> Ints:
         """Rows (brick, face) of the faces that triangles of the surface cover."""
         corners = self.vertices[triangles]
         low = corners.min(axis=1)
@@ -323,16 +343,9 @@ class _Lattice:
         along = np.take_along_axis(normal, axis[:, None], axis=1)[:, 0] > 0
         cell = low - np.eye(3, dtype=np.int64)[axis] * along[:, None]
         number = {tuple(each): index for index, each in enumerate(self.cells.tolist())}
-        coarse = {
-            (number[tuple(each)], int(way), bool(up))
-            for each, way, up in zip(cell.tolist(), axis, along, strict=True)
-        }
-        fine = np.arange(split**3).reshape(split, split, split)
-        rows: list[tuple[int, int]] = []
-        for voxel, way, up in sorted(coarse):
-            layer = np.take(fine, split - 1 if up else 0, axis=way).ravel()
-            rows.extend((voxel * split**3 + brick, _FACE_OF[way, up]) for brick in layer.tolist())
-        return np.array(rows, dtype=np.int64).reshape(-1, 2)
+        voxels = np.array([number[tuple(each)] for each in cell.tolist()], dtype=np.int64)
+        faces = np.column_stack((voxels, axis, along))
+        return split_faces(np.unique(faces, axis=0), split)
 
 
 class _Spread:
@@ -393,7 +406,7 @@ class _BrickLoads(LoadReceiver):
     def pressure(
         self, triangles: NDArray[np.int32], value: float, cavity: MeshCavity | None
     ) -> None:
-        faces = self._grid.split_faces(triangles, self._bricks.split)
+        faces = self._grid.faces_under(triangles, self._bricks.split)
         self.pressures.append(FacePressure(faces, self.factor * value))
 
     def forces(self, vertices: NDArray[np.uint32], forces: Floats) -> None:
@@ -404,10 +417,21 @@ class _BrickLoads(LoadReceiver):
 
     def traction(self, triangles: NDArray[np.int32], stress: Floats) -> None:
         bricks = self._bricks
-        nodes = bricks.face_nodes(self._grid.split_faces(triangles, bricks.split))
+        nodes = bricks.face_nodes(self._grid.faces_under(triangles, bricks.split))
         area = np.zeros(len(bricks.nodes))
         np.add.at(area, nodes, np.tile(bricks.edge**2 * bricks.face_shares, (len(nodes), 1)))
         self.dead += self.factor * np.outer(area, stress)
+
+
+def split_faces(faces: Ints, split: int) -> Ints:
+    """Rows (brick, face) of faces of voxels, rows (voxel, axis, whether it looks along)."""
+    fine = np.arange(split**3).reshape(split, split, split)
+    rows: list[tuple[int, int]] = []
+    for voxel, axis, up in faces.tolist():
+        layer = np.take(fine, split - 1 if up else 0, axis=axis).ravel()
+        face = _FACE_OF[axis, bool(up)]
+        rows.extend((voxel * split**3 + brick, face) for brick in layer.tolist())
+    return np.array(rows, dtype=np.int64).reshape(-1, 2)
 
 
 def _split_cells(cells: Ints, split: int) -> Ints:

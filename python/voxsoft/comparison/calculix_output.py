@@ -1,4 +1,4 @@
-"""What CalculiX prints: displacements and forces of node sets, an increment after another."""
+"""What CalculiX prints: displacements and forces of node sets, and forces of contact."""
 
 from __future__ import annotations
 
@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+_TOTAL: Final = re.compile(
+    r"^\s*(?:total force .*for set (\S+)|statistics for slave set (\S+), master set \S+) "
+    r"and time\s+(\S+)\s*$"
+)
 _HEAD: Final = re.compile(r"^\s*(displacements|forces) .*for set (\S+) and time\s+(\S+)\s*$")
 # Fortran writes 1.0-100 where an exponent has three digits.
 _LONG_EXPONENT: Final = re.compile(r"(\d)([+-]\d{3})\b")
@@ -67,9 +71,37 @@ def read_printed(text: str) -> list[Printed]:
     return blocks
 
 
-def _row(line: str) -> list[float] | None:
+def read_totals(text: str) -> dict[tuple[str, float], Floats]:
+    r"""Read total forces: of sets of nodes, and of slave surfaces of contact, by name and time.
+
+    Parameters
+    ----------
+    text
+        Content of the ``.dat`` file.
+
+    Examples
+    --------
+    >>> head = " total force (fx,fy,fz) for set TOOL and time  0.1000000E+01"
+    >>> read_totals(head + "\n\n       -4.2E-01  0.0E+00  2.0E+00\n")
+    {('TOOL', 1.0): array([-0.42,  0.  ,  2.  ])}
+    """
+    found: dict[tuple[str, float], Floats] = {}
+    key: tuple[str, float] | None = None
+    for line in text.splitlines():
+        head = _TOTAL.match(line)
+        if head:
+            key = (head[1] or head[2], float(head[3]))
+        elif key is not None:
+            # Of surfaces moments follow on the same line; a line of words comes before it.
+            row = _row(line, 3) or _row(line, 6)
+            if row is not None:
+                found[key], key = np.array(row[:3]), None
+    return found
+
+
+def _row(line: str, count: int = 4) -> list[float] | None:
     words = _LONG_EXPONENT.sub(r"\1E\2", line).split()
-    if len(words) != 4:
+    if len(words) != count:
         return None
     try:
         return [float(word) for word in words]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -14,8 +15,8 @@ from voxsoft.materials import Hyperelastic, Material
 
 Floats = NDArray[np.float64]
 
-#: How an outside code ended: at the whole load, or short of it.
-OutsideStatus = Literal["ok", "not-converged"]
+#: How an outside code ended: at the whole load, short of it, or with surfaces in each other.
+OutsideStatus = Literal["ok", "not-converged", "passed-through"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +28,8 @@ class OutsideAnswer:
     code, version, element
         Who answered, and with which element.
     status
-        ``ok``, or ``not-converged`` where a part of the load was not reached.
+        ``ok``, ``not-converged`` where a part of the load was not reached, or ``passed-through``
+        where surfaces are in each other that contact should keep apart.
     message
         The status in a sentence.
     load_factor
@@ -40,6 +42,11 @@ class OutsideAnswer:
         Displacement components of the problem.
     seconds
         Wall-clock time of the solution.
+    contacts
+        The force of each object on the body in N, (3,), by its name.
+    pressed
+        The sum of the sizes of the forces between walls of the body in N; None where the body does
+        not touch itself.
     """
 
     code: str
@@ -53,6 +60,8 @@ class OutsideAnswer:
     reactions: Floats = field(repr=False)
     unknowns: int
     seconds: float
+    contacts: Mapping[str, Floats] = field(default_factory=dict, repr=False)
+    pressed: float | None = None
 
     @property
     def reaction(self) -> Floats:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.design.chamber import name_of_cavity
+from voxsoft.design.contact import BODY
 from voxsoft.geometry import mean_displacement, mean_rotation
 from voxsoft.simulation import Result, Setup
 from voxsoft.units import format_quantity
@@ -60,9 +61,16 @@ def in_words(value: float, kind: str) -> str:
 
 
 def of_result(setup: Setup, result: Result) -> Quantities:
-    """Displacements of probes, reactions of clamps, volumes of cavities of a run of our own."""
+    """Displacements, reactions, volumes of cavities and forces of contact of a run of our own."""
     held = [result.reactions[vertices] for vertices in setup.clamped]
-    return _quantities(setup, result.positions, held)
+    found = {contact.of[1]: contact for contact in result.contacts}
+    own = found.pop(BODY, None)
+    touching = {
+        name: np.array(found[name].force) if name in found else np.zeros(3)
+        for name in _touching(setup)
+    }
+    pressed = own.pressed if own else 0.0
+    return {**_quantities(setup, result.positions, held), **_contacts(touching, pressed)}
 
 
 def of_answer(setup: Setup, model: BrickModel, answer: OutsideAnswer) -> Quantities:
@@ -70,7 +78,22 @@ def of_answer(setup: Setup, model: BrickModel, answer: OutsideAnswer) -> Quantit
     forces = np.zeros_like(model.nodes)
     forces[answer.held] = answer.reactions
     held = [forces[nodes] for nodes in model.clamp_nodes]
-    return _quantities(setup, setup.mesh.vertices + answer.displacements, held)
+    found = _quantities(setup, setup.mesh.vertices + answer.displacements, held)
+    return {**found, **_contacts(answer.contacts, answer.pressed or 0.0)}
+
+
+def _touching(setup: Setup) -> list[str]:
+    return [] if setup.touching is None else [each.name for each in setup.design.objects]
+
+
+def _contacts(forces: Mapping[str, Floats], pressed: float) -> dict[str, Quantity]:
+    """Forces of objects on the body, and of the body with itself, where there are any."""
+    found: dict[str, Quantity] = {}
+    for name, force in forces.items():
+        found |= _components(f"contact with {name}", force, "force")
+    if pressed > 0.0:
+        found["contact with itself"] = Quantity(pressed, "force", pressed)
+    return found
 
 
 def _quantities(setup: Setup, positions: Floats, held: list[Floats]) -> Quantities:

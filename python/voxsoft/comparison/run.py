@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Final, get_args
 
 from voxsoft.calibration import Experiment, Measurement
+from voxsoft.comparison.brick_contact import passed_through
 from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.cautions import cautions_of
 from voxsoft.comparison.comparison import Comparison, Judged, Run
@@ -18,6 +19,7 @@ from voxsoft.comparison.defaults import (
     DEFAULT_TIME_LIMIT,
     Outside,
 )
+from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
@@ -253,9 +255,18 @@ def _solve_outside(setup: Setup, code: str, split: int, time_limit: float) -> An
         from voxsoft.files.calculix import run_calculix
 
         model = BrickModel.of(setup, split=split, nodes=20)
-        return setup, model, run_calculix(model, time_limit=time_limit)
+        return setup, model, _apart(setup, run_calculix(model, time_limit=time_limit))
     model = BrickModel.of(setup, split=split, nodes=27)
     return setup, model, run_scikit_fem(model, time_limit=time_limit)
+
+
+def _apart(setup: Setup, answer: OutsideAnswer) -> OutsideAnswer:
+    """The answer, with another status where what touches passed through each other."""
+    found = passed_through(setup, setup.mesh.vertices + answer.displacements)
+    if not found:
+        return answer
+    hint = "walls that do not look at each other at rest are no pairs of its contact"
+    return replace(answer, status="passed-through", message=f"{found}; {hint}")
 
 
 def _run(task: _Task, voxel_size: float, experiments: Sequence[Experiment]) -> Run:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from voxsoft.comparison.bricks import CORNERS, FACES, BrickModel
 from voxsoft.comparison.outside import OutsideAnswer, rubber, support_forces
 from voxsoft.comparison.stretch_energy import Term, stretch_derivatives, terms_of
-from voxsoft.errors import MissingPackageError, OutsideCodeError
+from voxsoft.errors import MissingPackageError, OutsideCodeError, SimulationError
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -62,9 +62,12 @@ def run_scikit_fem(model: BrickModel, *, time_limit: float = 600.0) -> OutsideAn
     OutsideCodeError
         It took longer than the limit.
     SimulationError
-        A material that is not hyperelastic.
+        A material that is not hyperelastic, or contact.
     """
     release = scikit_fem_version()
+    if model.contact is not None:
+        what = "is not known to the code with scikit-fem"
+        raise SimulationError("contact", what, "compare with CalculiX: apt install calculix-ccx")
     started = time.perf_counter()
     bricks = _Bricks(model)
     reached, moved = _follow(bricks, started + time_limit, time_limit)

@@ -14,10 +14,13 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft.comparison.bricks import BrickModel
+from voxsoft.comparison.calculix_contact import tool_name, wall_names
 from voxsoft.comparison.calculix_deck import HELD, VERTICES, Element, calculix_deck
-from voxsoft.comparison.calculix_output import Printed, read_printed
+from voxsoft.comparison.calculix_output import Printed, read_printed, read_totals
+from voxsoft.comparison.calculix_units import DeckUnits
 from voxsoft.comparison.outside import OutsideAnswer, support_forces
 from voxsoft.errors import MissingPackageError, OutsideCodeError
 
@@ -25,6 +28,10 @@ from voxsoft.errors import MissingPackageError, OutsideCodeError
 PROGRAM: Final = "ccx"
 _JOB = "voxsoft"
 _LAST_LINES = 8
+
+Floats = NDArray[np.float64]
+#: Total forces by name of the set and time.
+Totals = dict[tuple[str, float], Floats]
 
 
 def calculix_path() -> Path:
@@ -88,7 +95,8 @@ def run_calculix(
         started = time.perf_counter()
         code, log = _run(program, folder, time_limit, threads)
         seconds = time.perf_counter() - started
-        printed = _printed(folder)
+        text = _printed(folder)
+    printed = read_printed(text)
     moved = [each for each in printed if each.name == VERTICES]
     complete = [each for each in moved if len(each.nodes) == len(model.vertex_nodes)]
     if code is None:
@@ -105,22 +113,25 @@ def run_calculix(
             f"ended with code {code}; its last lines: {_last_lines(log)}",
             "run the exported mesh by hand, or compare with scikit-fem",
         )
-    return _answer(model, element, printed, complete[-1], log, seconds)
+    totals = read_totals(text) if model.contact is not None else {}
+    return _answer(model, element, printed, totals, complete[-1], log, seconds)
 
 
 def _answer(
     model: BrickModel,
     element: Element,
     printed: list[Printed],
+    totals: Totals,
     last: Printed,
     log: str,
     seconds: float,
 ) -> OutsideAnswer:
+    units = DeckUnits.of(model)
     row = np.full(len(model.nodes), -1)
     row[last.nodes] = np.arange(len(last.nodes))
     pulls = [each for each in printed if each.name == HELD and each.time == last.time]
     held = pulls[-1].nodes if pulls else np.zeros(0, np.int64)
-    inner = pulls[-1].values if pulls else np.zeros((0, 3))
+    inner = pulls[-1].values * units.force if pulls else np.zeros((0, 3))
     whole = last.time > 1.0 - 1e-9
     version = re.search(r"[Vv]ersion (\d+\.\d+)", log)
     return OutsideAnswer(
@@ -134,12 +145,36 @@ def _answer(
             else f"found no equilibrium past {last.time:.1%} of the load; that state is kept"
         ),
         load_factor=1.0 if whole else last.time,
-        displacements=last.values[row[model.vertex_nodes]] * 1e-3,
+        displacements=last.values[row[model.vertex_nodes]] * units.length,
         held=held,
         reactions=support_forces(model, held, inner, last.time),
         unknowns=int((~model.fixed).sum()),
         seconds=seconds,
+        contacts=_contacts(model, totals, last.time, units),
+        pressed=_pressed(model, totals, last.time, units),
     )
+
+
+def _contacts(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> dict[str, Floats]:
+    """The force of each object on the body in N: what holds the object."""
+    tools = model.contact.tools if model.contact is not None else ()
+    return {
+        tool.name: totals[tool_name(index), at] * units.force for index, tool in enumerate(tools)
+    }
+
+
+def _pressed(model: BrickModel, totals: Totals, at: float, units: DeckUnits) -> float | None:
+    """The sum of the sizes of the forces between walls of the body in N.
+
+    A wall that bends far has forces in several directions, of which their sum counts here.
+    """
+    if model.contact is None or not model.contact.walls:
+        return None
+    sizes = [
+        float(np.linalg.norm(totals[wall_names(index)[0], at]))
+        for index in range(len(model.contact.walls))
+    ]
+    return sum(sizes) * units.force
 
 
 def _run(program: Path, folder: Path, time_limit: float, threads: int) -> tuple[int | None, str]:
@@ -176,9 +211,9 @@ def _stop(process: subprocess.Popen[bytes]) -> None:
     process.wait()
 
 
-def _printed(folder: Path) -> list[Printed]:
+def _printed(folder: Path) -> str:
     path = folder / f"{_JOB}.dat"
-    return read_printed(path.read_text(errors="replace")) if path.exists() else []
+    return path.read_text(errors="replace") if path.exists() else ""
 
 
 def _last_lines(log: str) -> str:

@@ -1,0 +1,205 @@
+"""What touches what, for an outside code: faces of voxels and rigid objects.
+
+Outside codes are given pairs of surfaces. The body meets an object with all of its faces, and
+itself where two of its walls look at each other across a slit or a chamber of the unloaded body.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.apart import Surface, overlap_of
+from voxsoft.simulation.touching import Touching
+
+if TYPE_CHECKING:
+    from voxsoft.simulation import Setup
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Pairs of walls beyond which a body is refused: a lattice of struts has more, and each costs a
+#: search of its own.
+_MOST_PAIRS: Final = 400
+
+
+@dataclass(frozen=True, eq=False)
+class RigidTool:
+    """An object that is held or moved.
+
+    Attributes
+    ----------
+    name
+        Of the object.
+    vertices, triangles
+        Its surface in m, (n, 3), and its triangles, outward, (t, 3).
+    way
+        How far it goes in m, (3,).
+    friction
+        With the body.
+    """
+
+    name: str
+    vertices: Floats = field(repr=False)
+    triangles: NDArray[np.uint32] = field(repr=False)
+    way: Floats
+    friction: float
+
+
+@dataclass(frozen=True, eq=False)
+class BrickContact:
+    """What touches what.
+
+    Attributes
+    ----------
+    outer
+        All faces of the body, rows (brick, face).
+    walls
+        Pairs of walls of the body that look at each other, likewise.
+    friction
+        Of the body with itself.
+    tools
+        The objects that it touches.
+    """
+
+    outer: Ints = field(repr=False)
+    walls: tuple[tuple[Ints, Ints], ...] = field(repr=False)
+    friction: float
+    tools: tuple[RigidTool, ...]
+
+
+def check_contact(setup: Setup) -> None:
+    """Raise where a design has contact that no outside code is given.
+
+    Raises
+    ------
+    SimulationError
+        An object that is free or turns, or a bond.
+    """
+    for index, each in enumerate(setup.design.objects):
+        where = f"objects[{index}].motion"
+        if each.is_free:
+            what = "is free, and outside codes are given objects that are fixed or moved"
+            raise SimulationError(where, what, "fix it, or give it a displacement")
+        if each.way is not None and each.way.rotation is not None:
+            what = "turns the object, and outside codes are given objects that move without turning"
+            raise SimulationError(where, what, "leave the rotation out")
+    if setup.touching is not None and setup.touching.bonds:
+        where = setup.touching.bonds[0].where
+        what = "is a bond, which outside codes are not given"
+        raise SimulationError(where, what, "let the two touch, or make them parts of one body")
+
+
+def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
+    """The objects that the body touches."""
+    found = []
+    pairs = zip(touching.design.objects, touching.surfaces, strict=True)
+    for index, (each, surface) in enumerate(pairs):
+        friction = float(touching.friction[0, 1 + index])
+        way = np.zeros(3)
+        if each.way is not None:
+            history = each.way.history
+            factor = 1.0 if history is None else history.factor[-1]
+            way = factor * np.asarray(each.way.displacement)
+        if not np.isnan(friction):
+            found.append(RigidTool(each.name, surface.vertices, surface.triangles, way, friction))
+    return tuple(found)
+
+
+def facing_walls(cells: Ints) -> tuple[Ints, list[tuple[Ints, Ints]]]:
+    """All faces of a body of voxels, and the pairs of its walls that look at each other.
+
+    A wall is a part of a plane in which faces of voxels hang together by their edges. Two look at
+    each other where a line across both meets nothing between them.
+
+    Parameters
+    ----------
+    cells
+        The voxels on their lattice, (n, 3).
+
+    Returns
+    -------
+    faces, walls
+        Rows (voxel, axis, whether it looks along the axis); of all, and of both walls of each pair.
+
+    Raises
+    ------
+    SimulationError
+        So many pairs that an outside code would take for ever.
+
+    Examples
+    --------
+    >>> slit = np.array([(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 0, 1), (2, 0, 1)])
+    >>> faces, walls = facing_walls(slit)
+    >>> len(faces), [(a.tolist(), b.tolist()) for a, b in walls]
+    (22, [([[3, 0, 1]], [[4, 0, 0]])])
+    """
+    number = np.full(cells.max(axis=0) + 3, -1)  # with an empty layer all around
+    number[tuple(cells.T + 1)] = np.arange(len(cells))
+    within_plane = ndimage.generate_binary_structure(3, 1)
+    within_plane[[0, 2]] = False
+    faces: list[Ints] = []
+    walls: list[tuple[Ints, Ints]] = []
+    for axis in range(3):
+        lines = np.moveaxis(number, axis, 0)
+        full = lines >= 0
+        labels, rows = [], []
+        for along in (0, 1):
+            is_open = full & ~np.roll(full, -1 if along else 1, axis=0)
+            labels.append(np.asarray(ndimage.label(is_open, within_plane)[0], dtype=np.int64))
+            voxels = lines[is_open]
+            rows.append(np.column_stack((voxels, np.full_like(voxels, axis), 0 * voxels + along)))
+        down, up = (label[label > 0] for label in labels)  # the wall of each row
+        for first, second in _seen(full, *labels):
+            walls.append((rows[1][up == first], rows[0][down == second]))
+        faces += rows
+    if len(walls) > _MOST_PAIRS:
+        raise SimulationError(
+            "contact",
+            f"has {len(walls)} pairs of walls of the body that look at each other, and an outside "
+            f"code is given {_MOST_PAIRS} at most",
+            'write pairs = [{ of = ["body", "body"], kind = "none" }], or larger voxels',
+        )
+    return np.concatenate(faces), walls
+
+
+def _seen(full: NDArray[np.bool_], down: Ints, up: Ints) -> list[tuple[int, int]]:
+    """Labels of walls that look along the first axis, and of those that they see, against it."""
+    index = np.arange(len(full))[:, None, None]
+    next_full = np.where(full, index, len(full))  # at a cell or after it
+    next_full = np.minimum.accumulate(next_full[::-1])[::-1]
+    x, y, z = np.nonzero(up)
+    there = next_full[x + 1, y, z]
+    met = there < len(full)
+    pairs = np.column_stack((up[x, y, z][met], down[there[met], y[met], z[met]]))
+    return [(int(a), int(b)) for a, b in np.unique(pairs, axis=0)]
+
+
+def passed_through(setup: Setup, positions: Floats) -> str:
+    """What passed through what in an answer, in words; empty where nothing did.
+
+    Pairs of surfaces are chosen on the unloaded body. What meets beside them is found here: where
+    anything is more than a quarter of a voxel deep.
+    """
+    touching = setup.touching
+    if touching is None:
+        return ""
+    from voxsoft.simulation.penetration import find_penetration
+
+    allowed = 0.25 * touching.voxel_size
+    if not np.isnan(touching.friction[0, 0]):
+        found = find_penetration(setup.mesh, positions)
+        if found.depth > allowed:
+            return f"the body is {1e3 * found.depth:.2g} mm deep in itself"
+    body = Surface(positions, setup.mesh.triangles.astype(np.uint32))
+    for tool in tools_of(touching):
+        there = Surface(tool.vertices + tool.way, tool.triangles)
+        depth = overlap_of(there, body, touching.voxel_size).depth
+        if depth > allowed:
+            return f'the body is {1e3 * depth:.2g} mm deep in "{tool.name}"'
+    return ""

@@ -1,0 +1,119 @@
+"""Contact in CalculiX's input files: surfaces, pairs, and objects as shells that move rigidly.
+
+Surfaces meet face to face with a linear penalty of 500 Young's moduli for each edge of a brick: at
+a pressure of a tenth of Young's modulus they are 0.0002 edges in each other. What sticks gives way
+25 times as easily. There is no stabilization and no adjustment of the unloaded mesh.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.comparison.brick_contact import RigidTool
+from voxsoft.comparison.bricks import BrickModel
+from voxsoft.comparison.calculix_units import YOUNG, DeckUnits
+
+#: The penalty: the edge of a brick is 1 in these units.
+_SLOPE: Final = 1000.0 * YOUNG
+#: How far the shell of an object goes in behind its surface, as a part of a triangle's size.
+_DEPTH: Final = 0.3
+
+#: Names of the surfaces of the body: all of it, and walls that look at each other.
+_BODY: Final = "BODY"
+
+
+def wall_names(index: int) -> tuple[str, str]:
+    """Names of two walls that look at each other."""
+    return f"WALL{index}A", f"WALL{index}B"
+
+
+def tool_name(index: int) -> str:
+    """Name of an object: its nodes, elements and surface."""
+    return f"TOOL{index}"
+
+
+def tool_lines(model: BrickModel, units: DeckUnits) -> Iterator[str]:
+    """Write nodes and elements of rigid objects: a tetrahedron behind each triangle.
+
+    All nodes are prescribed, so that their stiffness does not count.
+    """
+    node, element = len(model.nodes), len(model.bricks)
+    for index, tool in enumerate(_tools(model)):
+        name = tool_name(index)
+        nodes, tets = shell_of(tool)
+        yield f"*NODE, NSET={name}"
+        for number, (x, y, z) in enumerate((nodes / units.length).tolist(), start=node + 1):
+            yield f"{number}, {x:.12g}, {y:.12g}, {z:.12g}"
+        yield f"*ELEMENT, TYPE=C3D4, ELSET={name}"
+        for number, tet in enumerate((tets + node + 1).tolist(), start=element + 1):
+            yield ",".join(map(str, [number, *tet]))
+        yield f"*SURFACE, NAME={name}"
+        yield from (f"{element + number + 1}, S1" for number in range(len(tets)))
+        yield f"*MATERIAL, NAME={name}\n*ELASTIC\n{YOUNG:.12g}, 0.3"
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
+        node, element = node + len(nodes), element + len(tets)
+
+
+def shell_of(tool: RigidTool) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Nodes in m (n, 3) and tetrahedra (t, 4) of an object; the first face of each is outside."""
+    corners = tool.vertices[tool.triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    sizes = np.linalg.norm(normals, axis=1)
+    full = sizes > 1e-9 * sizes.max()  # slivers of a traced surface have no volume behind them
+    depth = _DEPTH / np.sqrt(sizes[full])
+    inner = corners[full].mean(axis=1) - depth[:, None] * normals[full]
+    first = len(tool.vertices)
+    # Of a tetrahedron of CalculiX the fourth node is where the first three, in turn, look to.
+    a, b, c = tool.triangles[full].astype(np.int64).T
+    tets = np.column_stack([a, c, b, np.arange(first, first + len(inner))])
+    return np.concatenate([tool.vertices, inner]), tets
+
+
+def contact_lines(model: BrickModel) -> Iterator[str]:
+    """Write surfaces of the body and pairs; nothing where nothing touches."""
+    contact = model.contact
+    if contact is None:
+        return
+    yield from _surface(_BODY, contact.outer)
+    for index, walls in enumerate(contact.walls):
+        for name, faces in zip(wall_names(index), walls, strict=True):
+            yield from _surface(name, faces)
+    pairs = [(*wall_names(index), contact.friction) for index in range(len(contact.walls))]
+    pairs += [(_BODY, tool_name(i), tool.friction) for i, tool in enumerate(contact.tools)]
+    for number, friction in enumerate(sorted({each for _, _, each in pairs})):
+        name = f"FRICTION{number}"
+        yield f"*SURFACE INTERACTION, NAME={name}"
+        yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{_SLOPE:.12g}"
+        if friction > 0.0:
+            yield f"*FRICTION\n{friction:.12g}, {_SLOPE / 25:.12g}"
+        for slave, master, own in pairs:
+            if own == friction:
+                yield f"*CONTACT PAIR, INTERACTION={name}, TYPE=SURFACE TO SURFACE"
+                yield f"{slave}, {master}"
+
+
+def printed_contact(model: BrickModel, units: DeckUnits) -> Iterator[str]:
+    """Move the objects, and ask for the forces between all pairs."""
+    if model.contact is None:
+        return
+    for index, tool in enumerate(model.contact.tools):
+        yield "*BOUNDARY"
+        for axis, way in enumerate(tool.way.tolist(), start=1):
+            yield f"{tool_name(index)}, {axis}, {axis}, {way / units.length:.12g}"
+        yield f"*NODE PRINT, NSET={tool_name(index)}, TOTALS=ONLY\nRF"
+    for index in range(len(model.contact.walls)):
+        slave, master = wall_names(index)
+        yield f"*CONTACT PRINT, SLAVE={slave}, MASTER={master}\nCF"
+
+
+def _tools(model: BrickModel) -> tuple[RigidTool, ...]:
+    return () if model.contact is None else model.contact.tools
+
+
+def _surface(name: str, faces: NDArray[np.int64]) -> Iterator[str]:
+    yield f"*SURFACE, NAME={name}"
+    yield from (f"{brick + 1}, S{face + 1}" for brick, face in faces.tolist())
