@@ -161,6 +161,35 @@ def test_simple_tension_is_that_of_the_closed_form(solve):
     assert force == pytest.approx(stress(2.0, side, along=True) * (5 * mm) ** 2, rel=1e-4)
 
 
+@needs_calculix
+@pytest.mark.parametrize("scale", [1.0, 0.01])
+def test_small_and_soft_bodies_are_the_large_ones_scaled(scale):
+    """A beam whose deflection is half its length: its shape depends on ρ g L/E alone.
+
+    In N and mm CalculiX's absolute stop made the small one 3 % wrong, and said nothing.
+    """
+    size = 10 * mm * scale
+    beam = vs.Box(size=(10 * size, 2 * size, 2 * size))
+    setup = Setup.of(
+        vs.Design(
+            name="beam",
+            voxel_size=size,
+            parts=[
+                vs.Part(shape=beam, material=vs.NeoHookean(young=60 * kPa * scale, poisson=0.45))
+            ],
+            clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+            loads=[vs.Gravity()],
+        )
+    )
+    answer = run_calculix(BrickModel.of(setup))
+    end = np.isclose(setup.mesh.vertices[:, 0], 10 * size)
+    tip = answer.displacements[end].mean(axis=0) / size
+    # Seven digits are printed of 6.2 mm at the largest; the units make both decks the same.
+    np.testing.assert_allclose(tip, [-1.5821195, 0.0, -5.2041511], atol=3e-6)
+    weight = 40 * size**3 * 1070 * 9.81
+    assert answer.reaction[2] == pytest.approx(weight, rel=1e-4)
+
+
 @pytest.mark.parametrize("solve", BOTH)
 def test_past_the_largest_load_the_last_equilibrium_is_kept(solve):
     """Rubber that softens for good bears a largest force; twice as much is asked for."""
