@@ -9,6 +9,7 @@ from voxsoft.comparison.bricks import BrickModel
 from voxsoft.comparison.calculix_contact import shell_of
 from voxsoft.comparison.calculix_deck import calculix_deck
 from voxsoft.comparison.calculix_output import read_totals
+from voxsoft.comparison.cautions import cautions_of_contact
 from voxsoft.comparison.scikit_fem import run_scikit_fem
 from voxsoft.design import Contact, ContactPair, Object
 from voxsoft.errors import SimulationError
@@ -132,6 +133,18 @@ def test_what_passed_through_is_named():
     assert "deep in itself" in passed_through(setup, through)
     raised = rest + (0, 0, 2 * mm) * (rest[:, 2:] > 7 * mm)
     assert 'deep in "plate"' in passed_through(setup, raised)
+
+
+def test_a_smooth_surface_that_is_not_that_of_the_voxels_is_told():
+    assert not list(cautions_of_contact(Setup.of(slit_block())))
+    ball = vs.Part(shape=vs.Sphere(radius=12 * mm), material=vs.NeoHookean(young=100 * kPa))
+    held = [vs.Clamp(region=vs.Region(z=(-12 * mm, -8 * mm)))]
+    (said,) = cautions_of_contact(Setup.of(slit_block(parts=[ball], clamps=held)))
+    assert said.where == "contact.surface"
+    stairs = Contact(surface="voxels")
+    assert not list(
+        cautions_of_contact(Setup.of(slit_block(parts=[ball], clamps=held, contact=stairs)))
+    )
 
 
 def test_totals_of_sets_and_surfaces_are_read():

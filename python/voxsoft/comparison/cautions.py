@@ -12,6 +12,7 @@ from voxsoft.design import Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
 from voxsoft.design.cut_cells import built_parts
 from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.simulation import Setup
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.places import voxel_size
@@ -22,6 +23,9 @@ _STEP: Final = np.radians(15.0)
 #: A wall is a stair where steps are more than this part of its area. Of a sphere or a round tube
 #: they are 0.6 to 0.8 of it; rounded edges of a box are less.
 _MOSTLY: Final = 0.3
+
+#: How far off the faces of voxels a smooth surface is told from them, in voxels.
+_SMOOTH: Final = 0.01
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +56,33 @@ def cautions_of(design: Design, mesh: Mesh) -> Iterator[Diagnostic]:
                 "of the discretization error may be low by up to five times",
                 "compare several voxel sizes, and take the spread between them for the error",
                 place,
+            )
+
+
+def cautions_of_contact(setup: Setup) -> Iterator[Diagnostic]:
+    """Warn where a body touches with a smooth surface that is not that of its voxels.
+
+    Parameters
+    ----------
+    setup
+        What is compared. Outside codes, and voxels that are split, touch with faces of voxels.
+    """
+    if setup.touching is None:
+        return
+    for skin in setup.touching.skins:
+        if skin is None:
+            continue
+        size = setup.touching.voxel_size
+        # Points of a skin on the faces are at corners, middles of edges and centers of faces.
+        halves = (skin.points - setup.mesh.vertices.min(axis=0)) / (size / 2)
+        off = float(np.abs(halves - np.rint(halves)).max()) / 2
+        if off > _SMOOTH:
+            yield Diagnostic(
+                "warning",
+                "contact.surface",
+                f"the body touches with its smooth surface, {off:.2g} voxels off the faces of its "
+                "voxels, with which it touches in outside codes and split voxels",
+                'compare with surface = "voxels", or several voxel sizes',
             )
 
 

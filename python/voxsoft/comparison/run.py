@@ -11,7 +11,7 @@ from typing import Any, Final, get_args
 from voxsoft.calibration import Experiment, Measurement
 from voxsoft.comparison.brick_contact import passed_through
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.comparison.cautions import cautions_of
+from voxsoft.comparison.cautions import cautions_of, cautions_of_contact
 from voxsoft.comparison.comparison import Comparison, Judged, Run
 from voxsoft.comparison.defaults import (
     DEFAULT_SOLVERS,
@@ -129,7 +129,7 @@ def compare(
         runs.append(_run(task, design.voxel_size, experiments))
     note = "" if code or outside == "none" else _NO_OUTSIDE
     judged = tuple(Judged.of(experiment) for experiment in experiments)
-    warnings = (*_unused(design), *cautions_of(design, base.mesh))
+    warnings = (*_unused(design), *cautions_of(design, base.mesh), *cautions_of_contact(base))
     return Comparison(design, tuple(runs), tuple(solvers)[-1], code or "", judged, note, warnings)
 
 
