@@ -30,5 +30,5 @@ def test_pressure_bends_it_toward_its_paper():
     assert abs(y) < 1e-9
     assert small["penetration"] == 0.0
     stretchy = run(*SMALL, "layers.0.young=65 MPa")
-    # With paper of a hundredth of the stiffness the layer stretches too: the tip goes along, 2.6 times.
+    # With a hundredth of the stiffness the layer stretches too: the tip goes along by 2.6 times.
     assert stretchy["probes"]["tip"]["displacement"][0] > 2 * x

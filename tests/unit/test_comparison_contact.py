@@ -135,12 +135,12 @@ def test_what_passed_through_is_named():
     assert 'deep in "plate"' in passed_through(setup, raised)
 
 
-def test_a_smooth_surface_that_is_not_that_of_the_voxels_is_told():
+def test_a_smooth_surface_that_is_not_that_of_the_voxels_is_a_warning():
     assert not list(cautions_of_contact(Setup.of(slit_block())))
     ball = vs.Part(shape=vs.Sphere(radius=12 * mm), material=vs.NeoHookean(young=100 * kPa))
     held = [vs.Clamp(region=vs.Region(z=(-12 * mm, -8 * mm)))]
-    (said,) = cautions_of_contact(Setup.of(slit_block(parts=[ball], clamps=held)))
-    assert said.where == "contact.surface"
+    (warning,) = cautions_of_contact(Setup.of(slit_block(parts=[ball], clamps=held)))
+    assert warning.where == "contact.surface"
     stairs = Contact(surface="voxels")
     assert not list(
         cautions_of_contact(Setup.of(slit_block(parts=[ball], clamps=held, contact=stairs)))

@@ -24,7 +24,7 @@ _STEP: Final = np.radians(15.0)
 #: they are 0.6 to 0.8 of it; rounded edges of a box are less.
 _MOSTLY: Final = 0.3
 
-#: How far off the faces of voxels a smooth surface is told from them, in voxels.
+#: How far off the faces of voxels a smooth surface counts as another one, in voxels.
 _SMOOTH: Final = 0.01
 
 Floats = NDArray[np.float64]
