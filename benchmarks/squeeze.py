@@ -1,0 +1,195 @@
+"""Random bodies squeezed to half their height: how many end there, and how the others fail.
+
+``python benchmarks/squeeze.py [--bodies 50] [--first 0] [--jobs 1] [--limit 120] [--json]``.
+`squeeze_bodies.py` says what is squeezed, and who judges. One body again, with all that is known of
+it: ``--seed 17``. Each body has a process of its own beside it, which is stopped after so many seconds
+of time (`--limit`): that is what "time limit" means. Exits with 1 where any body fails.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import sys
+import time
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+
+import numpy as np
+from measure import Report
+from rich.console import Console
+from rich.table import Table
+from squeeze_bodies import GOOD, KINDS, VOXELS, Verdict, judged
+
+_CONTEXT = multiprocessing.get_context("spawn")
+
+
+class Worker:
+    """A process that squeezes one body after the other, and can be stopped."""
+
+    def __init__(self, voxels: tuple[int, int]) -> None:
+        self._voxels = voxels
+        self._start()
+
+    def _start(self) -> None:
+        self.pipe, theirs = _CONTEXT.Pipe()
+        self._process: BaseProcess = _CONTEXT.Process(
+            target=_work, args=(theirs, self._voxels), daemon=True
+        )
+        self._process.start()
+        theirs.close()
+        assert self.pipe.recv() == "ready"  # what it imports does not count
+
+    def take(self, seed: int) -> None:
+        """Squeeze the body of a seed."""
+        self.seed, self.since = seed, time.monotonic()
+        self.pipe.send(seed)
+
+    def answer(self) -> Verdict:
+        """What it found; the process has died where it has none."""
+        try:
+            verdict: Verdict = self.pipe.recv()
+        except EOFError:
+            self._process.join()
+            died = f"the process died, exit code {self._process.exitcode}"
+            self._start()
+            return Verdict(self.seed, message=died)
+        return verdict
+
+    def stop(self) -> Verdict:
+        """Stop it in the middle of a body, and make it ready for another one."""
+        self.close()
+        self._start()
+        return Verdict(self.seed, kind="time limit", seconds=time.monotonic() - self.since)
+
+    def close(self) -> None:
+        """End the process."""
+        self._process.kill()
+        self._process.join()
+
+
+def _work(pipe: Connection, voxels: tuple[int, int]) -> None:
+    pipe.send("ready")
+    while True:
+        seed = pipe.recv()
+        try:
+            verdict = judged(seed, voxels)
+        except Exception as error:  # whatever it is, it is what came out
+            verdict = Verdict(seed, message=f"{type(error).__name__}: {error}")
+        pipe.send(verdict)
+
+
+def squeeze(
+    seeds: Iterable[int], voxels: tuple[int, int] = VOXELS, jobs: int = 1, limit: float = 120.0
+) -> Iterator[Verdict]:
+    """Squeeze the bodies of some seeds, `jobs` at a time, in the order in which they end.
+
+    `limit` is the time in s after which a body is given up.
+    """
+    left = iter(seeds)
+    busy: list[Worker] = []
+    try:
+        for _ in range(jobs):
+            seed = next(left, None)
+            if seed is None:
+                break
+            busy.append(Worker(voxels))
+            busy[-1].take(seed)
+        while busy:
+            now = time.monotonic()
+            first = min(worker.since for worker in busy) + limit
+            ready = wait([worker.pipe for worker in busy], max(first - now, 0.0))
+            for worker in list(busy):
+                if worker.pipe in ready:
+                    yield worker.answer()
+                elif time.monotonic() > worker.since + limit:
+                    yield worker.stop()
+                else:
+                    continue
+                seed = next(left, None)
+                if seed is None:
+                    worker.close()
+                    busy.remove(worker)
+                else:
+                    worker.take(seed)
+    finally:
+        for worker in busy:
+            worker.close()
+
+
+def show(verdicts: list[Verdict]) -> None:
+    """Print failures by kind, and each of them."""
+    console = Console(width=150)
+    table = Table(title="Squeezed to half their height", title_justify="left")
+    for name in ("how it ended", "bodies", "seeds"):
+        table.add_column(name, justify="right" if name == "bodies" else "left")
+    for kind in KINDS:
+        seeds = sorted(verdict.seed for verdict in verdicts if verdict.kind == kind)
+        named = " ".join(map(str, seeds)) if kind not in GOOD else ""
+        table.add_row(kind, str(len(seeds)), named)
+    console.print(table)
+    failed = [verdict for verdict in verdicts if verdict.kind not in GOOD]
+    if not failed:
+        return
+    table = Table(title="Failures, the worst first", title_justify="left")
+    for name in ("seed", "voxels", "how", "reached", "faces", "depth", "seconds", "message"):
+        table.add_column(name)
+    for each in sorted(failed, key=lambda v: (KINDS.index(v.kind), v.seed)):
+        table.add_row(
+            str(each.seed),
+            str(each.voxels),
+            each.kind,
+            f"{100 * each.reached:.1f} %",
+            str(each.pairs),
+            f"{each.depth:.2g}",
+            f"{each.seconds:.1f}",
+            each.message,
+        )
+    console.print(table)
+
+
+def main() -> None:
+    """Squeeze, show and report."""
+    report = Report(
+        "Random bodies squeezed to half their height",
+        values={
+            "bodies": (50, "how many bodies"),
+            "first": (0, "the seed of the first one"),
+            "seed": (None, "this body alone"),
+            "jobs": (1, "bodies at a time"),
+            "limit": (120, "seconds after which a body is given up"),
+        },
+    )
+    asked = report.options
+    one = asked["seed"]
+    seeds = (
+        range(asked["first"], asked["first"] + asked["bodies"])
+        if one is None
+        else range(one, one + 1)
+    )
+    verdicts = []
+    for verdict in squeeze(seeds, jobs=asked["jobs"], limit=asked["limit"]):
+        verdicts.append(verdict)
+        if not asked["json"]:
+            text = f"{verdict.seed}: {verdict.kind}, {100 * verdict.reached:.4g} %"
+            text += f", {verdict.voxels} voxels, {verdict.iterations} iterations"
+            print(f"{text}, {verdict.seconds:.1f} s", file=sys.stderr, flush=True)
+    if not asked["json"]:
+        show(verdicts)
+    if one is not None and not asked["json"]:
+        Console().print(asdict(verdicts[0]))
+    for kind in KINDS:
+        report.add(kind, sum(v.kind == kind for v in verdicts), "bodies")
+    solved = [verdict for verdict in verdicts if verdict.points]
+    if solved:
+        report.add("judges disagree", sum(v.disagreements > 0 for v in solved), "bodies")
+        report.add("median time", float(np.median([v.seconds for v in solved])), "s")
+        report.add("longest time", max(v.seconds for v in solved), "s")
+        report.add("median iterations", float(np.median([v.iterations for v in solved])), "")
+    report.show()
+    sys.exit(any(verdict.kind not in GOOD for verdict in verdicts))
+
+
+if __name__ == "__main__":
+    main()
