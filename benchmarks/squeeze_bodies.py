@@ -1,7 +1,7 @@
 """The bodies of `squeeze.py`, and its judges: random shapes of rubber between two rigid plates.
 
 A body is the first shape that the grammar of the property tests draws from a seed and that makes one component of so
-many voxels. It stands on the lower plate, held by the vertices of its lowest faces as if they were
+many voxels without hinges (where voxels share an edge only, the unloaded surface touches itself). It stands on the lower plate, held by the vertices of its lowest faces as if they were
 glued to it: what stands on a point alone would tip over whatever a solver does. The upper plate
 comes down by half of the body's height. Everything touches with Coulomb friction: the body itself
 and both plates.
@@ -35,7 +35,7 @@ from voxsoft.units import kPa, mm
 EXTENT = 20 * mm
 ACROSS = (7, 14)
 #: How many voxels a body has, and how many it is high at least.
-VOXELS, HIGH = (60, 800), 4
+VOXELS, HIGH = (60, 300), 4
 FRICTION = 0.5
 #: Of the height that is left.
 LEFT = 0.5
@@ -61,7 +61,7 @@ def shape_of(seed: int, voxels: tuple[int, int] = VOXELS) -> tuple[Shape, float]
             continue
         (body, *others) = grid.components()
         high = np.ptp(body.bounds[:, 2]) / size
-        if not others and high > HIGH - 0.5:
+        if not others and not grid.hinges and high > HIGH - 0.5:
             return shape, size
 
 
@@ -145,18 +145,43 @@ class Faces:
             points.append(surface.vertices + way)
         return np.concatenate(points)
 
-    def crossings(self, points: Floats) -> tuple[int, float]:
-        """Pairs of faces that pass through each other, by exact predicates; how deep at least [m]."""
+    def crossings(self, points: Floats) -> tuple[int, int, float]:
+        """Pairs of faces that pass through each other, by exact predicates.
+
+        Returns
+        -------
+        met, folded, depth
+            How many of them could have met, how many are one patch of the unloaded surface that is
+            folded, and how deep any are at least [m].
+        """
         none = np.zeros((0, 4), dtype=np.int32)
         pairs, found, _ = _core.penetration(points, points, none, none[:, :3], self.triangles)
-        return len(pairs), max((depth for depth, *_ in found), default=0.0)
+        met = int(self._could_meet(pairs).sum()) if len(pairs) else 0
+        return met, len(pairs) - met, max((depth for depth, *_ in found), default=0.0)
+
+    def _could_meet(self, pairs: NDArray[np.uint32]) -> NDArray[np.bool_]:
+        """Which pairs of faces have room between them, or a plate: no fold within a voxel, (p,)."""
+        corners = self.triangles[pairs]
+        plate = (corners >= len(self.skin.points)).any(axis=(1, 2))
+        at = self._rest[corners]
+        first, second = np.moveaxis(at.mean(axis=2), 1, 0)
+        normals = np.cross(at[:, :, 1] - at[:, :, 0], at[:, :, 2] - at[:, :, 0])
+        way = second - first
+        ahead = np.einsum("pi,pi->p", normals[:, 0], way) > 0.0
+        back = np.einsum("pi,pi->p", normals[:, 1], -way) > 0.0
+        far = np.linalg.norm(way, axis=1) > self.setup.design.voxel_size
+        faces: NDArray[np.bool_] = plate | far | (ahead & back)
+        return faces
+
+    @cached_property
+    def _rest(self) -> Floats:
+        return self.at(self.setup.mesh.vertices, 0.0)
 
     @cached_property
     def _outside_mesh(self) -> Any:  # noqa: ANN401 - ipctk has no types
         import ipctk
 
-        rest = self.at(self.setup.mesh.vertices, 0.0)
-        return ipctk.CollisionMesh(rest, ipctk.edges(self.triangles), self.triangles)
+        return ipctk.CollisionMesh(self._rest, ipctk.edges(self.triangles), self.triangles)
 
     def crosses_by_ipctk(self, points: Floats) -> bool:
         """Whether any faces pass through each other, as the toolkit of another group finds."""
@@ -183,10 +208,12 @@ class Verdict:
         Processor time of the solution.
     iterations
         Of Newton's method.
-    pairs, depth
-        The most faces that pass through each other at any point of the path, and how deep at least, in voxels.
+    pairs, folds, depth
+        The most pairs of faces that pass through each other at any point of the path: of those that
+        could have met, and of folds of the surface within a voxel; how deep any are at least, in
+        voxels.
     crossing_points, points
-        How many points of the path have such faces, and how many there are.
+        How many points of the path have any, and how many there are.
     disagreements
         Points at which the two judges say different things.
     stable
@@ -201,6 +228,7 @@ class Verdict:
     seconds: float = 0.0
     iterations: int = 0
     pairs: int = 0
+    folds: int = 0
     depth: float = 0.0
     crossing_points: int = 0
     points: int = 0
@@ -208,14 +236,18 @@ class Verdict:
     stable: bool = True
 
 
-#: How a squeeze may end, the worst first. Only the last two are no failures: at half of its height.
+#: How a squeeze may end, the worst first. Only the last two are no failures. Folded is what has
+#: faces that pass through each other less than a voxel apart on one side of the unloaded body: the
+#: surface follows voxels that are crushed, and contact knows nothing of it.
 KINDS = (
-    "faces intersect, called at rest",
-    "faces intersect, ends early",
+    "penetrates, called at rest",
+    "penetrates, ends early",
+    "judges disagree",
     "no numbers",
     "time limit",
     "exception",
     "ends early",
+    "at half its height, folded",
     "at half its height, not stable",
     "at half its height",
 )
@@ -246,22 +278,27 @@ def judged(seed: int, voxels: tuple[int, int] = VOXELS) -> Verdict:
     }
     if not all(np.isfinite(positions).all() for positions, _ in states):
         return Verdict(kind="no numbers", **common)
-    pairs, depth, crossing, disagreements = 0, 0.0, 0, 0
+    pairs, folds, depth, crossing, disagreements = 0, 0, 0.0, 0, 0
     for positions, factor in states:
         points = faces.at(positions, factor)
-        count, deep = faces.crossings(points)
-        crossing += count > 0
-        disagreements += (count > 0) != faces.crosses_by_ipctk(points)
-        pairs, depth = max(pairs, count), max(depth, deep)
+        met, folded, deep = faces.crossings(points)
+        crossing += met + folded > 0
+        disagreements += (met + folded > 0) != faces.crosses_by_ipctk(points)
+        pairs, folds, depth = max(pairs, met), max(folds, folded), max(depth, deep)
     common |= {
         "pairs": pairs,
+        "folds": folds,
         "depth": depth / setup.design.voxel_size,
         "crossing_points": crossing,
         "disagreements": disagreements,
     }
     ended = result.status == "ok" and result.load_factor == 1.0
-    if crossing or disagreements:
+    if pairs:
         return Verdict(kind=KINDS[0] if ended else KINDS[1], **common)
+    if disagreements:
+        return Verdict(kind="judges disagree", **common)
     if not ended:
         return Verdict(kind="ends early", **common)
+    if folds:
+        return Verdict(kind="at half its height, folded", **common)
     return Verdict(kind=GOOD[1] if common["stable"] else GOOD[0], **common)
