@@ -150,7 +150,17 @@ def show(verdicts: list[Verdict]) -> None:
     if not failed:
         return
     table = Table(title="Failures, the worst first", title_justify="left")
-    for name in ("seed", "voxels", "how", "reached", "faces", "folds", "depth", "seconds", "message"):
+    for name in (
+        "seed",
+        "voxels",
+        "how",
+        "reached",
+        "faces",
+        "folds",
+        "depth",
+        "seconds",
+        "message",
+    ):
         table.add_column(name)
     for each in sorted(failed, key=lambda v: (KINDS.index(v.kind), v.seed)):
         table.add_row(

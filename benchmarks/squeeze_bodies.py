@@ -41,6 +41,9 @@ FRICTION = 0.5
 LEFT = 0.5
 #: Between the unloaded body and the plates, in voxels.
 AWAY = 0.01
+#: Faces nearer than this on the unloaded body, in voxels, are a fold of the surface or the two
+#: sides of a crease, which follow voxels that are crushed: contact does not look at neighbors.
+FOLD = 1.5
 RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45)
 
 Floats = NDArray[np.float64]
@@ -145,33 +148,30 @@ class Faces:
             points.append(surface.vertices + way)
         return np.concatenate(points)
 
-    def crossings(self, points: Floats) -> tuple[int, int, float]:
+    def crossings(self, points: Floats) -> tuple[int, int, int, float]:
         """Pairs of faces that pass through each other, by exact predicates.
 
         Returns
         -------
-        met, folded, depth
-            How many of them could have met, how many are one patch of the unloaded surface that is
-            folded, and how deep any are at least [m].
+        met, plates, folded, depth
+            How many of them contact must keep apart, how many of those are with a plate, how many
+            are folds, and how deep any are at least [m].
         """
         none = np.zeros((0, 4), dtype=np.int32)
         pairs, found, _ = _core.penetration(points, points, none, none[:, :3], self.triangles)
-        met = int(self._could_meet(pairs).sum()) if len(pairs) else 0
-        return met, len(pairs) - met, max((depth for depth, *_ in found), default=0.0)
+        deep = max((depth for depth, *_ in found), default=0.0)
+        if not len(pairs):
+            return 0, 0, 0, deep
+        plate = (self.triangles[pairs] >= len(self.skin.points)).any(axis=(1, 2))
+        met = int((plate | self._are_far(pairs)).sum())
+        return met, int(plate.sum()), len(pairs) - met, deep
 
-    def _could_meet(self, pairs: NDArray[np.uint32]) -> NDArray[np.bool_]:
-        """Which pairs of faces have room between them, or a plate: no fold within a voxel, (p,)."""
-        corners = self.triangles[pairs]
-        plate = (corners >= len(self.skin.points)).any(axis=(1, 2))
-        at = self._rest[corners]
-        first, second = np.moveaxis(at.mean(axis=2), 1, 0)
-        normals = np.cross(at[:, :, 1] - at[:, :, 0], at[:, :, 2] - at[:, :, 0])
-        way = second - first
-        ahead = np.einsum("pi,pi->p", normals[:, 0], way) > 0.0
-        back = np.einsum("pi,pi->p", normals[:, 1], -way) > 0.0
-        far = np.linalg.norm(way, axis=1) > self.setup.design.voxel_size
-        faces: NDArray[np.bool_] = plate | far | (ahead & back)
-        return faces
+    def _are_far(self, pairs: NDArray[np.uint32]) -> NDArray[np.bool_]:
+        """Which pairs of faces are far apart on the unloaded body: no fold, (p,)."""
+        first, second = np.moveaxis(self._rest[self.triangles[pairs]].mean(axis=2), 1, 0)
+        distances = np.linalg.norm(second - first, axis=1)
+        far: NDArray[np.bool_] = distances > FOLD * self.setup.design.voxel_size
+        return far
 
     @cached_property
     def _rest(self) -> Floats:
@@ -208,9 +208,9 @@ class Verdict:
         Processor time of the solution.
     iterations
         Of Newton's method.
-    pairs, folds, depth
-        The most pairs of faces that pass through each other at any point of the path: of those that
-        could have met, and of folds of the surface within a voxel; how deep any are at least, in
+    pairs, plates, folds, depth
+        The most pairs of faces that pass through each other at any point of the path: that contact
+        must keep apart, those of them with a plate, and folds; how deep any are at least, in
         voxels.
     crossing_points, points
         How many points of the path have any, and how many there are.
@@ -228,6 +228,7 @@ class Verdict:
     seconds: float = 0.0
     iterations: int = 0
     pairs: int = 0
+    plates: int = 0
     folds: int = 0
     depth: float = 0.0
     crossing_points: int = 0
@@ -236,9 +237,8 @@ class Verdict:
     stable: bool = True
 
 
-#: How a squeeze may end, the worst first. Only the last two are no failures. Folded is what has
-#: faces that pass through each other less than a voxel apart on one side of the unloaded body: the
-#: surface follows voxels that are crushed, and contact knows nothing of it.
+#: How a squeeze may end, the worst first. Only the last two are no failures. Folded is where faces
+#: pass through each other that are less than :data:`FOLD` apart on the unloaded body.
 KINDS = (
     "penetrates, called at rest",
     "penetrates, ends early",
@@ -278,15 +278,17 @@ def judged(seed: int, voxels: tuple[int, int] = VOXELS) -> Verdict:
     }
     if not all(np.isfinite(positions).all() for positions, _ in states):
         return Verdict(kind="no numbers", **common)
-    pairs, folds, depth, crossing, disagreements = 0, 0, 0.0, 0, 0
+    pairs, plates, folds, depth, crossing, disagreements = 0, 0, 0, 0.0, 0, 0
     for positions, factor in states:
         points = faces.at(positions, factor)
-        met, folded, deep = faces.crossings(points)
+        met, of_plates, folded, deep = faces.crossings(points)
         crossing += met + folded > 0
         disagreements += (met + folded > 0) != faces.crosses_by_ipctk(points)
-        pairs, folds, depth = max(pairs, met), max(folds, folded), max(depth, deep)
+        pairs, plates = max(pairs, met), max(plates, of_plates)
+        folds, depth = max(folds, folded), max(depth, deep)
     common |= {
         "pairs": pairs,
+        "plates": plates,
         "folds": folds,
         "depth": depth / setup.design.voxel_size,
         "crossing_points": crossing,
