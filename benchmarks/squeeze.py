@@ -2,9 +2,9 @@
 
 ``python benchmarks/squeeze.py [--bodies 50] [--first 0] [--jobs 1] [--limit 120] [--json]``.
 `squeeze_bodies.py` says what is squeezed, and who judges. One body again, with all that is known of
-it: ``--seed 17``. A process beside this one squeezes it, and is stopped after so many seconds of processor
-time (`--limit`), or ten times as long by the clock: that is what "time limit" means. Exits with 1
-where any body fails.
+it: ``--seed 17``. A process beside this one squeezes it, and is stopped after so many seconds of
+processor time (`--limit`), or ten times as long by the clock: that is what "time limit" means.
+Exits with 1 where any body fails.
 """
 
 from __future__ import annotations
@@ -24,7 +24,8 @@ from rich.console import Console
 from rich.table import Table
 from squeeze_bodies import GOOD, KINDS, VOXELS, Verdict, judged
 
-#: How many times the limit of processor time may pass by the clock, and how often it is looked at [s].
+#: How many times the limit of processor time may pass by the clock, and how often that is looked
+#: at [s].
 CLOCK, LOOK = 10.0, 0.2
 
 _CONTEXT = multiprocessing.get_context("spawn")

@@ -1,10 +1,11 @@
 """The bodies of `squeeze.py`, and its judges: random shapes of rubber between two rigid plates.
 
-A body is the first shape that the grammar of the property tests draws from a seed and that makes one component of so
-many voxels without hinges (where voxels share an edge only, the unloaded surface touches itself). It stands on the lower plate, held by the vertices of its lowest faces as if they were
-glued to it: what stands on a point alone would tip over whatever a solver does. The upper plate
-comes down by half of the body's height. Everything touches with Coulomb friction: the body itself
-and both plates.
+A body is the first shape that the grammar of the property tests draws from a seed and that makes
+one component of so many voxels without hinges (where voxels share an edge only, the unloaded
+surface touches itself). It stands on the lower plate, held by the vertices of its lowest faces as
+if they were glued to it: what stands on a point alone would tip over whatever a solver does. The
+upper plate comes down by half of the body's height. Everything touches with Coulomb friction: the
+body itself and both plates.
 
 What came out is judged by three that share no line: whether it is made of numbers, and which faces
 of the smooth surface of the body and of the plates pass through each other, by the exact
@@ -178,7 +179,7 @@ class Faces:
         return self.at(self.setup.mesh.vertices, 0.0)
 
     @cached_property
-    def _outside_mesh(self) -> Any:  # noqa: ANN401 - ipctk has no types
+    def _outside_mesh(self) -> Any:
         import ipctk
 
         return ipctk.CollisionMesh(self._rest, ipctk.edges(self.triangles), self.triangles)

@@ -27,7 +27,7 @@ def beside_the_benchmarks(monkeypatch):
 
 
 def assert_orderly(verdict):
-    # No numbers, a hang, an exception, and faces that only one of the judges sees are never excused.
+    # No numbers, a hang, an exception, and faces that one judge alone sees are never excused.
     allowed = {"penetrates, called at rest", "penetrates, ends early", "ends early"}
     assert verdict.kind in allowed or verdict.kind.startswith("at half its height"), verdict
     assert verdict.plates == 0, verdict
