@@ -10,7 +10,7 @@ import resource
 import statistics
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -61,16 +61,23 @@ def peak_bytes() -> int:
 class Report:
     """Rows of a benchmark, printed as text or, with ``--json``, as one object.
 
-    `flags` are further switches of the command line, each with its help; `options` says which of
-    them were given.
+    `flags` are further switches of the command line, each with its help, and `values` those that
+    take a whole number, each with its default and its help; `options` has what was given.
     """
 
-    def __init__(self, description: str, **flags: str) -> None:
+    def __init__(
+        self,
+        description: str,
+        values: Mapping[str, tuple[int | None, str]] | None = None,
+        **flags: str,
+    ) -> None:
         parser = argparse.ArgumentParser(description=description)
         parser.add_argument("--json", action="store_true", help="print one JSON object")
         parser.add_argument("--save", type=Path, help="write that object to a file beside the text")
         for flag, meaning in flags.items():
             parser.add_argument(f"--{flag}", action="store_true", help=meaning)
+        for name, (default, meaning) in (values or {}).items():
+            parser.add_argument(f"--{name}", type=int, default=default, help=meaning)
         self.options = vars(parser.parse_args())
         self._json = self.options["json"]
         self._title = description

@@ -371,6 +371,7 @@ class Skin:
         vertices: NDArray[np.float64],
         voxels: NDArray[np.uint32],
     ) -> Skin: ...
+    def at(self, positions: NDArray[np.float64]) -> NDArray[np.float64]: ...
     @property
     def points(self) -> NDArray[np.float64]: ...
     @property
@@ -483,6 +484,7 @@ def equilibrium(
     memory: int = ...,
     start: NDArray[np.float64] | None = None,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
+    frames: bool = False,
     progress: Callable[[int, float, float], None] | None = None,
 ) -> Answer: ...
 

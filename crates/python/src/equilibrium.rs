@@ -66,7 +66,7 @@ pub(crate) fn to_python(error: AdjointError) -> PyErr {
 /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
 /// `linear` is "auto", "direct" or "iterative", `memory` the bytes that the tangent may take.
 #[pyfunction]
-#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, sensors=vec![], progress=None))]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, sensors=vec![], frames=false, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -83,6 +83,7 @@ pub fn equilibrium(
     memory: u64,
     start: Option<PyReadonlyArray2<'_, f64>>,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
+    frames: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PyAnswer> {
     let inner = &problem.problem;
@@ -113,7 +114,7 @@ pub fn equilibrium(
         ..Settings::default()
     };
     let start = start.map(|start| problem.positions(&start)).transpose()?;
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), false);
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
     let problem_of_work = Arc::clone(inner);
     let (answer, watch) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);

@@ -2,6 +2,7 @@
 use std::sync::Arc;
 
 use numpy::{PyArray2, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
 use voxsoft_shape::{FieldError, Shape};
@@ -39,6 +40,25 @@ impl PySkin {
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         from_rows(py, &self.0.points)
+    }
+
+    /// Where its points are (m) when the vertices that carry them are at `positions` (m).
+    fn at<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let positions: Vec<Vec3> = rows("positions", &positions)?;
+        let carriers = self.0.surface.points.iter().flat_map(|p| &p.vertices);
+        let count = carriers.max().map_or(0, |last| *last as usize + 1);
+        if positions.len() < count {
+            let message = format!("positions: {} rows, expected {count}", positions.len());
+            return Err(PyValueError::new_err(message));
+        }
+        let points: Vec<Vec3> = (self.0.surface.points.iter())
+            .map(|point| point.at(&positions))
+            .collect();
+        Ok(from_rows(py, &points))
     }
 
     /// Triangles of points, outward.

@@ -58,6 +58,17 @@ pub trait Contact: Term {
     /// Forgets what happened since the last accepted state.
     fn go_back(&self);
 
+    /// Keeps a copy of all that it holds, to [`restore`](Contact::restore) it.
+    fn save(&self) {}
+
+    /// Goes back to what was [saved](Contact::save) last, and keeps no copy.
+    fn restore(&self) {}
+
+    /// Whether its path is recorded, to be gone over again.
+    fn is_recorded(&self) -> bool {
+        false
+    }
+
     /// Lets the multipliers of the last accepted state go on as they changed in the step to it: a start for one that is
     /// `ratio` times as long. The answer does not depend on it.
     fn extrapolate(&self, ratio: f64);

@@ -53,6 +53,7 @@ mod point;
 mod sensitivity;
 mod settings;
 mod settle;
+mod snap;
 mod system;
 mod transient;
 mod volume;

@@ -84,6 +84,20 @@ impl Loose {
         })
     }
 
+    /// Dampers on all that has mass, each about as stiff as the body is there at first, for motions of the size of a `length` (m).
+    pub fn of_everything(problem: &Problem, length: f64) -> Self {
+        let rest = problem.body().rest();
+        let masses = problem.body().masses();
+        let each = problem.body().unit_strain_force() / (length * (rest.len() as f64).sqrt());
+        let weight = |mass: &f64| if *mass > 0.0 { each } else { 0.0 };
+        let weights: Vec<f64> = masses.iter().map(weight).collect();
+        Self {
+            dampers: Arc::new(Inertia::new(&weights)),
+            length,
+            farthest: travel_limit(problem).max(GONE * extent(rest)),
+        }
+    }
+
     /// Holds everything loose to where it is for a step of the load path, a part of the load: as a viscosity does whose time is the
     /// load, so that shorter steps move it less far.
     pub fn hold(&self, positions: &[Vec3], step: f64) {

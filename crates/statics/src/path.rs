@@ -27,6 +27,8 @@ const LARGEST_TURN: f64 = 1.0;
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
 const LONGEST_OF_WAY: f64 = 0.05;
+/// How much of the load comes on while the body snaps.
+const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
@@ -43,6 +45,10 @@ pub(crate) struct Ending {
 }
 
 impl Ending {
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
     pub fn new(status: Status, limit: Option<f64>, reached: f64) -> Self {
         Self {
             status,
@@ -322,6 +328,19 @@ impl Path<'_, '_> {
             }
             step = (next - now) / 4.0;
             if step < settings.least_step {
+                if let Some(contact) = contact
+                    && !contact.is_recorded()
+                    && self.snap(contact, Point::all((now + SNAP).min(1.0)), settings)
+                {
+                    (step, last) = (SNAP, f64::INFINITY);
+                    if self.point.pressure < 1.0 {
+                        continue;
+                    }
+                    return match loose {
+                        Some(loose) => self.release(loose, settings),
+                        None => Ending::new(Status::AtRest, None, 1.0),
+                    };
+                }
                 // Contact makes corners in the path, which no tangent foresees.
                 let limit = match contact {
                     Some(_) => None,

@@ -40,13 +40,14 @@ class Statics(Method):
     """The equilibrium by Newton's method on the sparse tangent."""
 
     family: ClassVar[str] = "statics"
+    extra: ClassVar[frozenset[str]] = frozenset({"frames"})
 
     tolerance: Tolerance = DEFAULT_STATICS_TOLERANCE
     control: str
 
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Find the equilibrium under the final loads."""
-        return find_equilibrium(setup, self, watch.progress)
+        return find_equilibrium(setup, self, watch.progress, frames=watch.frames)
 
 
 class LoadControl(Statics):
@@ -89,9 +90,14 @@ class VolumeControl(Statics):
 
 
 def find_equilibrium(
-    setup: Setup, statics: Statics, progress: Progress, problem: _core.Problem | None = None
+    setup: Setup,
+    statics: Statics,
+    progress: Progress,
+    problem: _core.Problem | None = None,
+    *,
+    frames: bool = False,
 ) -> Answer:
-    """Solve a setup by statics, or a variant of its problem.
+    """Solve a setup by statics, or a variant of its problem; `frames` keeps all of the path.
 
     Returns
     -------
@@ -111,6 +117,7 @@ def find_equilibrium(
         control=statics.control,
         memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
+        frames=frames,
         progress=progress,
     )
     path, status = path_of(answer), answer.status

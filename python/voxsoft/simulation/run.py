@@ -53,7 +53,8 @@ def simulate(
         Time between two records of the probes, in s or with its unit, ``"50 ms"``; default 1/50 s.
         For runs over time only.
     frames
-        Whether to record all vertices as well. For runs over time only.
+        Whether to record all vertices as well. For runs over time, and for the
+        load path of statics.
     progress
         Called about ten times a second with (steps, time, residual); an exception it raises
         ends the run.

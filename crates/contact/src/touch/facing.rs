@@ -4,7 +4,6 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 
 use super::Touch;
 use super::gap::{Closest, closest, normal, unit};
-use super::listing::DEPTH;
 use super::state::{Facing, State};
 
 /// How far a sample may be beside an edge and still count as flush with it, in voxels.
@@ -34,9 +33,7 @@ impl Touch {
             let height = dot(nearer.away, normal(self.corners(beside, points)));
             if height.abs() > FLUSH * self.description.voxel {
                 // It has gone round the edge; it meets what is behind that if it was in front of it.
-                let before = &state.accepted_points;
-                let met = nearer.is_inside()
-                    && self.is_in_front(beside, state.accepted_samples[index], before);
+                let met = nearer.is_inside() && self.was_in_front(state, index, beside);
                 return met.then_some(Facing::Plane(beside));
             }
         }
@@ -73,19 +70,25 @@ impl Touch {
         best
     }
 
-    /// Whether a point is in front of a triangle, or not too deep behind it.
+    /// Whether a point is in front of a triangle, or no deeper behind it than a `depth` in voxels.
     ///
     /// Beside the triangle this is asked of the surface at its edge: the plane of a wall goes on into the body where
     /// that wall ends in a corner, and what lies along it there is inside.
-    pub(super) fn is_in_front(&self, triangle: u32, point: Vec3, points: &[Vec3]) -> bool {
+    pub(super) fn is_in_front(
+        &self,
+        triangle: u32,
+        point: Vec3,
+        points: &[Vec3],
+        depth: f64,
+    ) -> bool {
         let found = closest(point, self.corners(triangle, points));
         let outward = self.normal_beside(triangle, found.weights, points);
-        dot(found.away, outward) >= 0.0 || found.distance <= DEPTH * self.description.voxel
+        dot(found.away, outward) >= 0.0 || found.distance <= depth * self.description.voxel
     }
 
     /// The mean normal at a point of a triangle, on an edge or corner that of all that meet there, which tells outside from inside (Baerentzen and
     /// Aanaes 2005, doi 10.1109/TVCG.2005.49).
-    fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
+    pub(super) fn normal_beside(&self, triangle: u32, weights: [f64; 3], points: &[Vec3]) -> Vec3 {
         let corners = self.triangles[triangle as usize];
         let on: Vec<u32> = (0..3)
             .filter(|c| weights[*c] > 0.0)
@@ -119,7 +122,7 @@ impl Touch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::touch::{Carried, Description, Surface};
+    use crate::touch::{Carried, Description, Surface, listing};
 
     /// A prism of the height 1 over the L of the lengths 2 and the width 1, its inner edge at (1, 1).
     fn angle() -> (Touch, Vec<Vec3>) {
@@ -158,7 +161,9 @@ mod tests {
     #[test]
     fn what_lies_along_a_wall_but_behind_its_end_is_not_in_front_of_it() {
         let (touch, positions) = angle();
-        let front = |triangle: u32, point: Vec3| touch.is_in_front(triangle, point, &positions);
+        let front = |triangle: u32, point: Vec3| {
+            touch.is_in_front(triangle, point, &positions, listing::DEPTH)
+        };
         // The wall y = 1, which ends at the inner edge, where its plane goes on into the body.
         let wall = 4;
         assert_eq!(touch.triangles[wall as usize], [2, 3, 9]);

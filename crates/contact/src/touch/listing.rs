@@ -3,7 +3,7 @@
 use voxsoft_solid::vector::{Vec3, dot, sub};
 
 use super::Touch;
-use super::gap::normal;
+use super::gap::{closest, normal};
 use super::state::State;
 use crate::bounds::Bounds;
 use crate::threads;
@@ -18,6 +18,17 @@ pub(super) const DEPTH: f64 = 0.25;
 /// Faces that can meet look at each other: the product of their normals is below this. A sample on an edge has
 /// several, of which those along the other face do not meet it.
 const FACING: f64 = -0.1;
+/// How near each other two places of one surface are in the unloaded body for which its shape there says whether they
+/// can meet, in voxels. The two sides of a wall do not, however thin it is or becomes: rubber does not press a thicker
+/// one to [`DEPTH`], and a thin one does not roll up so tightly that its sides meet around its end.
+const WALL: f64 = 3.0;
+/// Places nearer than this, in voxels, whose normals have at least such a product are one patch of the surface. What
+/// folds there is an element.
+const PATCH: f64 = 1.0;
+const SAME_WAY: f64 = 0.3;
+/// How deep a sample may be in what is near but did not face it in the unloaded body, in voxels. A fold has to bring the
+/// two in front of each other first; around an outer edge a sample is behind what is there by less than a voxel.
+const BESIDE: f64 = 0.01;
 
 impl Touch {
     /// Lists for every sample the triangles that come near it on the straight way from the last accepted state to
@@ -81,11 +92,46 @@ impl Touch {
                 return false;
             }
         }
-        self.is_in_front(
-            triangle,
-            state.accepted_samples[index],
-            &state.accepted_points,
-        )
+        self.was_in_front(state, index, triangle)
+    }
+
+    /// Whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it may meet it.
+    pub(super) fn was_in_front(&self, state: &State, index: usize, triangle: u32) -> bool {
+        let itself = self.samples[index].surface == self.surface_of[triangle as usize];
+        let depth = if itself {
+            self.depth_at_rest(index, triangle)
+        } else {
+            Some(DEPTH)
+        };
+        let start = state.accepted_samples[index];
+        depth.is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
+    }
+
+    /// How deep a sample may be in a triangle of its own surface at an accepted state and count as in front of it, in voxels;
+    /// `None` where they never meet, which the unloaded body shows.
+    fn depth_at_rest(&self, index: usize, triangle: u32) -> Option<f64> {
+        let points = &self.rest_points;
+        let corners = self.corners(triangle, points);
+        let found = closest(points[index], corners);
+        let distance = found.distance / self.description.voxel;
+        if distance > WALL {
+            return Some(DEPTH);
+        }
+        let n = normal(corners);
+        let own = self.samples[index].triangles.iter();
+        let least = own
+            .map(|own| dot(normal(self.corners(*own, points)), n))
+            .fold(1.0, f64::min);
+        let behind = dot(
+            found.away,
+            self.normal_beside(triangle, found.weights, points),
+        ) < 0.0;
+        match (least < FACING, behind) {
+            (true, true) => None,
+            (true, false) => Some(DEPTH),
+            (false, _) if distance <= PATCH && least > SAME_WAY => None,
+            (false, _) => Some(BESIDE),
+        }
     }
 }
 

@@ -114,6 +114,8 @@ pub struct Touch {
     bodies: u32,
     /// For each point of bodies the vertices that stand for it, where those are not what carries it.
     shares: Vec<Carried>,
+    /// Where they are in the unloaded design, m.
+    rest_points: Vec<Vec3>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// The surface of each.
@@ -125,6 +127,8 @@ pub struct Touch {
     /// The penalty in units of Young's modulus over the voxel size, as the bits of a number: live contact changes it.
     penalty: AtomicU64,
     state: RwLock<State>,
+    /// The copy of it that was asked for.
+    saved: RwLock<Option<State>>,
 }
 
 /// A sample and what it is in front of.
@@ -203,6 +207,7 @@ impl Touch {
             triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
             surface_of.resize(triangles.len(), number);
         }
+        let rest_points = points.iter().map(|point| point.at(rest)).collect();
         let mut around = vec![Vec::new(); points.len()];
         for (t, triangle) in triangles.iter().enumerate() {
             for point in triangle {
@@ -216,12 +221,14 @@ impl Touch {
             points,
             bodies: 1,
             shares: Vec::new(),
+            rest_points,
             triangles,
             surface_of,
             around,
             ties_at: Vec::new(),
             penalty: AtomicU64::new(PENALTY.to_bits()),
             state: RwLock::default(),
+            saved: RwLock::default(),
         };
         touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());
         Contact::start(&touch, rest);

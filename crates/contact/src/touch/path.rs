@@ -175,6 +175,26 @@ impl Contact for Touch {
         self.list_from_accepted(&mut state, points);
     }
 
+    fn save(&self) {
+        let copy = self.read().clone();
+        *self.saved.write().expect("no holder of the lock panics") = Some(copy);
+    }
+
+    fn restore(&self) {
+        let saved = self
+            .saved
+            .write()
+            .expect("no holder of the lock panics")
+            .take();
+        if let Some(saved) = saved {
+            *self.write() = saved;
+        }
+    }
+
+    fn is_recorded(&self) -> bool {
+        self.read().recording.is_some()
+    }
+
     fn extrapolate(&self, ratio: f64) {
         let mut state = self.write();
         state.extrapolated = Some(ratio);

@@ -1,0 +1,69 @@
+//! Snaps of a load path with contact: where a wall buckles or what is pressed slides off an edge there is no equilibrium
+//! near the last one, however short the step.
+//!
+//! The body moves on to another equilibrium under the same load then. It is found as that of what is loose is
+//! ([`crate::loose`]): every vertex has a damper, so that the motion goes downhill, and the dampers get weaker until they carry
+//! less than the tolerance of the forces. Nothing is left of them in the answer.
+
+use voxsoft_solid::{Contact, Status, Term};
+
+use std::sync::Arc;
+
+use crate::equilibrium::Equilibrium;
+use crate::loose::Loose;
+use crate::path::Path;
+use crate::point::Point;
+use crate::settings::{LinearSolver, Settings};
+use crate::system::{Means, System};
+
+impl Path<'_, '_> {
+    /// Moves on to an equilibrium at `point`, to which no short step leads; whether one was found. If not, nothing has changed.
+    pub fn snap(&mut self, contact: &dyn Contact, point: Point, settings: &Settings) -> bool {
+        let problem = self.equilibrium.problem;
+        let dampers = Loose::of_everything(problem, contact.length());
+        let term = Arc::clone(&dampers.dampers) as Arc<dyn Term>;
+        let Ok(damped) = problem.clone().with_term(term) else {
+            return false;
+        };
+        let means = Means {
+            solver: LinearSolver::Direct,
+            ..self.equilibrium.means
+        };
+        let Ok(equilibrium) = Equilibrium::new(&damped, means) else {
+            return false;
+        };
+        contact.save();
+        let mut path = Path {
+            equilibrium: Equilibrium {
+                precision: self.equilibrium.precision,
+                has_loose: self.equilibrium.has_loose,
+                ..equilibrium
+            },
+            positions: self.positions.clone(),
+            point,
+            points: Vec::new(),
+            observer: self.observer,
+            looking: true,
+        };
+        let ending = path.release(&dampers, settings);
+        let Path {
+            equilibrium,
+            positions,
+            points,
+            ..
+        } = path;
+        self.equilibrium.iterations += equilibrium.iterations;
+        self.equilibrium.back_offs += equilibrium.back_offs;
+        // What touches now has no room in the tangent of before.
+        let system = System::new(problem, &self.equilibrium.held, self.equilibrium.means);
+        let (Status::AtRest, Ok(system)) = (ending.status(), system) else {
+            contact.restore();
+            return false;
+        };
+        self.equilibrium.system = system;
+        self.positions = positions;
+        self.point = point;
+        self.points.extend(points.last().copied());
+        true
+    }
+}
