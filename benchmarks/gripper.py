@@ -1,10 +1,10 @@
-"""A gripper closes on a cube, lifts it, and holds it: does that depend on voxels or steps?
+"""A gripper closes on a cube, lifts it, and holds it, with voxels and steps of several sizes.
 
-``python benchmarks/gripper.py [--json] [--fine]``. `examples/gripper.toml`, two PneuNet fingers, with
-25 kPa in place of 20: a cube of 50 g is lifted by 50 mm and held by friction alone. One set of
-parameters for every size of voxels and every step. By default voxels of 2.5 mm, steps of 20 ms,
-and one second of holding; `--fine` takes three sizes with three steps each, ten seconds of
-holding, and the same with μ = 0.05, where the cube has to stay on the floor.
+``python benchmarks/gripper.py [--json] [--fine]``. `examples/gripper.toml`, two PneuNet fingers,
+with 25 kPa in place of 20: a cube of 50 g is lifted by 50 mm and held by friction alone. One set of
+parameters for every size of voxels and every step. By default voxels of 2.5 mm, steps of 20 ms, and
+one second of holding; `--fine` takes three sizes with three steps each, ten seconds of holding, and
+the same with μ = 0.05, where the cube has to stay on the floor.
 
 The rows of a case say how high the cube is lifted, how far it moves while it is held, the largest
 error of the balance of contact, weight and inertia in that time over its weight, the bound of
