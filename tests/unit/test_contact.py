@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.comparison.bricks import BrickModel
 from voxsoft.design import Contact, ContactPair, Object, Solver
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.files import load, save
@@ -180,8 +179,6 @@ def test_methods_that_know_no_contact_refuse_it(settings):
 
 
 def test_what_knows_no_contact_says_so(result):
-    with pytest.raises(DesignError, match="objects: is not known to outside codes yet"):
-        BrickModel.of(Setup.of(pressed()))
     with pytest.raises(DesignError, match="objects: is not known to states"):
         result_at(Setup.of(pressed()), result.positions)
     with pytest.raises(DesignError, match="objects: is not known to the simulator yet"):

@@ -143,14 +143,23 @@ def _mooney_rivlin(values: Constants, d1: float, stress: float) -> tuple[str, Co
     return "MOONEY-RIVLIN", [values[0] / stress, values[1] / stress, d1]
 
 
+def _volumetric(d1: float, terms: int) -> Constants:
+    """D1, and higher terms that count for nothing.
+
+    A zero would do in the manual's formula. In the program it changes the answer by what depends on
+    the units, 0.4 % of the displacement of a drawn bar of Yeoh's rubber; these values do not.
+    """
+    return [d1, *[1e8 * d1] * (terms - 1)]
+
+
 def _yeoh(values: Constants, d1: float, stress: float) -> tuple[str, Constants]:
-    return "YEOH", [*(value / stress for value in (*values, 0.0, 0.0)[:3]), d1, 0.0, 0.0]
+    return "YEOH", [*(value / stress for value in (*values, 0.0, 0.0)[:3]), *_volumetric(d1, 3)]
 
 
 def _ogden(values: Constants, d1: float, stress: float) -> tuple[str, Constants]:
     terms = len(values) // 2
     pairs = [value / (stress if index % 2 == 0 else 1.0) for index, value in enumerate(values)]
-    return f"OGDEN, N={terms}", [*pairs, d1, *[0.0] * (terms - 1)]
+    return f"OGDEN, N={terms}", [*pairs, *_volumetric(d1, terms)]
 
 
 _KEYWORDS: Final[dict[str, Callable[[Constants, float, float], tuple[str, Constants]]]] = {
