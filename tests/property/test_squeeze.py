@@ -12,6 +12,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.simulation import Setup
+from voxsoft.simulation.crossed_surfaces import crossed_surfaces
 
 BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
 # So small that one takes a second or two.
@@ -42,6 +43,33 @@ def test_a_random_body_is_squeezed(seed):
     assert_orderly(verdict)
     if seed in SOUND:
         assert verdict.kind == "at half its height"
+
+
+def test_what_snaps_and_what_passes_through_itself_says_so():
+    from squeeze_bodies import judged, squeezed
+
+    # It buckles on its way, and walls end in each other, as both judges of `judged` find.
+    result = vs.simulate(squeezed(7, SMALL))
+    assert result.status == "ok"
+    (snap,) = result.snaps
+    assert 0.5 < snap < 1.0
+    warnings = [str(each) for each in result.warnings]
+    assert any("snapped to another one" in each for each in warnings)
+    assert any("surfaces pass through each other" in each for each in warnings)
+    assert judged(7, SMALL).pairs > 0
+
+
+def test_a_body_that_is_folded_onto_itself_passes_through_itself():
+    from squeeze_bodies import squeezed
+
+    setup = Setup.of(squeezed(3, SMALL))
+    rest = setup.mesh.vertices
+    assert not list(crossed_surfaces(setup.design, setup.mesh, rest))
+    middle = rest[:, 2].mean()
+    over = np.where(rest[:, 2:] > middle, 2 * middle - rest[:, 2:], rest[:, 2:])
+    shifted = np.hstack([rest[:, :2] + 0.002 * (over != rest[:, 2:]), over])
+    (warning,) = crossed_surfaces(setup.design, setup.mesh, shifted)
+    assert "pass through each other near" in str(warning)
 
 
 @pytest.mark.slow

@@ -92,6 +92,8 @@ pub struct PyPath {
     pub stable: bool,
     /// The bytes that the tangent takes, where that is too many.
     pub needed_bytes: u64,
+    /// The load factors at which the body snapped to another equilibrium.
+    pub snaps: Vec<f64>,
     /// Factor, iterations, residual and stability of each converged point.
     pub points: Py<PyArray2<f64>>,
 }

@@ -166,6 +166,7 @@ pub fn equilibrium(
         limit,
         stable,
         needed_bytes,
+        snaps: answer.snaps.clone(),
         points: from_rows(py, &path).unbind(),
     };
     let path = Some(Py::new(py, path)?);

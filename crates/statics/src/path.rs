@@ -64,6 +64,8 @@ pub(crate) struct Path<'a, 'b> {
     pub positions: Vec<Vec3>,
     pub point: Point,
     pub points: Vec<PathPoint>,
+    /// The load factors at which it snapped ([`crate::snap`]).
+    pub snaps: Vec<f64>,
     pub observer: &'a mut Observer<'b>,
     /// Whether the points are only a look ahead, not to be recorded.
     pub looking: bool,
@@ -126,6 +128,7 @@ fn follow(
         positions,
         point: Point::all(0.0),
         points: Vec::new(),
+        snaps: Vec::new(),
         observer,
         looking: false,
     };
@@ -157,6 +160,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
         iterations: 0,
         back_offs: 0,
         path: Vec::new(),
+        snaps: Vec::new(),
         limit: None,
         stable: false,
     }
@@ -194,6 +198,7 @@ impl Path<'_, '_> {
             stable,
             positions: self.positions,
             path: self.points,
+            snaps: self.snaps,
         }
     }
 

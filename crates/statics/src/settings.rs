@@ -134,6 +134,8 @@ pub struct Answer {
     pub back_offs: u32,
     /// All converged points.
     pub path: Vec<PathPoint>,
+    /// The load factors at which the body snapped to another equilibrium, with contact.
+    pub snaps: Vec<f64>,
     /// The largest load factor of a path that turned back, if it did.
     pub limit: Option<f64>,
     /// Whether the equilibrium at `positions` is stable.

@@ -42,6 +42,7 @@ impl Path<'_, '_> {
             positions: self.positions.clone(),
             point,
             points: Vec::new(),
+            snaps: Vec::new(),
             observer: self.observer,
             looking: true,
         };
@@ -64,6 +65,7 @@ impl Path<'_, '_> {
         self.positions = positions;
         self.point = point;
         self.points.extend(points.last().copied());
+        self.snaps.push(point.pressure);
         true
     }
 }

@@ -167,6 +167,8 @@ def sentence(
     match status:
         case Status.AT_REST:
             words = f"equilibrium after {iterations}, {residual}"
+            if path.snaps:
+                words += f"; the body snapped at {100 * path.snaps[0]:.4g} % of the load"
             if path.limit is not None:
                 words += f"; the path has a limit at {limit}"
             if path.stable:

@@ -34,6 +34,10 @@ from voxsoft.units import format_percent, format_quantity
 if TYPE_CHECKING:
     from voxsoft.studio.html import LivePage
 
+#: The part of the loads that an equilibrium with contact may leave without a word. What slips acts
+#: from where it is now once a state is taken, which leaves less than this where it slips little.
+LARGE_RESIDUAL = 1e-3
+
 #: How a trial can end; ``ok`` is the only one whose numbers may be compared.
 Status = Literal["ok", "no-cavity", "disconnected", "diverged", "not-at-rest", "failed"]
 
@@ -108,6 +112,8 @@ class Result(Shown):
         pressure of 5 kPa has its limit at 4 kPa.
     stable
         Whether the equilibrium is stable; None where the solver does not tell.
+    snaps
+        The load factors at which a body with contact snapped to another equilibrium on the way.
     contacts
         What touches what, with how much force; pairs that are apart are left out.
     objects
@@ -140,6 +146,7 @@ class Result(Shown):
     load_factor: float = 1.0
     limit_factor: float | None = None
     stable: bool | None = None
+    snaps: tuple[float, ...] = ()
     contacts: tuple[ContactState, ...] = ()
     objects: Mapping[str, Pose] = field(default_factory=dict)
     contact_field: ContactField | None = field(default=None, repr=False)
@@ -281,6 +288,15 @@ class Result(Shown):
             what = f"is that of {format_percent(self.load_factor)} of the loads"
             hint = "lower the loads to what the body carries"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)
+        if self.snaps:
+            where = format_percent(self.snaps[0])
+            what = f"snapped to another one at {where} of the loads"
+            hint = 'check by motion over time (method = "dynamics") where it ends'
+            found = (Diagnostic("warning", "equilibrium", what, hint), *found)
+        if self.contacts and self.stable is not None and self.residual > LARGE_RESIDUAL:
+            what = f"leaves {format_percent(self.residual)} of the loads without a counterforce"
+            hint = "take smaller voxels, or more friction, and compare"
+            found = (Diagnostic("warning", "equilibrium", what, hint), *found)
         return found
 
     def _lines(self) -> Iterator[str]:
@@ -337,6 +353,7 @@ class Result(Shown):
             "load_factor": self.load_factor,
             "limit_factor": self.limit_factor,
             "stable": self.stable,
+            "snaps": list(self.snaps),
             "steps": self.steps,
             "time": self.time,
             "seconds": self.seconds,

@@ -210,6 +210,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         recording=recording,
         load_factor=1.0 if path is None else path.factor,
         limit_factor=None if path is None else path.limit,
+        snaps=() if path is None else tuple(path.snaps),
         stable=None if path is None else path.stable,
         contacts=() if touching is None else touching.contacts(answer.contacts),
         objects={} if touching is None else touching.poses(answer.objects),

@@ -19,6 +19,7 @@ from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.collapse import collapsed_voxels
+from voxsoft.simulation.crossed_surfaces import crossed_surfaces
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
@@ -48,6 +49,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     doubtful_surfaces,
     doubtful_thickness,
     overlap_warnings,
+    crossed_surfaces,
     separations,
 )
 FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)

@@ -1,0 +1,106 @@
+"""Surfaces that contact should keep apart and that pass through each other."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.design import Design
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.diagnostic import Diagnostic, near
+from voxsoft.simulation.places import voxel_size
+from voxsoft.simulation.touching import Touching, keeps_apart
+
+#: Faces of one body nearer than this on the unloaded body, in voxels, are a crease, which follows
+#: voxels that are crushed: contact does not look at neighbors.
+CREASE: Final = 1.5
+#: How far two faces may be in each other, in voxels. Contact keeps points out of faces; where edges
+#: of surfaces that do not fit each other lie crosswise they cut each other by some hundredths.
+GRAZING: Final = 0.05
+
+Floats = NDArray[np.float64]
+
+
+def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagnostic]:
+    """Find where bodies pass through themselves or each other in spite of contact.
+
+    Surfaces are judged as they touch, face by face with exact predicates: an edge may pierce a
+    face without any vertex that is deep inside.
+
+    Parameters
+    ----------
+    design, mesh
+        The body.
+    positions
+        Its vertices in m, (n, 3).
+
+    Yields
+    ------
+    Diagnostic
+        One, at the deepest place.
+    """
+    if not keeps_apart(design) or not np.isfinite(positions).all():
+        return
+    touching = _touching(design, mesh)
+    now, triangles, body_of = _faces(touching, positions)
+    none = np.zeros((0, 4), dtype=np.int32)
+    pairs, _, _ = _core.penetration(now, now, none, none[:, :3], triangles)
+    if not len(pairs):
+        return
+    size = voxel_size(mesh)
+    rest, _, _ = _faces(touching, mesh.vertices)
+    first, second = np.moveaxis(triangles[pairs.astype(np.int64)], 1, 0)
+    middles = rest[first].mean(axis=1), rest[second].mean(axis=1)
+    apart = np.linalg.norm(middles[1] - middles[0], axis=1) > CREASE * size
+    apart |= body_of[first[:, 0]] != body_of[second[:, 0]]
+    depths = np.minimum(_depths(now[first], now[second]), _depths(now[second], now[first]))
+    wrong = np.flatnonzero(apart & (depths > GRAZING * size))
+    if len(wrong):
+        at_x, at_y, at_z = middles[0][wrong[np.argmax(depths[wrong])]].tolist()
+        place = (at_x, at_y, at_z)
+        what = f"surfaces pass through each other {near(place)}, which contact has not kept apart"
+        hint = "lower the load, or take smaller voxels"
+        yield Diagnostic("warning", "contact", what, hint, place)
+
+
+def _depths(faces: Floats, others: Floats) -> Floats:
+    """How far each face has to move along the normal of the other to be on one side of it."""
+    normals = np.cross(others[:, 1] - others[:, 0], others[:, 2] - others[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    heights = np.einsum("pcx,px->pc", faces - others[:, :1], normals)
+    depths: Floats = np.minimum(heights.max(axis=1), -heights.min(axis=1))
+    return depths
+
+
+def _faces(
+    touching: Touching, positions: Floats
+) -> tuple[Floats, NDArray[np.int32], NDArray[np.int64]]:
+    """The points of all surfaces of bodies in m, their triangles, and the body of each point."""
+    points, triangles, body_of, first = list[Floats](), [], [], 0
+    for index, (body, skin) in enumerate(zip(touching.mesh.each_body, touching.skins, strict=True)):
+        own = positions[body.vertices]
+        points.append(own if skin is None else skin.at(own))
+        faces = body.mesh.triangles if skin is None else skin.triangles
+        triangles.append(faces.astype(np.int32) + np.int32(first))
+        body_of.append(np.full(len(points[-1]), index))
+        first += len(points[-1])
+    return np.concatenate(points), np.concatenate(triangles), np.concatenate(body_of)
+
+
+#: Frames of one run are judged one after the other.
+_latest: list[tuple[weakref.ReferenceType[Design], weakref.ReferenceType[Mesh], Touching]] = []
+
+
+def _touching(design: Design, mesh: Mesh) -> Touching:
+    """Who touches in a design, with the skins that were made for it before."""
+    for known_design, known_mesh, found in _latest:
+        if known_design() is design and known_mesh() is mesh:
+            return found
+    made = Touching(design, mesh)
+    _latest[:] = [(weakref.ref(design), weakref.ref(mesh), made)]
+    return made
