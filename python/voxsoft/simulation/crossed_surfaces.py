@@ -20,7 +20,7 @@ from voxsoft.simulation.touching import Touching, keeps_apart
 #: voxels that are crushed: contact does not look at neighbors.
 CREASE: Final = 1.5
 #: How far two faces may be in each other, in voxels. Contact keeps points out of faces; where edges
-#: of surfaces that do not fit each other lie crosswise they cut each other by some hundredths.
+#: of surfaces that do not fit each other lie crosswize they cut each other by some hundredths.
 GRAZING: Final = 0.05
 
 Floats = NDArray[np.float64]
