@@ -152,7 +152,7 @@ def main() -> None:
     changes = [word for word in sys.argv[1:] if "=" in word]
     words = [word for word in sys.argv[1:] if not word.startswith("--") and "=" not in word]
     folder, split = Path(words[0]), int(words[1]) if len(words) > 1 else 1
-    design = vs.load(EXAMPLE, assignments=changes)
+    design = vs.load(EXAMPLE, assignments=["pressure=80 kPa", *changes])
     touching = "--without" not in sys.argv
     model, deck = problem_of(design if touching else design.replace(contact=None), split)
     job = f"pneunet-{split}-{'contact' if touching else 'without'}"
