@@ -39,9 +39,8 @@ def _on_play(command: commands.Play | commands.Step, stage: Stage, tab: Tab) -> 
 
 @execute.register
 def _on_pause(command: commands.Pause, stage: Stage, tab: Tab) -> None:
-    reported = [] if stage.playback.player is None else stage.playback.do(command)
-    stage.cancel_search()
-    stage.publish(reported)
+    if not stage.cancel_search() and stage.playback.player is not None:
+        stage.publish(stage.playback.do(command))
     stage.painted()
 
 

@@ -184,11 +184,13 @@ class Stage:
             self._search = None
             self.halt(sentence)
 
-    def cancel_search(self) -> None:
-        """Give up the search at the user's request, and say so."""
-        if self._search is not None:
-            self.stop_search()
-            self.playback.say("Canceled: the body is where it was")
+    def cancel_search(self) -> bool:
+        """Give up the search at the user's request, and say so; whether one went on."""
+        if self._search is None:
+            return False
+        self.stop_search()
+        self.halt("Canceled: the body is where it was")
+        return True
 
     def measure(self) -> None:
         """Tell the numbers of the equilibrium that is shown, once they are known."""
