@@ -246,5 +246,5 @@ def test_two_bodies_are_pressed_together_and_the_card_says_so(stack, open_tab, s
     tab.find("view-more").click()
     tab.page.get_by_label("Contact forces").uncheck()
     tab.until("document.querySelector('[data-testid=force-legend]') === null")
-    assert label.count() == 0
+    label.wait_for(state="detached")
     assert tab.errors == []
