@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Iterator
 from typing import Final
 
@@ -93,14 +92,14 @@ def _faces(
 
 
 #: Frames of one run are judged one after the other.
-_latest: list[tuple[weakref.ReferenceType[Design], weakref.ReferenceType[Mesh], Touching]] = []
+_latest: list[Touching] = []
 
 
 def _touching(design: Design, mesh: Mesh) -> Touching:
     """Who touches in a design, with the skins that were made for it before."""
-    for known_design, known_mesh, found in _latest:
-        if known_design() is design and known_mesh() is mesh:
+    for found in _latest:
+        if found.design is design and found.mesh is mesh:
             return found
     made = Touching(design, mesh)
-    _latest[:] = [(weakref.ref(design), weakref.ref(mesh), made)]
+    _latest[:] = [made]
     return made
