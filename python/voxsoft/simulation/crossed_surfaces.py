@@ -13,7 +13,7 @@ from voxsoft.design import Design
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.places import voxel_size
-from voxsoft.simulation.touching import Touching, keeps_apart
+from voxsoft.simulation.touching import Touching, has_contact
 
 #: Faces of one body nearer than this on the unloaded body, in voxels, are a crease, which follows
 #: voxels that are crushed: contact does not look at neighbors.
@@ -43,9 +43,12 @@ def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
     Diagnostic
         One, at the deepest place.
     """
-    if not keeps_apart(design) or not np.isfinite(positions).all():
+    if not has_contact(design) or not np.isfinite(positions).all():
         return
     touching = _touching(design, mesh)
+    count = len(design.body_names)
+    if np.isnan(touching.friction[:count, :count]).all():
+        return
     now, triangles, body_of = _faces(touching, positions)
     none = np.zeros((0, 4), dtype=np.int32)
     pairs, _, _ = _core.penetration(now, now, none, none[:, :3], triangles)
@@ -56,7 +59,10 @@ def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
     first, second = np.moveaxis(triangles[pairs.astype(np.int64)], 1, 0)
     middles = rest[first].mean(axis=1), rest[second].mean(axis=1)
     apart = np.linalg.norm(middles[1] - middles[0], axis=1) > CREASE * size
-    apart |= body_of[first[:, 0]] != body_of[second[:, 0]]
+    bodies = body_of[first[:, 0]], body_of[second[:, 0]]
+    apart |= bodies[0] != bodies[1]
+    # Some pairs are let through each other, or are bonded.
+    apart &= ~np.isnan(touching.friction[bodies])
     depths = np.minimum(_depths(now[first], now[second]), _depths(now[second], now[first]))
     wrong = np.flatnonzero(apart & (depths > GRAZING * size))
     if len(wrong):
