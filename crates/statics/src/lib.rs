@@ -54,6 +54,7 @@ mod sensitivity;
 mod settings;
 mod settle;
 mod snap;
+mod step_length;
 mod system;
 mod transient;
 mod volume;

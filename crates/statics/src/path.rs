@@ -10,6 +10,7 @@ use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
+use crate::step_length::StepLength;
 use crate::system::{FactorError, Means, System};
 use crate::volume;
 
@@ -255,7 +256,7 @@ impl Path<'_, '_> {
 
     /// Load control. From a given start the full load is tried first.
     fn follow_load(&mut self, settings: &Settings, warm: bool, loose: Option<&Loose>) -> Ending {
-        let step = if warm {
+        let first = if warm {
             1.0
         } else {
             settings.first_step.clamp(settings.least_step, 1.0)
@@ -271,12 +272,13 @@ impl Path<'_, '_> {
         } else {
             EASY
         };
-        let mut step = step.min(longest);
+        let mut length = StepLength::new(first, longest);
         let mut cuts = 0;
         let mut last = f64::INFINITY;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let now = self.point.pressure;
+            let step = length.get();
             let next = if now + LAST * step < 1.0 {
                 now + step
             } else {
@@ -306,9 +308,7 @@ impl Path<'_, '_> {
                                 None => Ending::new(Status::AtRest, None, 1.0),
                             };
                         }
-                        if found.iterations <= easy {
-                            step = (2.0 * step).min(longest);
-                        }
+                        length.succeeded(found.iterations <= easy);
                         continue;
                     }
                     // A long step may come upon a branch that the path does not lead to.
@@ -317,7 +317,7 @@ impl Path<'_, '_> {
                 }
                 Err(Failure::Turned(turn)) => {
                     contact.inspect(|contact| contact.go_back());
-                    step = (step * GOOD_TURN / turn).max(settings.least_step);
+                    length.set((step * GOOD_TURN / turn).max(settings.least_step));
                     continue;
                 }
                 Err(failure) => failure,
@@ -331,13 +331,14 @@ impl Path<'_, '_> {
                 self.positions.clone_from(&cold);
                 contact.inspect(|contact| contact.start(&cold));
             }
-            step = (next - now) / 4.0;
-            if step < settings.least_step {
+            length.failed(next - now);
+            if length.get() < settings.least_step {
                 if let Some(contact) = contact
                     && !contact.is_recorded()
                     && self.snap(contact, Point::all((now + SNAP).min(1.0)), settings)
                 {
-                    (step, last) = (SNAP, f64::INFINITY);
+                    length.set(SNAP);
+                    last = f64::INFINITY;
                     if self.point.pressure < 1.0 {
                         continue;
                     }

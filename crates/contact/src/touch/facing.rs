@@ -1,9 +1,10 @@
 //! What a sample is in front of.
 
-use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
+use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
 use super::Touch;
 use super::gap::{Closest, closest, normal, unit};
+use super::listing;
 use super::state::{Facing, State};
 
 /// How far a sample may be beside an edge and still count as flush with it, in voxels.
@@ -41,10 +42,31 @@ impl Touch {
         let normal = if found.distance <= 1e-9 * self.description.voxel {
             outward
         } else {
-            let sign = 1.0f64.copysign(dot(found.away, outward));
+            let behind =
+                dot(found.away, outward) < 0.0 && self.went_through(state, index, triangle, &found);
+            let sign = if behind { -1.0 } else { 1.0 };
             scale(sign / found.distance, found.away)
         };
         Some(Facing::Edge(triangle, found.weights, normal))
+    }
+
+    /// Whether a sample that looks to be behind an edge or a corner has gone through it since the accepted state.
+    ///
+    /// Inside of the body only an inner edge is the closest point of its faces. Between the faces of an inner edge of the
+    /// opening angle θ the sample was at most θ/2 from its normal, and behind it is at most (π − θ)/2 from the other way:
+    /// so it has turned around the edge by a right angle or more. What has turned by less only lies beside an edge
+    /// whose normal has turned.
+    fn went_through(&self, state: &State, index: usize, triangle: u32, found: &Closest) -> bool {
+        let points = &state.accepted_points;
+        let mut before = state.accepted_samples[index];
+        for (weight, corner) in found.weights.iter().zip(self.corners(triangle, points)) {
+            axpy(&mut before, -weight, corner);
+        }
+        let was_behind = || {
+            let outward = self.normal_beside(triangle, found.weights, points);
+            dot(before, outward) < 0.0 && norm(before) <= listing::DEPTH * self.description.voxel
+        };
+        dot(found.away, before) <= 0.0 || was_behind()
     }
 
     /// A triangle at the edge or corner of another that comes closer to a point than that does.
@@ -123,6 +145,7 @@ impl Touch {
 mod tests {
     use super::*;
     use crate::touch::{Carried, Description, Surface, listing};
+    use voxsoft_solid::vector::add;
 
     /// A prism of the height 1 over the L of the lengths 2 and the width 1, its inner edge at (1, 1).
     fn angle() -> (Touch, Vec<Vec3>) {
@@ -175,5 +198,29 @@ mod tests {
         assert!(!front(wall, [1.2, 0.7, 0.5]));
         // Beyond an outer edge, along the wall and a little below its plane.
         assert!(front(wall, [3.0, 0.7, 0.5]));
+    }
+
+    #[test]
+    fn what_lies_beside_an_inner_edge_has_not_gone_through_it() {
+        let (touch, positions) = angle();
+        let mut state = touch.read().clone();
+        state.accepted_points = touch.points_at(&positions);
+        // The inner edge is that of the points 3 and 9, at (1, 1); its normal is along x + y.
+        let (triangle, weights) = (4, [0.0, 0.5, 0.5]);
+        let mut through = |before: Vec3, away: Vec3| {
+            state.accepted_samples[0] = add([1.0, 1.0, 0.5], before);
+            let distance = norm(away);
+            let found = Closest {
+                weights,
+                away,
+                distance,
+            };
+            touch.went_through(&state, 0, triangle, &found)
+        };
+        assert!(through([0.3, 0.2, 0.0], [-0.1, -0.1, 0.0]));
+        // Turned with the body by a little, at right angles to the normal.
+        assert!(!through([0.5, -0.5, 0.0], [0.5, -0.51, 0.0]));
+        // Little behind it already, within what an overlap at rest may be.
+        assert!(through([-0.1, -0.1, 0.0], [-0.1, -0.11, 0.0]));
     }
 }
