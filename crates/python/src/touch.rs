@@ -269,6 +269,10 @@ pub struct PyObjectPose {
 pub struct PyTouchHistory {
     pub contacts: Vec<Vec<Py<PyContact>>>,
     pub objects: Vec<Vec<Py<PyObjectPose>>>,
+    pub elastic: Vec<f64>,
+    pub kinetic: Vec<f64>,
+    pub loads: Vec<f64>,
+    pub momentum: Vec<[f64; 3]>,
 }
 
 /// Contact of a problem of Python, and where its objects begin among the vertices.

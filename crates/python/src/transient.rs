@@ -4,8 +4,8 @@ use std::sync::{Arc, Mutex};
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 use voxsoft_contact::touch::PairReport;
-use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Damping, Progress, State};
+use voxsoft_solid::vector::{Vec3, axpy, dot};
+use voxsoft_solid::{Damping, Problem, Progress, State, elastic};
 use voxsoft_statics::Transient;
 use voxsoft_xpbd::Answer;
 
@@ -65,6 +65,7 @@ pub fn transient(
                     Vec::new()
                 });
                 seen.frames.push(now.positions[first..].to_vec());
+                seen.motion.push(Motion::of(&inner, now));
             }
             watch.see(now, cancel)
         };
@@ -94,6 +95,37 @@ struct Seen {
     pairs: Vec<Vec<PairReport>>,
     /// The vertices of all objects.
     frames: Vec<Vec<Vec3>>,
+    motion: Vec<Motion>,
+}
+
+/// Energies in J and the momentum in kg m/s, of all that moves.
+struct Motion {
+    /// Without that of multipliers of contact.
+    elastic: f64,
+    kinetic: f64,
+    /// The potential of the loads as they are at that time.
+    loads: f64,
+    momentum: Vec3,
+}
+
+impl Motion {
+    fn of(problem: &Problem, now: &Progress<'_>) -> Self {
+        let stored = elastic::energy(problem.body(), now.positions);
+        let touching = problem
+            .contact()
+            .map_or(0.0, |contact| contact.energy(now.positions));
+        let (mut kinetic, mut momentum) = (0.0, [0.0; 3]);
+        for (v, mass) in now.velocities.iter().zip(problem.body().masses()) {
+            kinetic += 0.5 * mass * dot(*v, *v);
+            axpy(&mut momentum, *mass, *v);
+        }
+        Self {
+            elastic: stored - touching,
+            kinetic,
+            loads: problem.load_potential(now.positions, &|load| load.history.at(now.time)),
+            momentum,
+        }
+    }
 }
 
 impl Seen {
@@ -116,6 +148,10 @@ impl Seen {
         let history = PyTouchHistory {
             contacts: contacts.collect::<PyResult<_>>()?,
             objects: objects.collect::<PyResult<_>>()?,
+            elastic: self.motion.iter().map(|now| now.elastic).collect(),
+            kinetic: self.motion.iter().map(|now| now.kinetic).collect(),
+            loads: self.motion.iter().map(|now| now.loads).collect(),
+            momentum: self.motion.iter().map(|now| now.momentum).collect(),
         };
         Ok(Some(Py::new(py, history)?))
     }

@@ -59,6 +59,11 @@ class Recording:
     objects
         Positions in m, (f, 3), and rotations from the first pose, (f, 3, 3), of each object by
         name.
+    elastic_energy, kinetic_energy, load_potential
+        In J, (f,), of all bodies and free objects: without what keeps surfaces apart, and with the
+        loads as they are at that instant. Empty without contact.
+    momentum
+        In kg m/s, (f, 3). Empty without contact.
     """
 
     times: NDArray[np.float64]
@@ -68,6 +73,10 @@ class Recording:
     objects: Mapping[str, tuple[NDArray[np.float64], NDArray[np.float64]]] = field(
         default_factory=dict
     )
+    elastic_energy: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    kinetic_energy: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    load_potential: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+    momentum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, repr=False)

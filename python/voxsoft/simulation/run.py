@@ -219,12 +219,13 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
 
 
 def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
-    """What touched, and where the objects were, as keywords of a recording."""
+    """What touched, where objects were, energies and momentum, as keywords of a recording."""
     if setup.touching is None or answer.history is None:
         return {}
-    poses = [setup.touching.poses(found) for found in answer.history.objects]
+    history = answer.history
+    poses = [setup.touching.poses(found) for found in history.objects]
     return {
-        "contacts": tuple(setup.touching.contacts(found) for found in answer.history.contacts),
+        "contacts": tuple(setup.touching.contacts(found) for found in history.contacts),
         "objects": {
             each.name: (
                 np.array([pose[each.name].position for pose in poses]),
@@ -232,6 +233,10 @@ def _touch_history(setup: Setup, answer: _core.Answer) -> dict[str, Any]:
             )
             for each in setup.design.objects
         },
+        "elastic_energy": np.array(history.elastic),
+        "kinetic_energy": np.array(history.kinetic),
+        "load_potential": np.array(history.loads),
+        "momentum": np.array(history.momentum),
     }
 
 
