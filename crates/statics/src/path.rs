@@ -352,6 +352,11 @@ impl Path<'_, '_> {
                     Some(_) => None,
                     None => self.look_ahead(settings),
                 };
+                // What was held at an equilibrium before does not move freely: contact lost its way.
+                let failure = match failure {
+                    Failure::Singular if contact.is_some() && now > 0.0 => Failure::Lost,
+                    other => other,
+                };
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
                 return Ending::new(status, limit, now);
             }
