@@ -2,13 +2,14 @@
 
 ``python benchmarks/membranes.py [--json] [--fine] [--variants]``. A membrane is that of
 `examples/validation/membrane.toml`; nothing is fitted to the data
-(`examples/data/membrane_lift/README.md`). For each height of the disc the pressure is found at which
-the membrane lifts the weight. Pressure as a function of height is what is compared first: the measured
-curves of the membrane without rings fall in between, so that one pressure has several heights.
-Heights at a pressure are read from the predicted curve where it rises.
+(`examples/data/membrane_lift/README.md`). For each height of the disc the pressure is found at
+which the membrane lifts the weight. Pressure over height is what is compared first: some measured
+curves fall in between, so that one pressure has several heights. Heights at a pressure are read
+from the predicted curve where it rises; an infinite error means that no height has that pressure.
 
-At rest the disc lies on a plate, which carries what the membrane does not: it leaves the plate at the
-pressure at which the membrane lifts all of the weight at no height.
+At rest the disc lies on a plate, which carries what the membrane does not. It leaves the plate at
+the pressure at which the membrane lifts all of the weight at no height: the force that a disc at a
+given height needs and that of a plate below it are the same reaction.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ ALL_HEIGHTS = tuple(step * mm for step in (10, 20, 30, 40, 50, 60))
 HEIGHTS = (10 * mm, 30 * mm, 50 * mm)
 WEIGHTS = (14.72, 24.52, 39.24)
 #: How near the force is to the weight before one more secant is the pressure. The force is smooth,
-#: so that this leaves some 0.05² of it: far less than pressures scatter.
+#: so that this leaves 0.3 % of it: less than pressures scatter.
 NEAR = 0.05
 
 
@@ -154,7 +155,7 @@ def curve(
     membrane: Membrane, variant: Variant, real: dict[tuple[str, float, float], float]
 ) -> dict[tuple[float, float], float]:
     """The pressure in Pa by weight in N and height in m, where something was measured."""
-    found = {}
+    found: dict[tuple[float, float], float] = {}
     for height in variant.heights:
         lifted = Lifted(membrane, variant, height)
         near = None
@@ -168,9 +169,7 @@ def curve(
     return found
 
 
-def _below(
-    found: dict[tuple[float, float], float], weight: float, height: float
-) -> float | None:
+def _below(found: dict[tuple[float, float], float], weight: float, height: float) -> float | None:
     """The pressure for a weight at the last height below one, if there is one."""
     at = [below for w, below in found if w == weight and below < height]
     return found[weight, max(at)] if at and np.isfinite(found[weight, max(at)]) else None
