@@ -94,13 +94,21 @@ def test_a_pressure_is_found_by_secants(membranes):
     assert np.isnan(lifted.pressure(14.72, 1800.0))
 
 
-def test_heights_are_read_where_the_pressure_rises(membranes):
+@pytest.mark.parametrize(
+    ("measured", "off"),
+    [
+        # 1500 Pa are half-way between 10 and 30 mm, twice the measured 10 mm. 2500 Pa are above the
+        # whole curve: 50 mm or more in place of 30.
+        ((1500.0, 2500.0, 2600.0), [1.0, 2.0 / 3.0]),
+        # 900 Pa are below it: less than 10 mm in place of 30.
+        ((800.0, 900.0, 2600.0), [0.0, 2.0 / 3.0]),
+    ],
+)
+def test_heights_are_read_where_the_pressure_rises(membranes, measured, off):
     heights = (10 * mm, 30 * mm, 50 * mm)
-    real = dict(zip((("plain", 1.0, each) for each in heights), (1500, 2500, 2600), strict=True))
+    real = dict(zip((("plain", 1.0, each) for each in heights), measured, strict=True))
     found = dict(zip(((1.0, each) for each in heights), (1000.0, 2000.0, 2400.0), strict=True))
-    # 1500 Pa are half-way between 10 and 30 mm, twice the measured 10 mm. 2500 Pa are above the
-    # whole curve: 50 mm or more in place of 30.
-    assert membranes.heights_off(found, real, "plain") == pytest.approx([1.0, 2.0 / 3.0])
+    assert membranes.heights_off(found, real, "plain") == pytest.approx(off)
 
 
 def test_rings_lie_where_they_are_said_to():
