@@ -111,7 +111,7 @@ def test_heights_are_read_where_the_pressure_rises(membranes, measured, off):
     assert membranes.heights_off(found, real, "plain") == pytest.approx(off)
 
 
-def test_rings_lie_where_they_are_said_to():
+def test_rings_lie_at_their_radii():
     setup = vs.simulation.Setup.of(vs.load(ROOT / "examples/validation/membrane.toml"))
     for layer, middle in zip(setup.layers, (49 * mm, 62 * mm), strict=True):
         radius = np.hypot(*setup.mesh.vertices[np.unique(layer.bonded), :2].T)
