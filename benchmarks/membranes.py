@@ -5,7 +5,7 @@
 (`examples/data/membrane_lift/README.md`). For each height of the disc the pressure is found at
 which the membrane lifts the weight. Pressure over height is what is compared first: some measured
 curves fall in between, so that one pressure has several heights. Heights at a pressure are read
-from the predicted curve where it rises. Beyond its ends an error is a least one.
+from the predicted curve where it rises. Beyond its ends their errors are lower bounds.
 
 At rest the disc lies on a plate, which carries what the membrane does not. It leaves the plate at
 the pressure at which the membrane lifts all of the weight at no height: the force that a disc at a
