@@ -2,10 +2,10 @@
 
 ``python benchmarks/pneunet_contact.py [--json] [--fine]``. `examples/pneunet_contact.toml` under
 80 kPa with the default settings, with and without contact in turn (three times each
-with `--fine`). Each quarter of the pressure is solved by itself too, and the surface looked at by
-the exact test of `voxsoft.simulation.find_penetration`, and by ipctk where it is installed. The tip
-is held against CalculiX with contact (`tests/data/contact/pneunet.csv`, made by
-`benchmarks/make_pneunet_reference.py`) where that file is there.
+with `--fine`). The surface that touches is looked at by the exact test and by ipctk
+(`crossing_faces.py`) at every point of the load path. The tip is held against CalculiX with
+contact (`tests/data/contact/pneunet.csv`, made by `benchmarks/make_pneunet_reference.py`) where
+that file is there.
 
 A path that ends early says which part of the load was reached; what it reached is looked at too.
 """
@@ -14,14 +14,14 @@ from __future__ import annotations
 
 import csv
 import statistics
-from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
+from crossing_faces import Faces
 from measure import Report
 
 import voxsoft as vs
-from voxsoft.simulation import Setup, find_penetration, simulate
+from voxsoft.simulation import Setup, simulate
 from voxsoft.units import kPa
 
 ROOT = Path(__file__).parents[1]
@@ -29,30 +29,26 @@ EXAMPLE = ROOT / "examples" / "pneunet_contact.toml"
 REFERENCE = ROOT / "tests" / "data" / "contact" / "pneunet.csv"
 #: The pressure of the tutorial, kPa.
 FULL = 80.0
-#: Parts of the pressure whose surfaces are looked at.
+#: Parts of the pressure at which the tip is reported.
 PARTS = (0.25, 0.5, 0.75, 1.0)
 
 
-def crossing_faces(result: vs.Result) -> int | None:
-    """Whether ipctk finds faces that intersect, 0 or 1; None where it is not installed."""
-    if find_spec("ipctk") is None:
-        return None
-    import ipctk
-
-    used, faces = np.unique(result.mesh.triangles, return_inverse=True)
-    faces = faces.reshape(-1, 3)
-    mesh = ipctk.CollisionMesh(result.mesh.vertices[used], ipctk.edges(faces), faces)
-    return int(ipctk.has_intersections(mesh, result.positions[used]))
-
-
-def look_at(report: Report, name: str, result: vs.Result) -> None:
-    """Add how the surface of a result passes through itself."""
-    found = find_penetration(result.mesh, result.positions)
-    report.add(f"{name}: intersecting faces, exact", len(found.pairs), "")
-    report.add(f"{name}: depth", found.depth / result.mesh.voxel_size, "voxels")
-    crossing = crossing_faces(result)
-    if crossing is not None:
-        report.add(f"{name}: intersections, ipctk", crossing, "")
+def look_at_path(report: Report, setup: Setup, result: vs.Result) -> None:
+    """Add what passes through what at any point of the load path."""
+    faces = Faces(setup)
+    states = [*zip(result.recording.frames, result.recording.times, strict=True)]
+    states.append((result.positions, result.load_factor))
+    pairs, folds, deepest, by_ipctk = 0, 0, 0.0, 0
+    for positions, factor in states:
+        points = faces.at(positions, factor)
+        met, _, folded, deep = faces.crossings(points)
+        pairs, folds, deepest = max(pairs, met), max(folds, folded), max(deepest, deep)
+        by_ipctk += faces.crosses_by_ipctk(points)
+    report.add("points of the path", len(states), "")
+    report.add("intersecting faces at any of them, exact", pairs, "")
+    report.add("folds", folds, "")
+    report.add("depth", deepest / setup.design.voxel_size, "voxels")
+    report.add("points with intersections, ipctk", by_ipctk, "")
 
 
 def reference(pressure: float) -> dict[str, float] | None:
@@ -78,7 +74,7 @@ def main() -> None:
     last: dict[str, vs.Result] = {}
     for _ in range(3 if report.options["fine"] else 1):
         for name, setup in (("contact", touching), ("without contact", apart)):
-            last[name] = simulate(setup)
+            last[name] = simulate(setup, frames=True)
             seconds[name].append(last[name].seconds)
     failed = 0
     for name, result in last.items():
@@ -87,22 +83,19 @@ def main() -> None:
         report.add(f"{name}: iterations", result.steps, "")
         ratio = statistics.median(seconds[name]) / statistics.median(seconds["without contact"])
         report.add(f"{name}: time", statistics.median(seconds[name]), "s", ratio)
-    report.add(
-        "contact: force between walls", sum(c.pressed for c in last["contact"].contacts), "N"
-    )
+    result = last["contact"]
+    report.add("contact: force between walls", sum(c.pressed for c in result.contacts), "N")
+    look_at_path(report, touching, result)
+    times = result.recording.times
     for part in PARTS:
-        design = vs.load(EXAMPLE, pressure=part * FULL * kPa)
-        result = last["contact"] if part == 1.0 else simulate(design)
-        reached = part * FULL * result.load_factor
-        failed += result.status != "ok"
-        name = f"{part * FULL:g} kPa"
-        report.add(f"{name}: {result.status}, load reached", 100 * result.load_factor, "%")
-        look_at(report, name, result)
-        expected = reference(reached)
-        for axis in (0, 2):
-            moved = 1e3 * float(result.probes["tip"][axis])
-            title = f"{name}: tip along {'xyz'[axis]}"
-            known = expected[f"tip_u{'xyz'[axis]}_mm"] if expected else None
+        if part > result.load_factor + 1e-9:
+            continue
+        expected = reference(part * FULL)
+        for axis, name in ((0, "x"), (2, "z")):
+            way = [probe[axis] for probe in result.recording.probes["tip"]]
+            moved = 1e3 * float(np.interp(part, times, way))
+            known = expected[f"tip_u{name}_mm"] if expected else None
+            title = f"{part * FULL:g} kPa: tip along {name}"
             report.add(title, moved, "mm", None if known is None else moved / known)
     report.add("solutions that ended early", failed, "")
     report.show()

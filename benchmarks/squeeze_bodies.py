@@ -1,4 +1,4 @@
-"""The bodies of `squeeze.py`, and its judges: random shapes of rubber between two rigid plates.
+"""The bodies of `squeeze.py`, and their verdicts: random shapes of rubber between rigid plates.
 
 A body is the first shape that the grammar of the property tests draws from a seed and that makes
 one component of so many voxels without hinges (where voxels share an edge only, the unloaded
@@ -16,14 +16,12 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from crossing_faces import Faces
 
 import voxsoft as vs
-from voxsoft import _core
 from voxsoft.design import Contact, Object
 from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import ShapeError, VoxSoftError
@@ -42,13 +40,7 @@ FRICTION = 0.5
 LEFT = 0.5
 #: Between the unloaded body and the plates, in voxels.
 AWAY = 0.01
-#: Faces nearer than this on the unloaded body, in voxels, are a fold of the surface or the two
-#: sides of a crease, which follow voxels that are crushed: contact does not look at neighbors.
-FOLD = 1.5
 RUBBER = vs.NeoHookean(young=100 * kPa, poisson=0.45)
-
-Floats = NDArray[np.float64]
-Triangles = NDArray[np.int32]
 
 
 def shape_of(seed: int, voxels: tuple[int, int] = VOXELS) -> tuple[Shape, float]:
@@ -107,91 +99,6 @@ def squeezed(seed: int, voxels: tuple[int, int] = VOXELS) -> vs.Design:
 
 
 @dataclass(frozen=True)
-class Faces:
-    """The faces that must not pass through each other: the body's skin, then those of the plates.
-
-    Attributes
-    ----------
-    setup
-        The design made ready.
-    """
-
-    setup: Setup
-
-    @cached_property
-    def skin(self) -> _core.Skin:
-        """The surface of the body."""
-        touching = self.setup.touching
-        assert touching is not None  # the design has contact
-        (skin,) = touching.skins
-        assert skin is not None  # the body touches with it
-        return skin
-
-    @cached_property
-    def triangles(self) -> Triangles:
-        """Of all points, (t, 3)."""
-        found, first = [self.skin.triangles], len(self.skin.points)
-        for surface in self._plates:
-            found.append(surface.triangles + np.uint32(first))
-            first += len(surface.vertices)
-        return np.concatenate(found).astype(np.int32)
-
-    @cached_property
-    def _plates(self) -> tuple[Any, ...]:
-        assert self.setup.touching is not None
-        return self.setup.touching.surfaces
-
-    def at(self, positions: Floats, factor: float) -> Floats:
-        """All points [m], (p, 3), where the upper plate has gone this part of its way."""
-        points = [self.skin.at(positions)]
-        for each, surface in zip(self.setup.design.objects, self._plates, strict=True):
-            way = np.zeros(3) if each.way is None else factor * np.array(each.way.displacement)
-            points.append(surface.vertices + way)
-        return np.concatenate(points)
-
-    def crossings(self, points: Floats) -> tuple[int, int, int, float]:
-        """Pairs of faces that pass through each other, by exact predicates.
-
-        Returns
-        -------
-        met, plates, folded, depth
-            How many of them contact must keep apart, how many of those are with a plate, how many
-            are folds, and how deep any are at least [m].
-        """
-        none = np.zeros((0, 4), dtype=np.int32)
-        pairs, found, _ = _core.penetration(points, points, none, none[:, :3], self.triangles)
-        deep = max((depth for depth, *_ in found), default=0.0)
-        if not len(pairs):
-            return 0, 0, 0, deep
-        plate = (self.triangles[pairs] >= len(self.skin.points)).any(axis=(1, 2))
-        met = int((plate | self._are_far(pairs)).sum())
-        return met, int(plate.sum()), len(pairs) - met, deep
-
-    def _are_far(self, pairs: NDArray[np.uint32]) -> NDArray[np.bool_]:
-        """Which pairs of faces are far apart on the unloaded body: no fold, (p,)."""
-        first, second = np.moveaxis(self._rest[self.triangles[pairs]].mean(axis=2), 1, 0)
-        distances = np.linalg.norm(second - first, axis=1)
-        far: NDArray[np.bool_] = distances > FOLD * self.setup.design.voxel_size
-        return far
-
-    @cached_property
-    def _rest(self) -> Floats:
-        return self.at(self.setup.mesh.vertices, 0.0)
-
-    @cached_property
-    def _outside_mesh(self) -> Any:
-        import ipctk
-
-        return ipctk.CollisionMesh(self._rest, ipctk.edges(self.triangles), self.triangles)
-
-    def crosses_by_ipctk(self, points: Floats) -> bool:
-        """Whether any faces pass through each other, as the toolkit of another group finds."""
-        import ipctk
-
-        return bool(ipctk.has_intersections(self._outside_mesh, points))
-
-
-@dataclass(frozen=True)
 class Verdict:
     """How the squeeze of one body ended.
 
@@ -239,7 +146,7 @@ class Verdict:
 
 
 #: How a squeeze may end, the worst first. Only the last two are no failures. Folded is where faces
-#: pass through each other that are less than :data:`FOLD` apart on the unloaded body.
+#: pass through each other that are less than `crossing_faces.FOLD` voxels apart when unloaded.
 KINDS = (
     "penetrates, called at rest",
     "penetrates, ends early",

@@ -72,6 +72,29 @@ def test_a_body_that_is_folded_onto_itself_passes_through_itself():
     assert "pass through each other near" in str(warning)
 
 
+def test_walls_a_voxel_apart_that_have_passed_through_each_other_are_seen():
+    # A "U" whose slit is one voxel wide, nearer than a crease but far along the surface.
+    size = 0.001
+    block = vs.Box(size=(5 * size, 4 * size, 8 * size), center=(2.5 * size, 2 * size, 4 * size))
+    slit = vs.Box(size=(size, 4 * size, 6 * size), center=(2.5 * size, 2 * size, 5 * size))
+    design = vs.Design(
+        name="slit",
+        voxel_size=size,
+        parts=[vs.Part(shape=block - slit, material=vs.NeoHookean(young=1e5, poisson=0.45))],
+        clamps=[vs.Clamp(region=vs.Region(z=(0, 0)))],
+        loads=[vs.Gravity()],
+        contact={},
+    )
+    mesh = Setup.of(design).mesh
+    x, z = mesh.vertices[:, 0], mesh.vertices[:, 2]
+    # Both walls lean over the slit; at their ends, by 0.7 voxels each.
+    lean = 0.7 * size * (z / (8 * size)) ** 2 * np.where(x < 2.5 * size, 1.0, -1.0)
+    leaned = mesh.vertices + np.stack([lean, 0 * lean, 0 * lean], axis=1)
+    (warning,) = crossed_surfaces(design, mesh, leaned)
+    assert "pass through each other near" in str(warning)
+    assert not list(crossed_surfaces(design, mesh, mesh.vertices + (leaned - mesh.vertices) * 0.6))
+
+
 @pytest.mark.slow
 @pytest.mark.timeout(4 * 3600)
 def test_a_thousand_random_bodies_are_squeezed():
@@ -82,7 +105,8 @@ def test_a_thousand_random_bodies_are_squeezed():
 
 
 def test_both_judges_see_a_body_in_a_plate_and_in_itself():
-    from squeeze_bodies import Faces, squeezed
+    from crossing_faces import Faces
+    from squeeze_bodies import squeezed
 
     setup = Setup.of(squeezed(3, SMALL))
     faces, rest = Faces(setup), setup.mesh.vertices

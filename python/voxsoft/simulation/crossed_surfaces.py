@@ -15,12 +15,15 @@ from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.touching import Touching, has_contact
 
-#: Faces of one body nearer than this on the unloaded body, in voxels, are a crease, which follows
-#: voxels that are crushed: contact does not look at neighbors.
+#: Faces of one body nearer than this along its unloaded surface, in voxels, are a crease, which
+#: follows voxels that are crushed: contact does not look at neighbors.
 CREASE: Final = 1.5
 #: How far two faces may be in each other, in voxels. Contact keeps points out of faces; where edges
 #: of surfaces that do not fit each other lie crosswize they cut each other by some hundredths.
 GRAZING: Final = 0.05
+
+#: Pairs whose ways along the surface are looked for at once: each takes memory for every point.
+_AT_ONCE: Final = 64
 
 Floats = NDArray[np.float64]
 
@@ -55,22 +58,64 @@ def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
     if not len(pairs):
         return
     size = voxel_size(mesh)
-    rest, _, _ = _faces(touching, mesh.vertices)
     first, second = np.moveaxis(triangles[pairs.astype(np.int64)], 1, 0)
-    middles = rest[first].mean(axis=1), rest[second].mean(axis=1)
-    apart = np.linalg.norm(middles[1] - middles[0], axis=1) > CREASE * size
     bodies = body_of[first[:, 0]], body_of[second[:, 0]]
-    apart |= bodies[0] != bodies[1]
-    # Some pairs are let through each other, or are bonded.
-    apart &= ~np.isnan(touching.friction[bodies])
     depths = np.minimum(_depths(now[first], now[second]), _depths(now[second], now[first]))
-    wrong = np.flatnonzero(apart & (depths > GRAZING * size))
+    # Some pairs are let through each other, or are bonded.
+    deep = (depths > GRAZING * size) & ~np.isnan(touching.friction[bodies])
+    pairs, first, depths = pairs[deep], first[deep], depths[deep]
+    if not len(pairs):
+        return
+    rest, _, _ = _faces(touching, mesh.vertices)
+    wrong = np.flatnonzero(are_apart(rest, triangles, pairs, CREASE * size))
     if len(wrong):
-        at_x, at_y, at_z = middles[0][wrong[np.argmax(depths[wrong])]].tolist()
+        place_of = first[wrong[np.argmax(depths[wrong])]]
+        at_x, at_y, at_z = rest[place_of].mean(axis=0).tolist()
         place = (at_x, at_y, at_z)
         what = f"surfaces pass through each other {near(place)}, which contact has not kept apart"
         hint = "lower the load, or take smaller voxels"
         yield Diagnostic("warning", "contact", what, hint, place)
+
+
+def are_apart(
+    points: Floats, triangles: NDArray[np.int32], pairs: NDArray[np.uint32], distance: float
+) -> NDArray[np.bool_]:
+    """Tell which pairs of faces are farther apart than a distance, along the surface.
+
+    Parameters
+    ----------
+    points, triangles
+        The unloaded surface: points in m, (p, 3), and triangles of them, (t, 3).
+    pairs
+        Numbers of triangles, (n, 2).
+    distance
+        In m, along edges from a corner of the one to the nearest corner of the other.
+
+    Returns
+    -------
+    apart
+        (n,); true where no way along the surface joins the two.
+    """
+    from scipy.sparse import csr_array
+    from scipy.sparse.csgraph import dijkstra
+
+    first, second = np.moveaxis(triangles[pairs.astype(np.int64)], 1, 0)
+    # No way along the surface is shorter than the straight one.
+    between = points[second][:, None, :] - points[first][:, :, None]
+    apart: NDArray[np.bool_] = (np.linalg.norm(between, axis=3) > distance).all(axis=(1, 2))
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    lengths = np.linalg.norm(points[edges[:, 1]] - points[edges[:, 0]], axis=1)
+    count = len(points)
+    # A sparse graph takes 0 for no edge.
+    ways = csr_array((np.maximum(lengths, 1e-300), tuple(edges.T)), shape=(count, count))
+    near = np.flatnonzero(~apart)
+    for at in range(0, len(near), _AT_ONCE):
+        some = near[at : at + _AT_ONCE]
+        starts, row = np.unique(first[some], return_inverse=True)
+        reached = dijkstra(ways, directed=False, indices=starts, limit=distance)
+        ends = reached[row.reshape(-1, 3)[:, :, None], second[some][:, None, :]]
+        apart[some] = np.isinf(ends).all(axis=(1, 2))
+    return apart
 
 
 def _depths(faces: Floats, others: Floats) -> Floats:
