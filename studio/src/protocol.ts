@@ -839,8 +839,8 @@ export interface GrabState {
  * Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
  *
  * `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
- * `pace_chosen` is what the user chose, or null. Stored frames run from `first_frame` to
- * `last_frame`.
+ * `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
+ * for this body. Stored frames run from `first_frame` to `last_frame`.
  */
 export interface StatEvent {
   t: "stat";
@@ -853,6 +853,7 @@ export interface StatEvent {
   real_time_factor: number;
   pace: number;
   pace_chosen: number | null;
+  pace_choices: number;
   residual: number | null;
   elastic: number | null;
   kinetic: number | null;

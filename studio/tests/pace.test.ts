@@ -3,6 +3,15 @@ import { nextPace, paceName } from "../src/engine/pace";
 import { PACES, type StatEvent } from "../src/protocol";
 import { apply, showAskedPace, useStudio } from "../src/store/studio";
 
+const stat = (pace: number, choices: number): StatEvent =>
+  ({
+    t: "stat",
+    pace,
+    pace_chosen: pace,
+    pace_choices: choices,
+  }) as Partial<StatEvent> as StatEvent;
+const shown = () => useStudio.getState().stat?.pace_chosen;
+
 describe("the pace of time", () => {
   it("has names that can be read", () => {
     expect(PACES.map(paceName)).toEqual(["1×", "1/2", "1/5", "1/10", "1/50", "1/200"]);
@@ -17,16 +26,25 @@ describe("the pace of time", () => {
   });
 
   it("stays as asked for until it is confirmed, and then follows the engine", () => {
-    const stat = (pace: number): StatEvent =>
-      ({ t: "stat", pace, pace_chosen: pace }) as Partial<StatEvent> as StatEvent;
-    const shown = () => useStudio.getState().stat?.pace_chosen;
-    apply(stat(1 / 50));
+    apply(stat(1 / 50, 1));
     showAskedPace(1 / 10);
     expect(shown()).toBe(1 / 10);
-    apply(stat(1 / 50)); // was on its way when the pace was asked for
+    apply(stat(1 / 50, 1)); // was on its way when the pace was asked for
     expect(shown()).toBe(1 / 10);
-    apply(stat(1 / 10));
-    apply(stat(1 / 2)); // chosen in another tab
+    apply(stat(1 / 10, 2));
+    apply(stat(1 / 2, 3)); // chosen in another tab
     expect(shown()).toBe(1 / 2);
+  });
+
+  it("is not confirmed by the same pace from before", () => {
+    apply(stat(1 / 50, 4));
+    showAskedPace(1 / 10);
+    showAskedPace(1 / 50);
+    apply(stat(1 / 50, 4));
+    apply(stat(1 / 10, 5));
+    expect(shown()).toBe(1 / 50);
+    apply(stat(1 / 50, 6));
+    apply(stat(1, 7));
+    expect(shown()).toBe(1);
   });
 });

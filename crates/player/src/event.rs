@@ -118,6 +118,8 @@ pub struct Stat {
     pub pace: f64,
     /// What was chosen by hand.
     pub pace_chosen: Option<f64>,
+    /// How often one was chosen: tells which choice this is.
+    pub pace_choices: u32,
     /// The residual force without units.
     pub residual: Option<f64>,
     /// Energy in J.

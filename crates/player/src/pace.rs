@@ -32,6 +32,8 @@ pub fn pace_for(seconds: f64) -> f64 {
 pub struct Pace {
     /// What the user chose.
     pub chosen: Option<f64>,
+    /// How often the user chose.
+    pub choices: u32,
     /// The time in which the body comes to rest if nobody touches it, where that is known, in s.
     pub rest_in: Option<f64>,
 }

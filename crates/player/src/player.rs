@@ -198,6 +198,7 @@ impl Player {
             return Err(Refusal::new("pace", "must be above 0 and up to 1", ""));
         }
         self.pace.chosen = factor;
+        self.pace.choices += 1;
         self.speed.restart();
         Ok(())
     }

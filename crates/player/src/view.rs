@@ -30,6 +30,7 @@ impl Player {
             real_time_factor: if moving { self.speed.value() } else { 0.0 },
             pace: self.pace.factor(),
             pace_chosen: self.pace.chosen,
+            pace_choices: self.pace.choices,
             residual: self.numbers.residual,
             elastic: self.numbers.elastic,
             kinetic: self.numbers.kinetic,

@@ -350,8 +350,8 @@ class Stat(Event):
     """Where the simulation stands. Times in s, `step_ms` in ms for one substep, energies in J.
 
     `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
-    `pace_chosen` is what the user chose, or null. Stored frames run from `first_frame` to
-    `last_frame`.
+    `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
+    for this body. Stored frames run from `first_frame` to `last_frame`.
     """
 
     topology: int
@@ -363,6 +363,7 @@ class Stat(Event):
     real_time_factor: float = 0.0
     pace: float = 1.0
     pace_chosen: float | None = None
+    pace_choices: int = 0
     residual: float | None = None
     elastic: float | None = None
     kinetic: float | None = None

@@ -41,6 +41,12 @@ export interface LogLine extends Pick<LogEvent, "level" | "text"> {
   readonly at: number;
 }
 
+/** A pace that was asked for: null is the automatic one; and which of the engine's choices it will be. */
+export interface AskedPace {
+  readonly factor: number | null;
+  readonly choice: number;
+}
+
 export interface Studio {
   link: Link;
   hello: HelloEvent | null;
@@ -49,8 +55,8 @@ export interface Studio {
   designs: DesignFilesEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
-  /** The pace that was asked for and is not confirmed yet: null is the automatic one. */
-  askedPace: number | null | undefined;
+  /** The last pace that was asked for and is not confirmed yet. */
+  askedPace: AskedPace | undefined;
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
@@ -156,16 +162,18 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       set({ designs: event });
       break;
     case "body":
-      set(({ body, moments }) => ({
+      set(({ body, moments, askedPace }) => ({
         body: event,
         picked: null,
+        // Another body starts with the pace that was chosen, and counts anew.
+        askedPace: body?.topology === event.topology ? askedPace : undefined,
         moments: body?.topology === event.topology ? moments : new Map(),
       }));
       break;
     case "stat":
       set(({ askedPace }) => ({
         stat: withPace(event, askedPace),
-        askedPace: event.pace_chosen === askedPace ? undefined : askedPace,
+        askedPace: isOpen(askedPace, event) ? askedPace : undefined,
       }));
       break;
     case "equilibrium":
@@ -248,14 +256,22 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
 }
 
 /** Statistics with the pace that was asked for: those on their way then hold the one before. */
-function withPace(stat: StatEvent, asked: number | null | undefined): StatEvent {
-  if (asked === undefined || asked === stat.pace_chosen) return stat;
-  return { ...stat, pace: asked ?? 1, pace_chosen: asked };
+function withPace(stat: StatEvent, asked: AskedPace | undefined): StatEvent {
+  if (!isOpen(asked, stat) || asked.factor === stat.pace_chosen) return stat;
+  return { ...stat, pace: asked.factor ?? 1, pace_chosen: asked.factor };
+}
+
+/** Whether the engine had not yet come to what was asked for. */
+function isOpen(asked: AskedPace | undefined, stat: StatEvent): asked is AskedPace {
+  return asked !== undefined && stat.pace_choices < asked.choice;
 }
 
 /** Show a pace as chosen at once, until the engine confirms it. */
-export function showAskedPace(asked: number | null): void {
-  useStudio.setState(({ stat }) => ({ stat: stat && withPace(stat, asked), askedPace: asked }));
+export function showAskedPace(factor: number | null): void {
+  useStudio.setState(({ stat, askedPace }) => {
+    const asked = { factor, choice: (askedPace?.choice ?? stat?.pace_choices ?? 0) + 1 };
+    return { stat: stat && withPace(stat, asked), askedPace: asked };
+  });
 }
 
 function savedToast({ what, path }: SavedEvent): Omit<Toast, "id"> {
