@@ -58,7 +58,7 @@ impl Touch {
     /// whose normal has turned.
     fn went_through(&self, state: &State, index: usize, triangle: u32, found: &Closest) -> bool {
         let points = &state.accepted_points;
-        let mut before = state.accepted_samples[index];
+        let mut before = points[index];
         for (weight, corner) in found.weights.iter().zip(self.corners(triangle, points)) {
             axpy(&mut before, -weight, corner);
         }
@@ -208,7 +208,7 @@ mod tests {
         // The inner edge is that of the points 3 and 9, at (1, 1); its normal is along x + y.
         let (triangle, weights) = (4, [0.0, 0.5, 0.5]);
         let mut through = |before: Vec3, away: Vec3| {
-            state.accepted_samples[0] = add([1.0, 1.0, 0.5], before);
+            state.accepted_points[0] = add([1.0, 1.0, 0.5], before);
             let distance = norm(away);
             let found = Closest {
                 weights,

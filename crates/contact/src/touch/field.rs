@@ -7,7 +7,7 @@
 use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
 
 use super::gap::{area, normal, unit};
-use super::{Carried, Meeting, Touch};
+use super::{Carried, Spot, Touch};
 
 /// How far the normal of a triangle may be from the direction that presses it: the cosine of 60 degrees.
 const TOWARD: f64 = 0.5;
@@ -33,16 +33,18 @@ impl Touch {
         let mut pressed = vec![0.0; count];
         let mut direction = vec![[0.0; 3]; count];
         let mut friction = vec![[0.0; 3]; count];
-        self.each_contact(&state, positions, |meeting, pressure, _, _| {
-            let Meeting { sample, normal, .. } = *meeting;
-            let place = (meeting.triangle, meeting.weights);
-            self.each_share(sample, place, |vertex, sign, share| {
+        self.each_contact(&state, positions, |meeting, pressure, _| {
+            self.each_share(meeting.spot(), |vertex, sign, share| {
                 pressed[vertex] += share * pressure;
-                axpy(&mut direction[vertex], sign * share * pressure, normal);
+                axpy(
+                    &mut direction[vertex],
+                    sign * share * pressure,
+                    meeting.normal,
+                );
             });
         });
         self.each_friction(&state, positions, |sample, found| {
-            self.each_share(sample, found.anchor, |vertex, sign, share| {
+            self.each_share(found.spot(sample), |vertex, sign, share| {
                 axpy(&mut friction[vertex], sign * share, found.force);
             });
         });
@@ -54,14 +56,12 @@ impl Touch {
             friction[vertex] = scale(over(area), friction[vertex]);
         }
         let mut gap = vec![f64::INFINITY; count];
-        for (index, sample) in self.samples.iter().enumerate() {
-            if let (true, [vertex], Some(facing)) = (
-                sample.surface < self.bodies,
+        for (index, facing) in state.facing[..points.len()].iter().enumerate() {
+            if let (true, [vertex], Some(meeting)) = (
+                self.samples[index].surface < self.bodies,
                 self.share(index as u32).vertices.as_slice(),
-                state.facing[index],
+                facing.and_then(|facing| self.meeting(index as u32, facing, &points)),
             ) {
-                let point = sample.point.at(positions);
-                let meeting = self.meeting(index as u32, facing, point, &points);
                 gap[*vertex as usize] = meeting.gap;
             }
         }
@@ -73,28 +73,24 @@ impl Touch {
         }
     }
 
-    /// Hands over the vertices of the body that share a force on a sample, which the triangle before it returns: the
+    /// Hands over the vertices of the body that share a force at a spot: the
     /// sign of the force on them, and their share.
-    fn each_share(
-        &self,
-        sample: u32,
-        (triangle, weights): (u32, [f64; 3]),
-        mut take: impl FnMut(usize, f64, f64),
-    ) {
-        let own = self.samples[sample as usize].surface;
-        let other = self.surface_of[triangle as usize];
-        let mut share = |point: u32, sign: f64, part: f64| {
+    fn each_share(&self, spot: Spot, mut take: impl FnMut(usize, f64, f64)) {
+        let sample = &self.samples[spot.sample as usize];
+        let other = self.surface_of[spot.triangle as usize];
+        for (factor, point) in self.relative(spot) {
+            let is_own = sample.ends.contains(&point);
+            let (surface, sign) = if is_own {
+                (sample.surface, 1.0)
+            } else {
+                (other, -1.0)
+            };
+            if surface >= self.bodies {
+                continue;
+            }
             let Carried { vertices, weights } = self.share(point);
             for (vertex, weight) in vertices.iter().zip(weights) {
-                take(*vertex as usize, sign, part * weight);
-            }
-        };
-        if own < self.bodies {
-            share(sample, 1.0, 1.0); // Samples are numbered as their points are.
-        }
-        if other < self.bodies {
-            for (corner, weight) in self.triangles[triangle as usize].into_iter().zip(weights) {
-                share(corner, -1.0, weight);
+                take(*vertex as usize, sign, sign * factor * weight);
             }
         }
     }

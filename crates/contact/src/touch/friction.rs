@@ -3,8 +3,8 @@
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
-use super::Touch;
 use super::state::{Memory, State};
+use super::{Spot, Touch};
 
 /// How friction acts on a sample.
 #[derive(Debug, Clone, Copy)]
@@ -16,26 +16,33 @@ pub(super) struct Friction {
     /// J.
     pub energy: f64,
     pub anchor: (u32, [f64; 3]),
+    /// Where on an edge it acts.
+    pub along: f64,
     pub slips: bool,
 }
 
 impl Touch {
     /// The friction of a sample that was in contact at the last correction and had an anchor: also where it has lost
     /// contact since, or its force would jump.
-    pub(super) fn friction(
-        &self,
-        state: &State,
-        sample: u32,
-        point: Vec3,
-        points: &[Vec3],
-    ) -> Option<Friction> {
+    pub(super) fn friction(&self, state: &State, sample: u32, points: &[Vec3]) -> Option<Friction> {
         let memory = &state.now[sample as usize];
+        let point = self.place(sample, memory.along, points);
         let k = state.stick * self.penalty(sample);
         Friction::new(memory, k, point, |triangle| self.corners(triangle, points))
     }
 }
 
 impl Friction {
+    /// Where it acts on a sample.
+    pub(super) fn spot(&self, sample: u32) -> Spot {
+        Spot {
+            sample,
+            along: self.along,
+            triangle: self.anchor.0,
+            weights: self.anchor.1,
+        }
+    }
+
     /// That of a sample at `point` with a penalty of slip `k` (N/m); `None` without a bound or an anchor.
     pub(super) fn new(
         memory: &Memory,
@@ -75,6 +82,7 @@ impl Friction {
             stiffness,
             energy,
             anchor,
+            along: memory.along,
             slips,
         })
     }
@@ -93,8 +101,7 @@ impl Touch {
         }
         let points = self.points_at(positions);
         for sample in 0..self.samples.len() as u32 {
-            let point = self.samples[sample as usize].point.at(positions);
-            if let Some(friction) = self.friction(state, sample, point, &points) {
+            if let Some(friction) = self.friction(state, sample, &points) {
                 take(sample, friction);
             }
         }

@@ -107,6 +107,49 @@ pub(super) fn barycentric_gradients([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     [sub(c, b), sub(a, c), sub(b, a)].map(|edge| scale(1.0 / square, cross(doubled, edge)))
 }
 
+/// Two lines that cross, as the edges of two surfaces do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Crossing {
+    /// Where they are closest to each other, as parts of the ways between the given points.
+    pub along: [f64; 2],
+    /// The unit vector of the cross product of their directions.
+    pub normal: Vec3,
+    /// From the second to the first one along it, m.
+    pub gap: f64,
+    /// The dual vectors of their directions in the plane of both, 1/m: how `along` changes.
+    pub duals: [Vec3; 2],
+}
+
+/// The least sine of the angle between lines that cross; others are too near to parallel.
+const LEAST_SINE: f64 = 0.05;
+
+/// How two lines through given points cross; `None` for nearly parallel ones.
+///
+/// With the directions `a` and `b`, `c = a × b` and the dual vectors `A = b × c/c²`, `B = c × a/c²`, the vector `r` between the
+/// first points says all: they are closest where `r + s a − t b` is along `c`, at `s = −A·r`, `t = B·r`. When both move, the
+/// normal turns by `∂n = −(n·∂a) A − (n·∂b) B`, as that of a triangle does with the gradients of its coordinates: the formulas
+/// above hold with `−A, A` for the points of the first line and `−B, B` for those of the second.
+pub(super) fn crossing(first: [Vec3; 2], second: [Vec3; 2]) -> Option<Crossing> {
+    let (a, b) = (sub(first[1], first[0]), sub(second[1], second[0]));
+    let c = cross(a, b);
+    let square = dot(c, c);
+    if !(square > LEAST_SINE * LEAST_SINE * dot(a, a) * dot(b, b)) {
+        return None;
+    }
+    let duals = [
+        scale(1.0 / square, cross(b, c)),
+        scale(1.0 / square, cross(c, a)),
+    ];
+    let between = sub(first[0], second[0]);
+    let normal = scale(1.0 / square.sqrt(), c);
+    Some(Crossing {
+        along: [-dot(duals[0], between), dot(duals[1], between)],
+        normal,
+        gap: dot(between, normal),
+        duals,
+    })
+}
+
 /// The affine coordinates of a point's foot in the plane of a triangle.
 pub(super) fn affine(point: Vec3, corners: [Vec3; 3]) -> [f64; 3] {
     let gradients = barycentric_gradients(corners);

@@ -1,6 +1,6 @@
 //! Which triangles a sample may meet on its way.
 
-use voxsoft_solid::vector::{Vec3, dot, sub};
+use voxsoft_solid::vector::{Vec3, dot};
 
 use super::Touch;
 use super::gap::{closest, normal};
@@ -46,13 +46,8 @@ impl Touch {
         let all = 0..self.triangles.len() as u32;
         let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
         let meets = |index: usize| {
-            // A sample stays within the box of a triangle that it is on.
-            let first = self.samples[index].triangles[0] as usize;
-            let ends = self.triangles[first].map(|p| p as usize);
-            let way = ends.map(|p| sub(points[p], accepted[p]));
-            let start = state.accepted_samples[index];
-            let reached = way.map(|way| std::array::from_fn(|axis| start[axis] + way[axis]));
-            let bounds = Bounds::of([start].into_iter().chain(reached));
+            let ends = self.samples[index].ends.map(|p| p as usize);
+            let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
             let mut found = Vec::new();
             tree.meeting(&bounds, |triangle| {
                 if self.may_meet(index, triangle, &normals, state) {
@@ -81,7 +76,11 @@ impl Touch {
             return false;
         }
         let other = self.surface_of[triangle as usize];
-        if self.is_bonded(state, index as u32, other) {
+        if sample
+            .ends
+            .iter()
+            .any(|end| self.is_bonded(state, *end, other))
+        {
             return false;
         }
         let itself = sample.surface == other;
@@ -92,7 +91,16 @@ impl Touch {
                 return false;
             }
         }
+        if sample.is_edge() {
+            return !itself || self.depth_of_edge(sample.ends, triangle).is_some();
+        }
         self.was_in_front(state, index, triangle)
+    }
+
+    /// How deep an edge may be in a triangle of its own surface at an accepted state, in voxels: what both of its ends may.
+    pub(super) fn depth_of_edge(&self, ends: [u32; 2], triangle: u32) -> Option<f64> {
+        let [first, second] = ends.map(|end| self.depth_at_rest(end as usize, triangle));
+        Some(first?.min(second?))
     }
 
     /// Whether a sample was in front of a triangle at the accepted state, or not too deep behind it, so that it may meet it.
@@ -103,7 +111,7 @@ impl Touch {
         } else {
             Some(DEPTH)
         };
-        let start = state.accepted_samples[index];
+        let start = state.accepted_points[index];
         depth.is_some_and(|depth| self.is_in_front(triangle, start, &state.accepted_points, depth))
     }
 

@@ -60,7 +60,7 @@ struct Run {
 impl LiveTouch {
     /// Makes contact ready for a problem with the vertices `rest` (m).
     pub fn new(description: Description, rest: &[Vec3]) -> Result<Self, ProblemError> {
-        let touch = Touch::new(description, rest)?;
+        let touch = Touch::new(description, rest)?.without_edges(rest);
         let live = Self {
             touch,
             run: RwLock::default(),
@@ -91,7 +91,7 @@ impl LiveTouch {
     pub fn depth(&self, positions: &[Vec3]) -> f64 {
         let state = self.touch.read();
         let mut deepest = 0.0f64;
-        self.each_near(&state, positions, |meeting, _| {
+        self.each_near(&state, positions, |meeting| {
             deepest = deepest.max(-meeting.gap);
         });
         deepest
@@ -102,46 +102,45 @@ impl LiveTouch {
     }
 
     fn corners(&self, triangle: u32, positions: &[Vec3]) -> [Vec3; 3] {
-        let touch = &self.touch;
-        touch.triangles[triangle as usize].map(|p| touch.points[p as usize].at(positions))
+        self.touch.triangles[triangle as usize].map(|point| self.point(point, positions))
     }
 
-    /// Hands over every sample that faces something, and where it is.
-    fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting, Vec3)) {
+    /// Where a point is, which is the sample with its number.
+    fn point(&self, point: u32, positions: &[Vec3]) -> Vec3 {
+        self.touch.points[point as usize].at(positions)
+    }
+
+    /// Hands over every sample that faces something.
+    fn each_near(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting)) {
         for &sample in &self.run().near {
             let Some(facing) = state.facing[sample as usize] else {
                 continue;
             };
-            let point = self.touch.samples[sample as usize].point.at(positions);
+            let point = self.point(sample, positions);
             let corners = self.corners(facing.triangle(), positions);
-            take(&Meeting::new(sample, facing, point, corners), point);
+            if let Some(meeting) = Meeting::new(sample, facing, [point; 2], corners) {
+                take(&meeting);
+            }
         }
     }
 
     /// Those that are pressed, with their pressure in N.
-    fn each_pressed(
-        &self,
-        state: &State,
-        positions: &[Vec3],
-        mut take: impl FnMut(&Meeting, f64, Vec3),
-    ) {
-        self.each_near(state, positions, |meeting, point| {
+    fn each_pressed(&self, state: &State, positions: &[Vec3], mut take: impl FnMut(&Meeting, f64)) {
+        self.each_near(state, positions, |meeting| {
             let memory = &state.now[meeting.sample as usize];
             let pressure = self.touch.pressure(memory, meeting);
             if pressure > 0.0 {
-                take(meeting, pressure, point);
+                take(meeting, pressure);
             }
         });
     }
 
-    fn friction(
-        &self,
-        state: &State,
-        sample: u32,
-        point: Vec3,
-        positions: &[Vec3],
-    ) -> Option<Friction> {
+    fn friction(&self, state: &State, sample: u32, positions: &[Vec3]) -> Option<Friction> {
         let memory = &state.now[sample as usize];
+        if !(memory.bound > 0.0) {
+            return None;
+        }
+        let point = self.point(sample, positions);
         let k = state.stick * self.touch.penalty(sample);
         Friction::new(memory, k, point, |triangle| {
             self.corners(triangle, positions)
@@ -155,11 +154,8 @@ impl LiveTouch {
         mut take: impl FnMut(u32, Friction),
     ) {
         for &sample in &self.run().near {
-            if state.now[sample as usize].bound > 0.0 {
-                let point = self.touch.samples[sample as usize].point.at(positions);
-                if let Some(friction) = self.friction(state, sample, point, positions) {
-                    take(sample, friction);
-                }
+            if let Some(friction) = self.friction(state, sample, positions) {
+                take(sample, friction);
             }
         }
     }
@@ -167,7 +163,7 @@ impl LiveTouch {
     /// The pairs that have stiffness at `positions`.
     fn pairs_of_stiffness(&self, state: &State, positions: &[Vec3]) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
-        self.each_pressed(state, positions, |meeting, _, _| {
+        self.each_pressed(state, positions, |meeting, _| {
             pairs.insert((meeting.sample, meeting.triangle));
         });
         self.each_friction(state, positions, |sample, friction| {
@@ -193,16 +189,16 @@ impl LiveTouch {
         state: &State,
         meeting: &Meeting,
         (pressure, borne): (f64, f64),
-        point: Vec3,
         positions: &[Vec3],
     ) -> Memory {
-        let friction = self.friction(state, meeting.sample, point, positions);
+        let friction = self.friction(state, meeting.sample, positions);
         let before = &state.now[meeting.sample as usize];
         let sticks = friction.is_some_and(|friction| !friction.slips);
         let anchor = match before.anchor {
             Some(anchor) if sticks => anchor,
             _ => {
                 let corners = self.corners(meeting.triangle, positions);
+                let point = self.point(meeting.sample, positions);
                 (meeting.triangle, gap::affine(point, corners))
             }
         };
@@ -313,18 +309,16 @@ impl Contact for LiveTouch {
                 .expect("no holder of the lock panics")
                 .borne,
         );
-        self.each_pressed(&state, positions, |meeting, pressure, point| {
+        self.each_pressed(&state, positions, |meeting, pressure| {
             let sample = meeting.sample as usize;
             if -meeting.gap > deepest {
                 return; // It is let go, and told of.
             }
             pressures[sample] = pressure;
             let both = (pressure, borne[sample]);
-            moved[sample] = self.remembered(&state, meeting, both, point, positions);
+            moved[sample] = self.remembered(&state, meeting, both, positions);
         });
-        let points = self.touch.points_at(positions);
-        state.accepted_samples.clone_from(&points); // Samples are numbered as their points are.
-        state.accepted_points = points;
+        state.accepted_points = self.touch.points_at(positions);
         state.accepted.clone_from(&moved);
         state.now = moved;
         state.looks = LOOKS;
@@ -338,7 +332,7 @@ impl Contact for LiveTouch {
     fn is_touching(&self, positions: &[Vec3]) -> bool {
         let state = self.touch.read();
         let mut touching = false;
-        self.each_pressed(&state, positions, |_, _, _| touching = true);
+        self.each_pressed(&state, positions, |_, _| touching = true);
         touching
     }
 
@@ -361,19 +355,15 @@ impl Term for LiveTouch {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        for &(sample, triangle) in &self.run().pattern {
-            let nothing = |_, _| [[0.0; 3]; 3];
-            self.touch
-                .visit_local(sample, triangle, nothing, &mut |vertices, _| {
-                    visit(vertices);
-                });
+        for &pair in &self.run().pattern {
+            self.touch.visit_pair(pair, visit);
         }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let state = self.touch.read();
         let mut energy = 0.0;
-        self.each_pressed(&state, positions, |meeting, pressure, _| {
+        self.each_pressed(&state, positions, |meeting, pressure| {
             energy += pressure * pressure / (2.0 * self.touch.penalty(meeting.sample));
         });
         self.each_friction(&state, positions, |_, friction| energy += friction.energy);
@@ -382,14 +372,13 @@ impl Term for LiveTouch {
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let state = self.touch.read();
-        self.each_pressed(&state, positions, |meeting, pressure, _| {
-            let place = (meeting.triangle, meeting.weights);
+        self.each_pressed(&state, positions, |meeting, pressure| {
             let force = scale(pressure, meeting.normal);
-            self.touch.add_force(force, meeting.sample, place, forces);
+            self.touch.add_force(force, meeting.spot(), forces);
         });
         self.each_friction(&state, positions, |sample, friction| {
             self.touch
-                .add_force(friction.force, sample, friction.anchor, forces);
+                .add_force(friction.force, friction.spot(sample), forces);
         });
     }
 
@@ -402,7 +391,7 @@ impl Term for LiveTouch {
     fn visit_tangent(&self, positions: &[Vec3], _: Tangent, visit: Visitor<'_>) {
         let state = self.touch.read();
         let pattern = self.run().pattern.clone();
-        self.each_pressed(&state, positions, |meeting, _, _| {
+        self.each_pressed(&state, positions, |meeting, _| {
             if pattern.contains(&(meeting.sample, meeting.triangle)) {
                 self.touch.visit_gap(meeting, 0.0, &[], visit);
             }

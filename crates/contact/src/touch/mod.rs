@@ -2,8 +2,8 @@
 //!
 //! # Gap
 //!
-//! Samples of every surface look for the closest triangle in front of them ([`gap`]). Both sides have samples, and
-//! each stands for half of its area, so that neither is the master. A sample keeps its side: a triangle counts
+//! Points of every surface look for the closest triangle in front of them ([`gap`]), and edges for those that they cross
+//! ([`edges`]). Both sides have samples, and each point stands for half of its area, so that neither is the master. A sample keeps its side: a triangle counts
 //! only if the sample was in front of it at the last accepted state, so that the far side of a thin wall is never
 //! taken for something that is met.
 //!
@@ -22,6 +22,7 @@
 //! end they are those of the pressure itself. Where a state is accepted, the anchor of what has slipped comes along.
 
 pub mod bonds;
+mod edges;
 mod facing;
 mod field;
 mod friction;
@@ -41,7 +42,7 @@ mod term;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard};
 
-use voxsoft_solid::vector::{Vec3, axpy, dot};
+use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 use voxsoft_solid::{Contact, ProblemError};
 
 use bonds::Bond;
@@ -70,8 +71,8 @@ const LOOKS: u32 = 2;
 /// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
 /// coordinates.
 const STRAYED: f64 = 0.5;
-/// What may be left of the clearance, in voxels: surfaces that touch do not intersect.
-const DEEPEST: f64 = 0.9 * CLEARANCE;
+/// What may be left of the clearance, of it: surfaces that touch do not intersect.
+const DEEPEST: f64 = 0.9;
 /// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
 /// different voxels do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
@@ -136,35 +137,76 @@ pub struct Touch {
 struct Meeting {
     sample: u32,
     triangle: u32,
+    /// Where on an edge it is, as a part of the way between its ends; 0 for a point.
+    along: f64,
     /// Barycentric coordinates of the closest point.
     weights: [f64; 3],
-    /// Whether that is inside the triangle.
-    inside: bool,
     gap: f64,
     /// From the triangle to the sample.
     normal: Vec3,
+    facing: Facing,
 }
 
 impl Meeting {
-    /// How a sample at `point` lies to what it faces, a triangle with these corners.
-    fn new(sample: u32, facing: Facing, point: Vec3, corners: [Vec3; 3]) -> Self {
-        let (weights, normal, inside) = match facing {
-            Facing::Plane(_) => (gap::affine(point, corners), normal(corners), true),
-            Facing::Edge(_, weights, normal) => (weights, normal, false),
+    /// How a sample with these ends lies to what it faces, a triangle with these corners; `None` for edges that have become
+    /// parallel.
+    fn new(sample: u32, facing: Facing, ends: [Vec3; 2], corners: [Vec3; 3]) -> Option<Self> {
+        let (along, weights, normal) = match facing {
+            Facing::Plane(_) => (0.0, gap::affine(ends[0], corners), normal(corners)),
+            Facing::Edge(_, weights, normal) => (0.0, weights, normal),
+            Facing::Across(_, corner, same) => {
+                let crossing = gap::crossing(ends, edges::side(corners, corner))?;
+                let [along, of_other] = crossing.along;
+                let sign = if same { 1.0 } else { -1.0 };
+                (
+                    along,
+                    edges::weights(corner, of_other),
+                    scale(sign, crossing.normal),
+                )
+            }
         };
-        let mut away = point;
+        let mut away = between(ends, along);
         for (weight, corner) in weights.iter().zip(corners) {
             axpy(&mut away, -weight, corner);
         }
-        Self {
+        Some(Self {
             sample,
             triangle: facing.triangle(),
+            along,
             weights,
-            inside,
             gap: dot(away, normal),
             normal,
+            facing,
+        })
+    }
+
+    /// Where the forces of a pressure act.
+    fn spot(&self) -> Spot {
+        Spot {
+            sample: self.sample,
+            along: self.along,
+            triangle: self.triangle,
+            weights: self.weights,
         }
     }
+}
+
+/// A place of a sample and one of a triangle that act on each other.
+#[derive(Debug, Clone, Copy)]
+struct Spot {
+    sample: u32,
+    /// As [`Meeting::along`].
+    along: f64,
+    triangle: u32,
+    /// Affine coordinates.
+    weights: [f64; 3],
+}
+
+/// The place that is a part of the way between two.
+fn between([start, end]: [Vec3; 2], along: f64) -> Vec3 {
+    let mut place = start;
+    axpy(&mut place, along, sub(end, start));
+    place
 }
 
 impl Touch {
@@ -197,11 +239,12 @@ impl Touch {
         for (number, surface) in description.surfaces.iter().enumerate() {
             surface.check(rest.len())?;
             let number = number as u32;
-            let own = surface::samples(surface, number, triangles.len() as u32, rest);
+            let first = (points.len() as u32, triangles.len() as u32);
+            let own = surface::samples(surface, number, first, rest);
             let area: f64 = own.iter().map(|sample| sample.area).sum();
             least_area.push(LEAST_AREA * area / own.len().max(1) as f64);
             samples.extend(own);
-            let first = points.len() as u32;
+            let first = first.0;
             first_sample.push(first);
             points.extend(surface.points.iter().cloned());
             triangles.extend(surface.triangles.iter().map(|t| t.map(|p| first + p)));
@@ -214,6 +257,8 @@ impl Touch {
                 around[*point as usize].push(t as u32);
             }
         }
+        // Points first, as they are numbered.
+        samples.extend(surface::edges(&triangles, &surface_of));
         let mut touch = Self {
             description,
             samples,
@@ -230,7 +275,7 @@ impl Touch {
             state: RwLock::default(),
             saved: RwLock::default(),
         };
-        touch.ties_at = touch.ties_at(&first_sample, touch.samples.len());
+        touch.ties_at = touch.ties_at(&first_sample, touch.points.len());
         Contact::start(&touch, rest);
         Ok(touch)
     }
@@ -242,6 +287,13 @@ impl Touch {
     pub fn with_bodies(mut self, bodies: u32, shares: Vec<Carried>) -> Self {
         self.bodies = bodies;
         self.shares = shares;
+        self
+    }
+
+    /// Leaves edges to themselves: only points are kept out of surfaces.
+    pub(super) fn without_edges(mut self, rest: &[Vec3]) -> Self {
+        self.samples.truncate(self.points.len());
+        Contact::start(&self, rest);
         self
     }
 
@@ -284,26 +336,48 @@ impl Touch {
 
     /// N/m; both sides of a contact have samples.
     fn penalty(&self, sample: u32) -> f64 {
-        let sample = &self.samples[sample as usize];
         let penalty = f64::from_bits(self.penalty.load(Ordering::Relaxed));
         let per_area = penalty * self.description.young / self.description.voxel;
-        per_area * sample.area.max(self.least_area[sample.surface as usize]) / 2.0
+        per_area * self.stiff_area(sample) / 2.0
     }
 
-    fn clearance(&self) -> f64 {
-        CLEARANCE * self.description.voxel
+    /// The area for which a sample has a penalty, m².
+    fn stiff_area(&self, sample: u32) -> f64 {
+        let sample = &self.samples[sample as usize];
+        sample.area.max(self.least_area[sample.surface as usize])
     }
 
-    /// How a sample at `point` lies to what it faces.
-    fn meeting(&self, sample: u32, facing: Facing, point: Vec3, points: &[Vec3]) -> Meeting {
+    /// The gap that a sample keeps, m.
+    fn clearance(&self, sample: u32) -> f64 {
+        let of_points = CLEARANCE * self.description.voxel;
+        if self.samples[sample as usize].is_edge() {
+            edges::CLEARANCE * of_points
+        } else {
+            of_points
+        }
+    }
+
+    fn ends(&self, sample: u32, points: &[Vec3]) -> [Vec3; 2] {
+        self.samples[sample as usize]
+            .ends
+            .map(|p| points[p as usize])
+    }
+
+    /// The place of a sample that is a part of the way along it.
+    fn place(&self, sample: u32, along: f64, points: &[Vec3]) -> Vec3 {
+        between(self.ends(sample, points), along)
+    }
+
+    /// How a sample lies to what it faces; `None` for edges that have become parallel.
+    fn meeting(&self, sample: u32, facing: Facing, points: &[Vec3]) -> Option<Meeting> {
         let corners = self.corners(facing.triangle(), points);
-        Meeting::new(sample, facing, point, corners)
+        Meeting::new(sample, facing, self.ends(sample, points), corners)
     }
 
     /// The force with which a sample is pushed away, N.
     fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
         let k = self.penalty(meeting.sample);
-        (memory.normal - k * (meeting.gap - self.clearance())).max(0.0)
+        (memory.normal - k * (meeting.gap - self.clearance(meeting.sample))).max(0.0)
     }
 
     /// Hands over every sample that is in contact, with its pressure in N.
@@ -311,43 +385,36 @@ impl Touch {
         &self,
         state: &State,
         positions: &[Vec3],
-        mut take: impl FnMut(&Meeting, f64, Vec3, &[Vec3]),
+        mut take: impl FnMut(&Meeting, f64, &[Vec3]),
     ) {
         let points = self.points_at(positions);
         for (index, facing) in state.facing.iter().enumerate() {
-            let Some(facing) = *facing else {
+            let meeting = facing.and_then(|facing| self.meeting(index as u32, facing, &points));
+            let Some(meeting) = meeting else {
                 continue;
             };
-            let point = self.samples[index].point.at(positions);
-            let meeting = self.meeting(index as u32, facing, point, &points);
             let pressure = self.pressure(&state.now[index], &meeting);
             if pressure > 0.0 {
-                take(&meeting, pressure, point, &points);
+                take(&meeting, pressure, &points);
             }
         }
     }
 
-    /// The sample and the corners of a triangle, each with the factor of its motion in the relative one.
-    fn relative(&self, sample: u32, triangle: u32, weights: [f64; 3]) -> [(f64, &Carried); 4] {
-        let corners = self.triangles[triangle as usize];
-        let corner = |c: usize| (-weights[c], &self.points[corners[c] as usize]);
-        [
-            (1.0, &self.samples[sample as usize].point),
-            corner(0),
-            corner(1),
-            corner(2),
-        ]
+    /// The points that a spot moves with, each with the factor of its motion in the relative one: those of the sample,
+    /// one or two, and the corners of the triangle.
+    fn relative(&self, spot: Spot) -> impl Iterator<Item = (f64, u32)> {
+        let sample = &self.samples[spot.sample as usize];
+        let own = sample.ends.into_iter().zip([1.0 - spot.along, spot.along]);
+        let own = own.take(1 + usize::from(sample.is_edge()));
+        let corners = self.triangles[spot.triangle as usize].into_iter();
+        let other = corners.zip(spot.weights.map(|weight| -weight));
+        own.chain(other).map(|(point, factor)| (factor, point))
     }
 
-    fn add_force(
-        &self,
-        force: Vec3,
-        sample: u32,
-        (triangle, weights): (u32, [f64; 3]),
-        forces: &mut [Vec3],
-    ) {
-        for (factor, point) in self.relative(sample, triangle, weights) {
-            point.add_force(factor, force, forces);
+    /// Adds the force on the sample at a spot, and its opposite on the triangle.
+    fn add_force(&self, force: Vec3, spot: Spot, forces: &mut [Vec3]) {
+        for (factor, point) in self.relative(spot) {
+            self.points[point as usize].add_force(factor, force, forces);
         }
     }
 }

@@ -11,7 +11,7 @@ use super::recording::Recording;
 use super::state::{Facing, Memory, State};
 use super::{
     APART, BOUND, CREEP, Carried, DEEPEST, LOOKS, Meeting, PATIENCE, PRECISE, STICK, STIFFER,
-    STRAYED, Touch, listing,
+    STRAYED, Spot, Touch, listing,
 };
 use crate::threads;
 
@@ -25,13 +25,12 @@ const LONGEST_EXTRAPOLATION: f64 = 2.0;
 impl Contact for Touch {
     fn start(&self, positions: &[Vec3]) {
         let points = self.points_at(positions);
-        let samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         let nothing = vec![Memory::default(); self.samples.len()];
         let untouched = vec![Hold::default(); self.ties().count()];
         let mut state = self.write();
         *state = State {
             accepted_points: points.clone(),
-            accepted_samples: samples,
+            accepted_facing: vec![None; self.samples.len()],
             accepted: nothing.clone(),
             before: nothing.clone(),
             now: nothing,
@@ -83,7 +82,8 @@ impl Contact for Touch {
             let unit = self.penalty(sample as u32) * self.description.voxel;
             let pressed = (new.normal - old.normal) / unit;
             let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
-            largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
+            let deepest = DEEPEST * self.clearance(sample as u32) / self.description.voxel;
+            largest = largest.max(pressed / deepest).max(-pressed / APART);
             farthest = farthest.max(crept / CREEP);
         }
         let (holds, off) = self.corrected_ties(&state, positions);
@@ -98,7 +98,8 @@ impl Contact for Touch {
         }
         state.crept = farthest;
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-        let settled = largest <= enough;
+        let crossing = patient && self.face_edges(&mut state, positions);
+        let settled = largest <= enough && !crossing;
         if settled {
             state.settle_moment(enough <= precision);
         } else {
@@ -147,8 +148,8 @@ impl Contact for Touch {
             state.pattern_shrank = true;
         }
         let points = self.points_at(positions);
-        state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         state.accepted_points.clone_from(&points);
+        state.accepted_facing = state.facing.clone();
         state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
         state.accepted_holds = state.holds.clone();
@@ -161,6 +162,7 @@ impl Contact for Touch {
         state.drop_step();
         state.extrapolated = None;
         state.now = state.accepted.clone();
+        state.facing = state.accepted_facing.clone();
         if state
             .holds
             .iter()
@@ -229,18 +231,19 @@ impl Touch {
         // What loses contact for now keeps its anchor: it may come back before the state is accepted.
         let anchor_of = |memory: &Memory| Memory {
             anchor: memory.anchor,
+            along: memory.along,
             since: memory.since,
             ..Memory::default()
         };
         let mut now: Vec<Memory> = state.now.iter().map(anchor_of).collect();
-        self.each_contact(state, positions, |meeting, pressure, point, points| {
+        self.each_contact(state, positions, |meeting, pressure, points| {
             let sample = meeting.sample as usize;
             let memory = &state.now[sample];
-            let friction = self.friction(state, meeting.sample, point, points);
+            let friction = self.friction(state, meeting.sample, points);
             let coefficient = self.coefficient(meeting.sample, meeting.triangle);
-            let (anchor, since) = memory.anchor.map_or_else(
-                || self.first_anchor(state, meeting, point, points),
-                |anchor| (anchor, memory.since),
+            let (anchor, along, since) = memory.anchor.map_or_else(
+                || self.first_anchor(state, meeting, points),
+                |anchor| (anchor, memory.along, memory.since),
             );
             now[sample] = Memory {
                 normal: pressure,
@@ -248,6 +251,7 @@ impl Touch {
                 plane: meeting.normal,
                 bound: coefficient * pressure,
                 anchor: Some(anchor),
+                along,
                 since,
             };
         });
@@ -257,14 +261,13 @@ impl Touch {
     /// What samples hold from an accepted state on: the anchors of what has slipped come along.
     pub(super) fn carried_on(&self, state: &State, positions: &[Vec3]) -> Vec<Memory> {
         let mut moved = vec![Memory::default(); self.samples.len()];
-        self.each_contact(state, positions, |meeting, _, point, points| {
+        self.each_contact(state, positions, |meeting, _, points| {
             let memory = &mut moved[meeting.sample as usize];
             *memory = state.now[meeting.sample as usize];
-            let friction = self.friction(state, meeting.sample, point, points);
+            let friction = self.friction(state, meeting.sample, points);
             if friction.is_none_or(|friction| friction.slips) {
                 memory.friction = friction.map_or([0.0; 3], |friction| friction.force);
-                let corners = self.corners(meeting.triangle, points);
-                memory.anchor = Some((meeting.triangle, gap::affine(point, corners)));
+                (memory.anchor, memory.along) = (Some(self.foot(meeting, points)), meeting.along);
             }
         });
         moved
@@ -286,7 +289,7 @@ impl Touch {
         positions: &[Vec3],
     ) -> BTreeSet<(u32, u32)> {
         let mut pairs = BTreeSet::new();
-        self.each_contact(state, positions, |meeting, _, _, _| {
+        self.each_contact(state, positions, |meeting, _, _| {
             pairs.insert((meeting.sample, meeting.triangle));
         });
         self.each_friction(state, positions, |sample, friction| {
@@ -323,8 +326,15 @@ impl Touch {
             let entry = pairs.entry(pair).or_default();
             entry[0] += change;
             entry[1] += new.bound;
-            let corners = self.triangles[triangle as usize].into_iter().zip(weights);
-            for (point, part) in corners.chain([(index as u32, 1.0)]) {
+            let spot = Spot {
+                sample: index as u32,
+                along: new.along,
+                triangle,
+                weights,
+            };
+            for (factor, point) in self.relative(spot) {
+                let is_own = self.samples[index].ends.contains(&point);
+                let part = if is_own { factor } else { -factor };
                 let Carried {
                     vertices: carriers,
                     weights,
@@ -350,18 +360,34 @@ impl Touch {
         of_vertices.chain(of_pairs).fold(0.0, f64::max)
     }
 
+    /// The place of a triangle that a sample is over.
+    fn foot(&self, meeting: &Meeting, points: &[Vec3]) -> (u32, [f64; 3]) {
+        let weights = match meeting.facing {
+            Facing::Across(..) => meeting.weights,
+            _ => {
+                let point = self.place(meeting.sample, meeting.along, points);
+                gap::affine(point, self.corners(meeting.triangle, points))
+            }
+        };
+        (meeting.triangle, weights)
+    }
+
     /// Where a sample that has come into contact since the last accepted state met the surface: as far back along its
-    /// way as the gap says.
+    /// way as the gap says. An edge holds on where it first presses at an equilibrium. Beside the place on the triangle that on
+    /// the edge, and the part of the step that was left.
     fn first_anchor(
         &self,
         state: &State,
         meeting: &Meeting,
-        point: Vec3,
         points: &[Vec3],
-    ) -> ((u32, [f64; 3]), f64) {
+    ) -> ((u32, [f64; 3]), f64, f64) {
+        if matches!(meeting.facing, Facing::Across(..)) {
+            return (self.foot(meeting, points), meeting.along, 0.0);
+        }
+        let point = points[meeting.sample as usize];
         let corners = self.corners(meeting.triangle, points);
         let before = self.corners(meeting.triangle, &state.accepted_points);
-        let start = state.accepted_samples[meeting.sample as usize];
+        let start = state.accepted_points[meeting.sample as usize];
         let first = gap::affine(start, before);
         let mut foot = [0.0; 3];
         let mut foot_now = [0.0; 3];
@@ -369,8 +395,9 @@ impl Touch {
             axpy(&mut foot, first[c], before[c]);
             axpy(&mut foot_now, first[c], corners[c]);
         }
-        let gap_before = dot(sub(start, foot), normal(before)) - self.clearance();
-        let gap_now = meeting.gap - self.clearance();
+        let clearance = self.clearance(meeting.sample);
+        let gap_before = dot(sub(start, foot), normal(before)) - clearance;
+        let gap_now = meeting.gap - clearance;
         let given = state.given_since.get(meeting.sample as usize);
         let since = if let Some(given) = given {
             *given
@@ -382,7 +409,7 @@ impl Touch {
         // A touch that only just begins has `since` near 0: it has not slipped yet.
         let slip = sub(point, foot_now);
         let anchor = add(point, scale(-since, slip));
-        ((meeting.triangle, gap::affine(anchor, corners)), since)
+        ((meeting.triangle, gap::affine(anchor, corners)), 0.0, since)
     }
 
     /// Lets samples look for what they face: all of them, or those that have strayed from it.
@@ -392,13 +419,16 @@ impl Touch {
             if state.candidates[index].is_empty() {
                 return None;
             }
-            let point = self.samples[index].point.at(positions);
+            if self.samples[index].is_edge() {
+                return self.keep_across(state, index, &points);
+            }
+            let point = points[index];
             let strayed = match state.facing[index] {
                 Some(Facing::Plane(triangle)) => {
                     let weights = gap::affine(point, self.corners(triangle, &points));
                     weights.iter().any(|w| *w < -STRAYED)
                 }
-                Some(Facing::Edge(..)) => false,
+                Some(_) => false,
                 None => true,
             };
             if all || strayed {

@@ -28,11 +28,14 @@ impl<'a> PredictedPressures<'a> {
     pub fn new(touch: &'a Touch, positions: &[Vec3], moves: &[Vec3]) -> Self {
         let mut pressures = vec![0.0; touch.samples.len()];
         let state = touch.read();
-        touch.each_contact(&state, positions, |meeting, pressure, _, _| {
+        touch.each_contact(&state, positions, |meeting, pressure, _| {
             let mut relative = [0.0; 3];
-            let parts = touch.relative(meeting.sample, meeting.triangle, meeting.weights);
-            for (factor, point) in parts {
-                axpy(&mut relative, factor, point.at(moves));
+            for (factor, point) in touch.relative(meeting.spot()) {
+                axpy(
+                    &mut relative,
+                    factor,
+                    touch.points[point as usize].at(moves),
+                );
             }
             let closing = touch.penalty(meeting.sample) * dot(meeting.normal, relative);
             pressures[meeting.sample as usize] = (pressure - closing).max(0.0);

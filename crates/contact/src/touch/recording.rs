@@ -144,6 +144,7 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
     let part = 1.0 / around.len() as f64;
     let mut mean = Memory::default();
     let mut weights = [0.0; 3];
+    let mut along = 0.0;
     let anchored = own.anchor.filter(|own| {
         let same = |memory: &&mut Memory| memory.anchor.is_some_and(|anchor| anchor.0 == own.0);
         around.iter().all(same)
@@ -153,6 +154,7 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
         mean.bound += part * memory.bound;
         axpy(&mut mean.friction, part, memory.friction);
         axpy(&mut mean.plane, part, memory.plane);
+        along += part * memory.along;
         axpy(
             &mut weights,
             part,
@@ -168,6 +170,10 @@ fn bring_around(around: &mut [&mut Memory], own: &Memory) {
             (Some(own), Some((triangle, now))) => Some((triangle, add(now, sub(own.1, weights)))),
             _ => own.anchor,
         };
+        memory.along = match anchored {
+            Some(_) => memory.along + own.along - along,
+            None => own.along,
+        };
     }
 }
 
@@ -181,7 +187,6 @@ impl Touch {
             return;
         }
         let moved = self.carried_on(&state, positions);
-        state.accepted_samples = self.samples.iter().map(|s| s.point.at(positions)).collect();
         state.accepted_points = points;
         state.before = std::mem::replace(&mut state.accepted, moved.clone());
         state.now = moved;
@@ -254,7 +259,7 @@ impl Touch {
         self.each_friction(&state, &moment.positions, |sample, friction| {
             let (triangle, weights) = friction.anchor;
             let memory = &state.now[sample as usize];
-            let mut slip = self.samples[sample as usize].point.at(&moment.positions);
+            let mut slip = self.place(sample, friction.along, &points);
             for (weight, corner) in weights.iter().zip(self.corners(triangle, &points)) {
                 axpy(&mut slip, -weight, corner);
             }

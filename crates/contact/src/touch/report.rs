@@ -61,12 +61,12 @@ impl Touch {
         let state = self.read();
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
         let mut pressed_samples = vec![false; self.samples.len()];
-        self.each_contact(&state, positions, |meeting, pressure, point, points| {
+        self.each_contact(&state, positions, |meeting, pressure, points| {
             pressed_samples[meeting.sample as usize] = true;
             let sample = &self.samples[meeting.sample as usize];
             let of = self.surfaces_of(meeting);
             let memory = &state.now[meeting.sample as usize];
-            let friction = self.friction(&state, meeting.sample, point, points);
+            let friction = self.friction(&state, meeting.sample, points);
             let mut force = scale(pressure, meeting.normal);
             let mut tangential = [0.0; 3];
             let (mut pressed, mut slipping) = (pressure, pressure);
@@ -159,12 +159,12 @@ impl Touch {
         mut take: impl FnMut(&Meeting, &[Vec3]),
     ) {
         let points = self.points_at(positions);
-        for (index, facing) in state.facing.iter().enumerate() {
-            let Some(facing) = facing.filter(|_| !pressed[index]) else {
+        for (index, facing) in state.facing[..points.len()].iter().enumerate() {
+            let facing = facing.filter(|_| !pressed[index]);
+            let meeting = facing.and_then(|facing| self.meeting(index as u32, facing, &points));
+            let Some(meeting) = meeting else {
                 continue;
             };
-            let point = points[index];
-            let meeting = self.meeting(index as u32, facing, point, &points);
             if meeting.gap < NEAR * self.description.voxel
                 && self.is_between(index as u32, pressed, &points)
             {

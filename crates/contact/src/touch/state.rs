@@ -20,6 +20,8 @@ pub struct Memory {
     pub bound: f64,
     /// Where on the other surface it sticks: a triangle, and affine coordinates in it.
     pub anchor: Option<(u32, [f64; 3])>,
+    /// Which place of an edge sticks there, as a part of the way between its ends.
+    pub along: f64,
     /// The part of its step that was left when it came into contact there.
     pub since: f64,
 }
@@ -32,12 +34,17 @@ pub enum Facing {
     Plane(u32),
     /// A point on an edge or corner of a triangle, with its barycentric coordinates, and the normal there.
     Edge(u32, [f64; 3], Vec3),
+    /// An edge of a triangle, that from the given corner to the next, and whether the normal is the cross product of
+    /// the two edges, that of the sample first, or its opposite.
+    Across(u32, usize, bool),
 }
 
 impl Facing {
     pub fn triangle(self) -> u32 {
         match self {
-            Self::Plane(triangle) | Self::Edge(triangle, ..) => triangle,
+            Self::Plane(triangle) | Self::Edge(triangle, ..) | Self::Across(triangle, ..) => {
+                triangle
+            }
         }
     }
 }
@@ -47,8 +54,8 @@ impl Facing {
 pub(super) struct State {
     /// The points of all surfaces at the last accepted state, m.
     pub accepted_points: Vec<Vec3>,
-    /// The samples there.
-    pub accepted_samples: Vec<Vec3>,
+    /// What samples faced there.
+    pub accepted_facing: Vec<Option<Facing>>,
     /// What they carried.
     pub accepted: Vec<Memory>,
     /// What they carried at the accepted state before that.

@@ -7,10 +7,10 @@ use voxsoft_solid::vector::{Vec3, dot, scale};
 use voxsoft_solid::{ProblemError, Strain, Term};
 
 use super::friction::Friction;
-use super::gap::barycentric_gradients;
+use super::gap::{barycentric_gradients, crossing};
 use super::predicted::PredictedPressures;
-use super::state::State;
-use super::{Meeting, Touch};
+use super::state::{Facing, State};
+use super::{Meeting, Spot, Touch, edges};
 
 /// How far, in units of Young's modulus, a pressure may be above its multiplier and count in how it turns. What a step
 /// has taken deep into each other is under pressures that nothing bears, and that would make the stiffness indefinite.
@@ -30,11 +30,8 @@ impl Term for Touch {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        for &(sample, triangle) in &self.read().pattern {
-            let nothing = |_, _| [[0.0; 3]; 3];
-            self.visit_local(sample, triangle, nothing, &mut |vertices, _| {
-                visit(vertices);
-            });
+        for &pair in &self.read().pattern {
+            self.visit_pair(pair, visit);
         }
         for (_, tie) in self.ties() {
             self.visit_tie(tie, &mut |vertices, _| visit(vertices));
@@ -44,7 +41,7 @@ impl Term for Touch {
     fn energy(&self, positions: &[Vec3]) -> f64 {
         let state = self.read();
         let mut energy = 0.0;
-        self.each_contact(&state, positions, |meeting, pressure, _, _| {
+        self.each_contact(&state, positions, |meeting, pressure, _| {
             energy += pressure * pressure / (2.0 * self.penalty(meeting.sample));
         });
         self.each_friction(&state, positions, |_, friction| energy += friction.energy);
@@ -56,13 +53,12 @@ impl Term for Touch {
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
         let state = self.read();
-        self.each_contact(&state, positions, |meeting, pressure, _, _| {
-            let place = (meeting.triangle, meeting.weights);
+        self.each_contact(&state, positions, |meeting, pressure, _| {
             let force = scale(pressure, meeting.normal);
-            self.add_force(force, meeting.sample, place, forces);
+            self.add_force(force, meeting.spot(), forces);
         });
         self.each_friction(&state, positions, |sample, friction| {
-            self.add_force(friction.force, sample, friction.anchor, forces);
+            self.add_force(friction.force, friction.spot(sample), forces);
         });
         self.each_tie(&state, positions, |_, tie, force| {
             tie.first.add_force(1.0, force, forces);
@@ -77,7 +73,7 @@ impl Term for Touch {
     fn visit_tangent(&self, positions: &[Vec3], tangent: Tangent, visit: Visitor<'_>) {
         let state = self.read();
         let believed = |sample: usize, pressure: f64| {
-            let more = SPURIOUS * self.description.young * self.samples[sample].area;
+            let more = SPURIOUS * self.description.young * self.stiff_area(sample as u32);
             match tangent {
                 Tangent::Exact if state.retraces => pressure,
                 Tangent::Exact => pressure.min(state.now[sample].normal + more),
@@ -101,7 +97,7 @@ impl Touch {
         believed: impl Fn(usize, f64) -> f64,
         visit: Visitor<'_>,
     ) {
-        self.each_contact(state, positions, |meeting, pressure, _, points| {
+        self.each_contact(state, positions, |meeting, pressure, points| {
             let pressure = believed(meeting.sample as usize, pressure);
             self.visit_gap(meeting, pressure, points, visit);
         });
@@ -111,19 +107,16 @@ impl Touch {
         self.each_tie(state, positions, |_, tie, _| self.visit_tie(tie, visit));
     }
 
-    /// Hands over a matrix on the sample and the corners of a triangle as one on the vertices that carry them.
-    pub(super) fn visit_local(
+    /// Hands over a matrix on points, one behind the other, as one on the vertices that carry them.
+    fn visit_points(
         &self,
-        sample: u32,
-        triangle: u32,
+        points: &[u32],
         block: impl Fn(usize, usize) -> Mat3,
         visit: Visitor<'_>,
     ) {
-        let parts = self
-            .relative(sample, triangle, [-1.0; 3])
-            .map(|(_, point)| point);
-        let mut vertices: Vec<u32> = Vec::with_capacity(12);
-        for part in parts {
+        let parts = || points.iter().map(|point| &self.points[*point as usize]);
+        let mut vertices: Vec<u32> = Vec::with_capacity(4 * points.len());
+        for part in parts() {
             for vertex in &part.vertices {
                 if !vertices.contains(vertex) {
                     vertices.push(*vertex);
@@ -133,8 +126,8 @@ impl Touch {
         let size = 3 * vertices.len();
         let mut matrix = vec![0.0; size * size];
         let place = |vertex: u32| vertices.iter().position(|v| *v == vertex).unwrap_or(0);
-        for (a, first) in parts.iter().enumerate() {
-            for (b, second) in parts.iter().enumerate() {
+        for (a, first) in parts().enumerate() {
+            for (b, second) in parts().enumerate() {
                 let block = block(a, b);
                 for (v, wv) in first.vertices.iter().zip(&first.weights) {
                     for (u, wu) in second.vertices.iter().zip(&second.weights) {
@@ -151,16 +144,28 @@ impl Touch {
         visit(&vertices, &matrix);
     }
 
+    /// Hands over the vertices that carry a sample and a triangle.
+    pub(super) fn visit_pair(&self, (sample, triangle): (u32, u32), visit: &mut dyn FnMut(&[u32])) {
+        let spot = Spot {
+            sample,
+            along: 0.0,
+            triangle,
+            weights: [0.0; 3],
+        };
+        let points: Vec<u32> = self.relative(spot).map(|(_, point)| point).collect();
+        let nothing = |_, _| [[0.0; 3]; 3];
+        self.visit_points(&points, nothing, &mut |vertices, _| visit(vertices));
+    }
+
     /// The stiffness of friction.
     pub(super) fn visit_friction(&self, sample: u32, friction: &Friction, visit: Visitor<'_>) {
-        let [b0, b1, b2] = friction.anchor.1;
-        let factors = [1.0, -b0, -b1, -b2];
+        let (factors, points): (Vec<f64>, Vec<u32>) = self.relative(friction.spot(sample)).unzip();
         let block = |a: usize, b: usize| {
             friction
                 .stiffness
                 .map(|row| scale(factors[a] * factors[b], row))
         };
-        self.visit_local(sample, friction.anchor.0, block, visit);
+        self.visit_points(&points, block, visit);
     }
 
     /// The stiffness of a pressed gap: `k n nᵀ` and how the normal turns under the pressure.
@@ -173,39 +178,49 @@ impl Touch {
     ) {
         let k = self.penalty(meeting.sample);
         let n = meeting.normal;
-        let [b0, b1, b2] = meeting.weights;
-        let factors = [1.0, -b0, -b1, -b2];
-        let turning = meeting.inside && pressure > 0.0;
-        let gradients = if turning {
-            barycentric_gradients(self.corners(meeting.triangle, points))
-        } else {
-            [[0.0; 3]; 3]
-        };
+        let (factors, own): (Vec<f64>, Vec<u32>) = self.relative(meeting.spot()).unzip();
+        let gradients = (pressure > 0.0)
+            .then(|| self.turning(meeting, points))
+            .flatten();
         let block = |a: usize, b: usize| {
             let mut block: Mat3 = std::array::from_fn(|i| {
                 std::array::from_fn(|j| k * factors[a] * factors[b] * n[i] * n[j])
             });
-            if turning {
+            if let Some(gradients) = &gradients {
                 // Minus the pressure times the second derivative of the gap.
+                let together = meeting.gap * dot(gradients[a], gradients[b]);
                 for i in 0..3 {
                     for j in 0..3 {
-                        let mut second = 0.0;
-                        if a > 0 {
-                            second -= n[i] * gradients[a - 1][j] * factors[b];
-                        }
-                        if b > 0 {
-                            second -= factors[a] * gradients[b - 1][i] * n[j];
-                        }
-                        if a > 0 && b > 0 {
-                            let together = dot(gradients[a - 1], gradients[b - 1]);
-                            second -= meeting.gap * together * n[i] * n[j];
-                        }
-                        block[i][j] -= pressure * second;
+                        let second = n[i] * gradients[a][j] * factors[b]
+                            + factors[a] * gradients[b][i] * n[j]
+                            + together * n[i] * n[j];
+                        block[i][j] += pressure * second;
                     }
                 }
             }
             block
         };
-        self.visit_local(meeting.sample, meeting.triangle, block, visit);
+        self.visit_points(&own, block, visit);
+    }
+
+    /// The vectors by which points turn the normal of a meeting, as [`super::gap`] has them, in the order of
+    /// [`Touch::relative`]; `None` where it is taken as it is.
+    fn turning(&self, meeting: &Meeting, points: &[Vec3]) -> Option<Vec<Vec3>> {
+        let corners = self.corners(meeting.triangle, points);
+        match meeting.facing {
+            Facing::Edge(..) => None,
+            Facing::Plane(_) => {
+                let own = [[0.0; 3]];
+                Some([&own[..], &barycentric_gradients(corners)].concat())
+            }
+            Facing::Across(_, corner, _) => {
+                let ends = self.ends(meeting.sample, points);
+                let [own, other] = crossing(ends, edges::side(corners, corner))?.duals;
+                let mut gradients = vec![scale(-1.0, own), own, [0.0; 3], [0.0; 3], [0.0; 3]];
+                gradients[2 + corner] = scale(-1.0, other);
+                gradients[2 + (corner + 1) % 3] = other;
+                Some(gradients)
+            }
+        }
     }
 }

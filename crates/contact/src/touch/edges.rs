@@ -1,0 +1,316 @@
+//! Edges that cross edges.
+//!
+//! Where two ridges meet, no point of one is behind the other, and yet they may pass through each other. So edges are
+//! samples too: each faces the edge of the other surface that it lies across, with the common perpendicular of both as
+//! normal ([`super::gap::crossing`]). The two are next to each other there if the faces at each edge lie on its own side of that
+//! normal; an inner edge never is.
+//!
+//! Edges keep less of a gap than points. So they carry nothing where surfaces lie flat on each other, which points see better: the
+//! diagonals of mismatched squares cross everywhere. They look at equilibria alone, as a crossing comes and goes with less than a step
+//! of Newton's method.
+
+use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
+
+use super::gap::{Crossing, crossing, normal, unit};
+use super::listing::{DEPTH, REACH};
+use super::state::{Facing, State};
+use super::{DEEPEST, Touch};
+use crate::threads;
+
+/// The clearance of edges, of that of points.
+pub(super) const CLEARANCE: f64 = 0.3;
+/// How far a face may lean over the normal of its edge, as a sine: the normal of facets that are nearly flat is found by
+/// rounding and by how they deform.
+const LEANING: f64 = 0.05;
+/// How far, in parts of an edge, a crossing may slide beyond its ends before it is given up.
+const BEYOND: f64 = 0.1;
+
+/// The ends of the side of a triangle from a corner to the next.
+pub(super) fn side(corners: [Vec3; 3], corner: usize) -> [Vec3; 2] {
+    [corners[corner], corners[(corner + 1) % 3]]
+}
+
+/// The affine coordinates of a place on that side.
+pub(super) fn weights(corner: usize, along: f64) -> [f64; 3] {
+    let mut weights = [0.0; 3];
+    weights[corner] = 1.0 - along;
+    weights[(corner + 1) % 3] = along;
+    weights
+}
+
+impl Touch {
+    /// Lets all edges look for what they cross at an equilibrium; whether any goes on with another force than it has.
+    pub(super) fn face_edges(&self, state: &mut State, positions: &[Vec3]) -> bool {
+        let points = self.points_at(positions);
+        let first = self.points.len();
+        let look = |edge: usize| self.look_across(state, first + edge, &points);
+        let found = threads::map(self.samples.len() - first, look);
+        let mut changes = false;
+        for (edge, facing) in found.into_iter().enumerate() {
+            let sample = first + edge;
+            let before = std::mem::replace(&mut state.facing[sample], facing);
+            changes |= before != facing
+                && (self.is_pressed(state, sample, before, &points)
+                    || self.is_deep(sample, facing, &points));
+        }
+        changes
+    }
+
+    /// What an edge faces while equilibrium is looked for: what it did, until one has left the other.
+    pub(super) fn keep_across(
+        &self,
+        state: &State,
+        index: usize,
+        points: &[Vec3],
+    ) -> Option<Facing> {
+        let facing = state.facing[index]?;
+        let Facing::Across(triangle, corner, _) = facing else {
+            return None;
+        };
+        let own = self.ends(index as u32, points);
+        let other = side(self.corners(triangle, points), corner);
+        let along = crossing(own, other)?.along;
+        let meets = along
+            .iter()
+            .all(|part| (-BEYOND..=1.0 + BEYOND).contains(part));
+        if meets {
+            Some(facing)
+        } else {
+            self.look_across(state, index, points)
+        }
+    }
+
+    fn is_pressed(
+        &self,
+        state: &State,
+        sample: usize,
+        facing: Option<Facing>,
+        points: &[Vec3],
+    ) -> bool {
+        let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, points));
+        meeting.is_some_and(|meeting| self.pressure(&state.now[sample], &meeting) > 0.0)
+    }
+
+    fn is_deep(&self, sample: usize, facing: Option<Facing>, points: &[Vec3]) -> bool {
+        let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, points));
+        let least = (1.0 - DEEPEST) * self.clearance(sample as u32);
+        meeting.is_some_and(|meeting| meeting.gap < least)
+    }
+
+    /// The edge that an edge lies across, of its candidates the one in which it is deepest; what it presses stays.
+    fn look_across(&self, state: &State, index: usize, points: &[Vec3]) -> Option<Facing> {
+        let before = state.facing[index];
+        let mut best: Option<(f64, Facing)> = None;
+        for &triangle in &state.candidates[index] {
+            for corner in 0..3 {
+                let Some((gap, facing)) = self.across(state, index, (triangle, corner), points)
+                else {
+                    continue;
+                };
+                if before == Some(facing) && self.is_pressed(state, index, before, points) {
+                    return before;
+                }
+                if best.is_none_or(|(least, _)| gap < least) {
+                    best = Some((gap, facing));
+                }
+            }
+        }
+        best.map(|(_, facing)| facing)
+    }
+
+    /// How an edge faces a side of a triangle, and the gap, if they are next to each other.
+    fn across(
+        &self,
+        state: &State,
+        index: usize,
+        (triangle, corner): (u32, usize),
+        points: &[Vec3],
+    ) -> Option<(f64, Facing)> {
+        let ends = self.samples[index].ends;
+        let corners = self.triangles[triangle as usize];
+        let other = [corners[corner], corners[(corner + 1) % 3]];
+        let at = |points: &[Vec3]| {
+            let place = |point: u32| points[point as usize];
+            crossing(ends.map(place), other.map(place))
+        };
+        let Crossing {
+            along, normal, gap, ..
+        } = at(points)?;
+        if !along.iter().all(|part| (0.0..=1.0).contains(part)) {
+            return None;
+        }
+        // From the other edge to this one, as their faces look.
+        let looks = sub(
+            self.edge_normal(other, points),
+            self.edge_normal(ends, points),
+        );
+        let same = dot(normal, looks) > 0.0;
+        let sign = if same { 1.0 } else { -1.0 };
+        let depth = -sign * gap;
+        // What is deeper in a surface than an edge is long is behind its points.
+        let voxel = self.description.voxel;
+        let length = |[a, b]: [u32; 2]| norm(sub(points[a as usize], points[b as usize]));
+        let to_end = |part: f64, ends: [u32; 2]| part.min(1.0 - part) * length(ends);
+        let deepest = to_end(along[0], ends).min(to_end(along[1], other));
+        if depth > deepest.min(DEPTH * voxel) || -depth > REACH * voxel {
+            return None;
+        }
+        let leans = |edge: [u32; 2], away: Vec3| {
+            self.faces_at(edge)
+                .any(|face| dot(self.inwards(face, edge, points), away) < -LEANING)
+        };
+        if leans(ends, scale(sign, normal)) || leans(other, scale(-sign, normal)) {
+            return None;
+        }
+        let own = self.samples[index].surface == self.surface_of[triangle as usize];
+        let allowed = if own {
+            self.depth_of_edge(ends, triangle)?
+        } else {
+            DEPTH
+        };
+        let depth_before = -sign * at(&state.accepted_points)?.gap;
+        (depth_before <= allowed * voxel)
+            .then_some((-depth, Facing::Across(triangle, corner, same)))
+    }
+
+    /// The triangles at an edge.
+    fn faces_at(&self, [from, to]: [u32; 2]) -> impl Iterator<Item = u32> {
+        let around = self.around[from as usize].iter().copied();
+        around.filter(move |t| self.triangles[*t as usize].contains(&to))
+    }
+
+    /// The sum of the normals at an edge.
+    fn edge_normal(&self, edge: [u32; 2], points: &[Vec3]) -> Vec3 {
+        let normals = self.faces_at(edge).map(|t| normal(self.corners(t, points)));
+        normals.fold([0.0; 3], add)
+    }
+
+    /// The direction into a triangle from its edge, along it and at right angles to the edge.
+    fn inwards(&self, triangle: u32, edge: [u32; 2], points: &[Vec3]) -> Vec3 {
+        let third = self.triangles[triangle as usize]
+            .iter()
+            .find(|p| !edge.contains(p));
+        let [from, to] = edge.map(|p| points[p as usize]);
+        let toward = third.map_or([0.0; 3], |p| sub(points[*p as usize], from));
+        let along = unit(sub(to, from));
+        unit(sub(toward, scale(dot(toward, along), along)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touch::{Carried, Description, Surface};
+    use voxsoft_solid::Contact;
+    use voxsoft_solid::conformance::check_term;
+
+    /// Two tetrahedra, the upper edge of the first along x across the lower one of the second along y, `apart` from it.
+    fn crossed(apart: f64) -> Vec<Vec3> {
+        let lower = [
+            [-1.0, 0.1, 0.0],
+            [1.0, -0.05, 0.0],
+            [0.1, 1.0, -1.0],
+            [0.0, -1.0, -1.1],
+        ];
+        let upper = [
+            [0.0, -1.0, 0.0],
+            [0.2, 1.0, 0.0],
+            [1.0, 0.1, 1.0],
+            [-1.1, 0.0, 1.2],
+        ];
+        let lift = |[x, y, z]: Vec3| [x, y, z + apart];
+        lower.into_iter().chain(upper.map(lift)).collect()
+    }
+
+    fn touch(friction: f64, positions: &[Vec3]) -> Touch {
+        // Outward by the sign of the volume of four points.
+        let faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let surface = |first: u32, flip: bool| Surface {
+            points: (first..first + 4).map(Carried::vertex).collect(),
+            triangles: faces
+                .iter()
+                .map(|&[a, b, c]| if flip { [a, c, b] } else { [a, b, c] })
+                .collect(),
+        };
+        let volume = |p: &[Vec3]| {
+            let [a, b, c] = [1, 2, 3].map(|i| sub(p[i], p[0]));
+            dot(a, voxsoft_solid::vector::cross(b, c))
+        };
+        let surfaces = vec![
+            surface(0, volume(&positions[..4]) < 0.0),
+            surface(4, volume(&positions[4..]) < 0.0),
+        ];
+        let description = Description {
+            bonds: Vec::new(),
+            surfaces,
+            friction: vec![vec![f64::NAN, friction], vec![friction, f64::NAN]],
+            voxel: 1.0,
+            young: 2.0,
+        };
+        Touch::new(description, positions).unwrap()
+    }
+
+    #[test]
+    fn crossed_edges_press_each_other_though_no_point_is_behind_a_face() {
+        let (apart, positions) = (crossed(0.01), crossed(-0.01));
+        let touch = touch(0.0, &apart);
+        touch.follow(&positions);
+        assert!(touch.pairs(&positions).is_empty());
+        assert!(!touch.correct(&positions, 0.0, 1.0));
+        let pairs = touch.pairs(&positions);
+        assert_eq!(pairs.len(), 1);
+        assert!((pairs[0].gap + 0.01).abs() < 1e-12, "{pairs:?}");
+        // On the first one, which is the lower.
+        assert!(pairs[0].force[2] < 0.0, "{pairs:?}");
+        assert!(touch.pairs(&apart).is_empty());
+    }
+
+    #[test]
+    fn edges_keep_the_laws_of_terms() {
+        // By no more than pressures that are believed take.
+        let (apart, positions) = (crossed(0.05), crossed(-0.0004));
+        let touch = touch(0.0, &crossed(0.0));
+        touch.follow(&positions);
+        for _ in 0..2 {
+            assert!(!touch.correct(&positions, 0.0, 1.0));
+            touch.follow(&positions);
+            assert_eq!(touch.pairs(&positions).len(), 1);
+            check_term(&touch, &apart, &positions).unwrap();
+        }
+    }
+
+    #[test]
+    fn edges_hold_each_other_up_to_the_bound_of_friction() {
+        let positions = crossed(-0.0004);
+        let touch = touch(0.4, &crossed(0.0));
+        touch.follow(&positions);
+        for _ in 0..2 {
+            touch.correct(&positions, 0.0, 1.0);
+        }
+        let slip = |by: f64| {
+            let mut moved = positions.clone();
+            for x in &mut moved[4..] {
+                x[0] += by;
+            }
+            touch.pairs(&moved)[0].clone()
+        };
+        let held = slip(0.0);
+        assert!(held.pressure > 0.0 && norm(held.friction) < 1e-9 * held.pressure);
+        // The first one is carried along.
+        let slipping = slip(0.05);
+        let bound: f64 = touch.read().now.iter().map(|memory| memory.bound).sum();
+        assert!(bound > 0.0 && (norm(slipping.friction) / bound - 1.0).abs() < 1e-9);
+        assert!(slipping.friction[0] > 0.99 * norm(slipping.friction));
+        assert!(slipping.slipping == 1.0 && held.slipping == 0.0);
+    }
+
+    #[test]
+    fn an_edge_does_not_face_what_is_behind_it() {
+        let positions = crossed(-1.0);
+        let touch = touch(0.0, &positions);
+        touch.correct(&positions, 0.0, 1.0);
+        let state = touch.read();
+        let across = |facing: &&Option<Facing>| matches!(facing, Some(Facing::Across(..)));
+        assert_eq!(state.facing.iter().filter(across).count(), 0);
+    }
+}
