@@ -5,23 +5,22 @@
 //! normal ([`super::gap::crossing`]). The two are next to each other there if the faces at each edge lie on its own side of that
 //! normal; an inner edge never is.
 //!
-//! Edges keep less of a gap than points. So they carry nothing where surfaces lie flat on each other, which points see better: the
-//! diagonals of mismatched squares cross everywhere. They look at equilibria alone, as a crossing comes and goes with less than a step
-//! of Newton's method.
+//! They look at equilibria alone, as a crossing comes and goes with less than a step of Newton's method.
 
 use voxsoft_solid::vector::{Vec3, add, dot, norm, scale, sub};
 
 use super::gap::{Crossing, crossing, normal, unit};
 use super::listing::{DEPTH, REACH};
 use super::state::{Facing, State};
-use super::{DEEPEST, Touch};
+use super::{CLEARANCE, DEEPEST, Touch};
 use crate::threads;
 
-/// The clearance of edges, of that of points.
-pub(super) const CLEARANCE: f64 = 0.3;
 /// How far a face may lean over the normal of its edge, as a sine: the normal of facets that are nearly flat is found by
 /// rounding and by how they deform.
-const LEANING: f64 = 0.05;
+const LEANING: f64 = 0.01;
+/// The sine up to which the faces at an edge lie in one plane: over half of an edge, which is shorter than a voxel, it comes to less
+/// than what points have left of their clearance.
+const FLAT: f64 = 2.0 * CLEARANCE[1];
 /// How far, in parts of an edge, a crossing may slide beyond its ends before it is given up.
 const BEYOND: f64 = 0.1;
 
@@ -93,7 +92,7 @@ impl Touch {
 
     fn is_deep(&self, sample: usize, facing: Option<Facing>, points: &[Vec3]) -> bool {
         let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, points));
-        let least = (1.0 - DEEPEST) * self.clearance(sample as u32);
+        let least = self.clearance(sample as u32) - DEEPEST * self.description.voxel;
         meeting.is_some_and(|meeting| meeting.gap < least)
     }
 
@@ -162,6 +161,9 @@ impl Touch {
         if leans(ends, scale(sign, normal)) || leans(other, scale(-sign, normal)) {
             return None;
         }
+        if self.is_flat(ends, points) || self.is_flat(other, points) {
+            return None;
+        }
         let own = self.samples[index].surface == self.surface_of[triangle as usize];
         let allowed = if own {
             self.depth_of_edge(ends, triangle)?
@@ -177,6 +179,16 @@ impl Touch {
     fn faces_at(&self, [from, to]: [u32; 2]) -> impl Iterator<Item = u32> {
         let around = self.around[from as usize].iter().copied();
         around.filter(move |t| self.triangles[*t as usize].contains(&to))
+    }
+
+    /// Whether an edge is one within a plane, which its points keep others out of.
+    fn is_flat(&self, edge: [u32; 2], points: &[Vec3]) -> bool {
+        let mut faces = self.faces_at(edge);
+        let (Some(first), Some(second)) = (faces.next(), faces.next()) else {
+            return false;
+        };
+        let outward = normal(self.corners(first, points));
+        dot(self.inwards(second, edge, points), outward).abs() < FLAT
     }
 
     /// The sum of the normals at an edge.

@@ -64,15 +64,16 @@ const LEAST_AREA: f64 = 0.5;
 const STICK: [f64; 2] = [0.01, 1.0];
 /// By how much a correction must bring down what sticks and still creeps, and how much stiffer it is else.
 const STIFFER: f64 = 4.0;
-/// The clearance of surfaces that touch, in voxels.
-const CLEARANCE: f64 = 1e-4;
+/// The clearance of surfaces that touch, in voxels: that of points, and that of edges, which is what points have left of theirs at
+/// least. So edges carry nothing where surfaces lie flat on each other, as the sides of mismatched squares cross everywhere.
+const CLEARANCE: [f64; 2] = [2e-4, 1e-4];
 /// Looks at the start of a search for equilibrium; after a correction there is one.
 const LOOKS: u32 = 2;
 /// How far a sample may slide beyond the edge of the triangle that it faces before it looks again, in affine
 /// coordinates.
 const STRAYED: f64 = 0.5;
-/// What may be left of the clearance, of it: surfaces that touch do not intersect.
-const DEEPEST: f64 = 0.9;
+/// By how much gaps may be below the clearance at the end, in voxels: surfaces that touch do not intersect.
+const DEEPEST: f64 = 0.9e-4;
 /// How far apart samples may be that still press, and how far those may creep that stick, in voxels. Surfaces of
 /// different voxels do not fit each other to the last point, where multipliers converge slowly.
 const APART: f64 = 1e-3;
@@ -349,12 +350,8 @@ impl Touch {
 
     /// The gap that a sample keeps, m.
     fn clearance(&self, sample: u32) -> f64 {
-        let of_points = CLEARANCE * self.description.voxel;
-        if self.samples[sample as usize].is_edge() {
-            edges::CLEARANCE * of_points
-        } else {
-            of_points
-        }
+        let is_edge = self.samples[sample as usize].is_edge();
+        CLEARANCE[usize::from(is_edge)] * self.description.voxel
     }
 
     fn ends(&self, sample: u32, points: &[Vec3]) -> [Vec3; 2] {

@@ -82,8 +82,7 @@ impl Contact for Touch {
             let unit = self.penalty(sample as u32) * self.description.voxel;
             let pressed = (new.normal - old.normal) / unit;
             let crept = norm(sub(new.friction, old.friction)) / (state.stick * unit);
-            let deepest = DEEPEST * self.clearance(sample as u32) / self.description.voxel;
-            largest = largest.max(pressed / deepest).max(-pressed / APART);
+            largest = largest.max(pressed / DEEPEST).max(-pressed / APART);
             farthest = farthest.max(crept / CREEP);
         }
         let (holds, off) = self.corrected_ties(&state, positions);
@@ -98,8 +97,8 @@ impl Contact for Touch {
         }
         state.crept = farthest;
         // The forces of a settled state are those of its equilibrium, not of multipliers that came after.
-        let crossing = patient && self.face_edges(&mut state, positions);
-        let settled = largest <= enough && !crossing;
+        // Edges look once points have settled: where these are still too deep, the edges beside them are so too.
+        let settled = largest <= enough && !(patient && self.face_edges(&mut state, positions));
         if settled {
             state.settle_moment(enough <= precision);
         } else {
