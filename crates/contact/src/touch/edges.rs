@@ -15,9 +15,10 @@ use super::state::{Facing, State};
 use super::{CLEARANCE, DEEPEST, Touch};
 use crate::threads;
 
-/// How far a face may lean over the normal of its edge, as a sine: the normal of facets that are nearly flat is found by
-/// rounding and by how they deform.
-const LEANING: f64 = 0.01;
+/// How far a face may lean over the normal of its edge, as a sine: before the edge meets another one, where the normal of facets
+/// that are nearly flat is found by how they deform, and while it presses one, so that it does not turn to and fro
+/// between two.
+const LEANING: [f64; 2] = [0.01, 0.1];
 /// The sine up to which the faces at an edge lie in one plane: over half of an edge, which is shorter than a voxel, it comes to less
 /// than what points have left of their clearance.
 const FLAT: f64 = 2.0 * CLEARANCE[1];
@@ -55,7 +56,7 @@ impl Touch {
         changes
     }
 
-    /// What an edge faces while equilibrium is looked for: what it did, until one has left the other.
+    /// What an edge faces while equilibrium is looked for: what it did, or nothing once it has left that.
     pub(super) fn keep_across(
         &self,
         state: &State,
@@ -72,11 +73,7 @@ impl Touch {
         let meets = along
             .iter()
             .all(|part| (-BEYOND..=1.0 + BEYOND).contains(part));
-        if meets {
-            Some(facing)
-        } else {
-            self.look_across(state, index, points)
-        }
+        meets.then_some(facing)
     }
 
     fn is_pressed(
@@ -99,17 +96,19 @@ impl Touch {
     /// The edge that an edge lies across, of its candidates the one in which it is deepest; what it presses stays.
     fn look_across(&self, state: &State, index: usize, points: &[Vec3]) -> Option<Facing> {
         let before = state.facing[index];
+        if self.is_pressed(state, index, before, points)
+            && let Some(Facing::Across(triangle, corner, _)) = before
+            && let Some((_, kept)) = self.across(state, index, (triangle, corner), true, points)
+        {
+            return Some(kept);
+        }
         let mut best: Option<(f64, Facing)> = None;
         for &triangle in &state.candidates[index] {
             for corner in 0..3 {
-                let Some((gap, facing)) = self.across(state, index, (triangle, corner), points)
-                else {
-                    continue;
-                };
-                if before == Some(facing) && self.is_pressed(state, index, before, points) {
-                    return before;
-                }
-                if best.is_none_or(|(least, _)| gap < least) {
+                let found = self.across(state, index, (triangle, corner), false, points);
+                if let Some((gap, facing)) = found
+                    && best.is_none_or(|(least, _)| gap < least)
+                {
                     best = Some((gap, facing));
                 }
             }
@@ -117,12 +116,14 @@ impl Touch {
         best.map(|(_, facing)| facing)
     }
 
-    /// How an edge faces a side of a triangle, and the gap, if they are next to each other.
+    /// How an edge faces a side of a triangle, and the gap, if they are next to each other; where it `presses` that already, more
+    /// or less.
     fn across(
         &self,
         state: &State,
         index: usize,
         (triangle, corner): (u32, usize),
+        presses: bool,
         points: &[Vec3],
     ) -> Option<(f64, Facing)> {
         let ends = self.samples[index].ends;
@@ -135,7 +136,11 @@ impl Touch {
         let Crossing {
             along, normal, gap, ..
         } = at(points)?;
-        if !along.iter().all(|part| (0.0..=1.0).contains(part)) {
+        let beyond = if presses { BEYOND } else { 0.0 };
+        if !along
+            .iter()
+            .all(|part| (-beyond..=1.0 + beyond).contains(part))
+        {
             return None;
         }
         // From the other edge to this one, as their faces look.
@@ -149,14 +154,15 @@ impl Touch {
         // What is deeper in a surface than an edge is long is behind its points.
         let voxel = self.description.voxel;
         let length = |[a, b]: [u32; 2]| norm(sub(points[a as usize], points[b as usize]));
-        let to_end = |part: f64, ends: [u32; 2]| part.min(1.0 - part) * length(ends);
+        let to_end = |part: f64, ends: [u32; 2]| (beyond + part.min(1.0 - part)) * length(ends);
         let deepest = to_end(along[0], ends).min(to_end(along[1], other));
         if depth > deepest.min(DEPTH * voxel) || -depth > REACH * voxel {
             return None;
         }
         let leans = |edge: [u32; 2], away: Vec3| {
-            self.faces_at(edge)
-                .any(|face| dot(self.inwards(face, edge, points), away) < -LEANING)
+            self.faces_at(edge).any(|face| {
+                dot(self.inwards(face, edge, points), away) < -LEANING[usize::from(presses)]
+            })
         };
         if leans(ends, scale(sign, normal)) || leans(other, scale(-sign, normal)) {
             return None;

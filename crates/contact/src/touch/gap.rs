@@ -183,6 +183,24 @@ mod tests {
         }
 
         #[test]
+        fn no_places_of_two_lines_are_closer_than_where_they_cross(
+            first in prop::array::uniform2(point()), second in prop::array::uniform2(point()),
+            u in -2.0..2.0f64, v in -2.0..2.0f64,
+        ) {
+            let Some(found) = crossing(first, second) else { return Ok(()) };
+            let place = |[a, b]: [Vec3; 2], along: f64| {
+                let mut place = scale(1.0 - along, a);
+                axpy(&mut place, along, b);
+                place
+            };
+            let between = sub(place(first, found.along[0]), place(second, found.along[1]));
+            // Coordinates are up to the inverse of the least sine.
+            prop_assert!(norm(sub(between, scale(found.gap, found.normal))) < 1e-11);
+            let other = sub(place(first, u), place(second, v));
+            prop_assert!(found.gap.abs() <= norm(other) + 1e-12);
+        }
+
+        #[test]
         fn affine_coordinates_rebuild_the_foot(p in point(), corners in prop::array::uniform3(point())) {
             prop_assume!(area(corners) > 1e-3);
             let weights = affine(p, corners);
