@@ -14,13 +14,18 @@ use crate::settle::AtLoad;
 /// Steps of the look for a limit, and its first arc.
 const LOOK_STEPS: u32 = 60;
 const FIRST_LOOK: f64 = 0.02;
-/// How often an arc may be halved.
-const HALVINGS: u32 = 10;
+/// By what an arc that is lost is divided, and how often.
+const CUT: f64 = 3.0;
+const CUTS: u32 = 10;
 /// A step that took no more iterations than this lets the next one grow, by this.
 const EASY: u32 = 5;
 const GROWTH: f64 = 1.5;
 /// The same with contact, every correction of which takes some of them.
 const EASY_WITH_CONTACT: u32 = 15;
+/// How often a step with contact is cut before a corner of the path is looked for.
+const CUTS_TO_A_CORNER: u32 = 1;
+/// How many times more than a path allows on which the answer depends the load may change where it turns in a step.
+const LONGER: f64 = 2.0;
 /// A correction of this many lengths of the step has lost the path.
 const LONGEST_CORRECTION: f64 = 4.0;
 
@@ -35,6 +40,17 @@ impl Tangent {
     fn product(&self, moves: impl Iterator<Item = Vec3>, factor: f64) -> f64 {
         let moved: f64 = self.moves.iter().zip(moves).map(|(t, m)| dot(*t, m)).sum();
         moved + self.factor * factor
+    }
+
+    /// Its displacements alone, as a tangent; `None` where there are none. What is met turns the path by up to a right angle
+    /// and more where the load was falling: no plane across the tangent before has the path after, which goes on in
+    /// displacements.
+    fn at_corner(&self) -> Option<Self> {
+        let size = (1.0 - self.factor * self.factor).max(0.0).sqrt();
+        (size > 0.0).then(|| Self {
+            moves: self.moves.iter().map(|m| scale(1.0 / size, *m)).collect(),
+            factor: 0.0,
+        })
     }
 }
 
@@ -136,13 +152,27 @@ impl Walk {
     ) -> Result<Option<f64>, Failure> {
         let contact = path.equilibrium.problem.contact();
         let mut tangent = self.tangent_at(path, None)?;
-        let (mut last, mut halvings, mut taken) = (f64::INFINITY, 0, 0);
+        let (mut last, mut cuts, mut taken) = (f64::INFINITY, 0, 0);
         while taken < steps {
-            let length = self.length.min(self.longest / tangent.factor.abs());
+            let mut length = self.length.min(self.longest / tangent.factor.abs());
             contact.inspect(|contact| contact.extrapolate(length / last));
-            let failure = match self.step(path, &tangent, length, settings) {
+            let mut outcome = self.step(path, &tangent, length, settings);
+            let lost = matches!(outcome, Err(failure) if failure != Failure::Cancelled);
+            if lost
+                && let Some(contact) = contact
+                && cuts >= CUTS_TO_A_CORNER
+                && let Some(corner) = tangent.at_corner()
+            {
+                contact.go_back();
+                outcome = self.step(path, &corner, length, settings);
+                if outcome.is_ok() {
+                    // Cuts came of the corner, not of what follows.
+                    (tangent, length) = (corner, f64::max(length, settings.first_step));
+                }
+            }
+            let failure = match outcome {
                 Ok(iterations) => {
-                    (last, halvings) = (length, 0);
+                    (last, cuts) = (length, 0);
                     taken += 1;
                     self.length = length;
                     if iterations <= self.easy {
@@ -162,10 +192,10 @@ impl Walk {
             if failure == Failure::Cancelled {
                 return Err(failure);
             }
-            halvings += 1;
+            cuts += 1;
             path.equilibrium.back_offs += 1;
-            self.length = length / 3.0;
-            if halvings > HALVINGS {
+            self.length = length / CUT;
+            if cuts > CUTS {
                 return self.limit.map_or(Err(failure), |limit| Ok(Some(limit)));
             }
         }
@@ -197,6 +227,9 @@ impl Walk {
             path.equilibrium
                 .settle(&mut trial, &mut search, settings, path.observer)?;
         let mut point = search.point;
+        if (point.pressure - path.point.pressure).abs() > LONGER * self.longest {
+            return Err(Failure::Lost);
+        }
         if point.pressure > 1.0 && !path.looking {
             // Contact may depend on the way, which does not lead past the full load and back.
             if let Some(contact) = path.equilibrium.problem.contact() {

@@ -44,10 +44,7 @@ impl Constraint for Volume {
 
     fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64) {
         // The gradient of the weighted volume is the load direction itself.
-        (
-            load_direction(equilibrium, positions, self.unknown()),
-            0.0,
-        )
+        (load_direction(equilibrium, positions, self.unknown()), 0.0)
     }
 
     fn has_potential(&self, problem: &Problem) -> bool {
