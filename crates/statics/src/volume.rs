@@ -122,7 +122,11 @@ impl Growth {
             let next = (self.done + part).min(1.0);
             contact.inspect(|contact| contact.extrapolate((next - self.done) / last));
             loose.inspect(|loose| loose.hold(&path.positions, next - self.done));
-            let failure = match self.step(path, next, settings) {
+            // What dampers still hold in the end is let go from there.
+            path.looking = loose.is_some() && next == 1.0;
+            let outcome = self.step(path, next, settings);
+            path.looking = false;
+            let failure = match outcome {
                 Ok(iterations) => {
                     last = next - self.done;
                     self.done = next;
@@ -167,7 +171,6 @@ impl Growth {
         };
         let mut search = self.search(path, 1.0);
         let ending = path.release(loose, &mut search, settings);
-        self.see(path.point);
         Ending::new(ending.status(), self.turned, 1.0)
     }
 
