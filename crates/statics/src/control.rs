@@ -26,6 +26,8 @@ const EASY_WITH_CONTACT: u32 = 15;
 const CUTS_TO_A_CORNER: u32 = 1;
 /// How many times more than a path allows on which the answer depends the load may change where it turns in a step.
 const LONGER: f64 = 2.0;
+/// How many lengths of a step away its end may be: the plane across the tangent may meet other paths far away.
+const FARTHEST: f64 = 2.0;
 /// A correction of this many lengths of the step has lost the path.
 const LONGEST_CORRECTION: f64 = 4.0;
 
@@ -64,6 +66,26 @@ struct Plane<'a> {
     /// Where the tangent touches the path.
     start: &'a [Vec3],
     factor: f64,
+}
+
+impl Plane<'_> {
+    /// How far a state is from where the tangent touches the path; at a corner of the path, in displacements alone.
+    fn distance(&self, positions: &[Vec3], factor: f64) -> f64 {
+        let pairs = positions.iter().zip(self.start);
+        let free = pairs.zip(&self.tangent.moves);
+        // What the tangent does not move is held, or moves with the load.
+        let free = free.filter(|(_, tangent)| **tangent != [0.0; 3]);
+        let moved: f64 = free
+            .map(|((x, start), _)| sub(*x, *start))
+            .map(|m| dot(m, m))
+            .sum();
+        let load = if self.tangent.factor == 0.0 {
+            0.0
+        } else {
+            factor - self.factor
+        };
+        f64::hypot(moved.sqrt() / self.unit, load)
+    }
 }
 
 impl Constraint for Plane<'_> {
@@ -227,6 +249,9 @@ impl Walk {
             path.equilibrium
                 .settle(&mut trial, &mut search, settings, path.observer)?;
         let mut point = search.point;
+        if search.constraint.distance(&trial, point.pressure) > FARTHEST * length {
+            return Err(Failure::Lost);
+        }
         if (point.pressure - path.point.pressure).abs() > LONGER * self.longest {
             return Err(Failure::Lost);
         }

@@ -9,7 +9,7 @@ mod common;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use common::touching::{NONE, add_box, touching};
+use common::touching::{NONE, add_box, moved, touching};
 use common::{block, vertices_where};
 use voxsoft_contact::touch::{Surface, Touch};
 use voxsoft_solid::vector::Vec3;
@@ -40,15 +40,19 @@ fn largest() -> f64 {
     truss(HEIGHT - (length * length - ASIDE * ASIDE).sqrt())
 }
 
-/// What pushes the block: its weight down (N), or a chamber below it up.
+/// What pushes the block: its weight down (N), a clamp that goes down by a way (m) and pulls by a spring, or a chamber below it
+/// up.
 enum Push {
     Weight(f64),
+    Clamp(f64),
     Chamber,
 }
+/// That spring, N/m: softer than the truss is where it snaps through, so that its end goes back there.
+const PULLER: f64 = 30.0;
 
 fn guided(push: &Push) -> (Problem, Arc<Touch>) {
     let sign = match push {
-        Push::Weight(_) => -1.0,
+        Push::Weight(_) | Push::Clamp(_) => -1.0,
         Push::Chamber => 1.0,
     };
     let mut mesh = block([1, 1, 1], SIDE);
@@ -73,7 +77,7 @@ fn guided(push: &Push) -> (Problem, Arc<Touch>) {
         length: f64::hypot(ASIDE, HEIGHT),
         stiffness: STIFFNESS,
     };
-    let springs = Springs(bottom.iter().zip(anchors..).map(spring).collect());
+    let mut springs: Vec<Spring> = bottom.iter().zip(anchors..).map(spring).collect();
     let near = if sign > 0.0 { SIDE + FREE } else { -FREE };
     let far = near + sign * SIDE;
     let plate = add_box(
@@ -90,13 +94,26 @@ fn guided(push: &Push) -> (Problem, Arc<Touch>) {
         axes: [true, true, false],
         motion: None,
     };
-    let clamps = vec![guide, Clamp::fixed((anchors..base + 4).collect())];
+    let mut clamps = vec![guide, Clamp::fixed((anchors..base + 4).collect())];
+    if let Push::Clamp(way) = push {
+        let end = mesh.vertices.len() as u32;
+        mesh.vertices.push([0.5 * SIDE, 0.5 * SIDE, -SIDE]);
+        clamps.push(moved(vec![end], [true; 3], [0.0, 0.0, -way]));
+        springs.push(Spring {
+            vertices: bottom.iter().copied().chain([end]).collect(),
+            weights: vec![0.25, 0.25, 0.25, 0.25, -1.0],
+            anchor: [0.0; 3],
+            length: SIDE,
+            stiffness: PULLER,
+        });
+    }
     let body = Body::new(&mesh, &[common::rubber()]).unwrap();
     let loads = match push {
         Push::Weight(weight) => {
             let mass: f64 = body.masses().iter().sum();
             vec![Load::gravity([0.0, 0.0, -weight / mass])]
         }
+        Push::Clamp(_) => Vec::new(),
         // Either diagonal of the faces carries half of the pressure, so that all corners get the same.
         Push::Chamber => [false, true]
             .map(|other| chamber(&mesh.vertices, &bottom, base, other))
@@ -105,7 +122,10 @@ fn guided(push: &Push) -> (Problem, Arc<Touch>) {
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
     let table = vec![vec![NONE, 0.0], vec![0.0, NONE]];
     let (problem, touch) = touching(&mesh, clamps, loads, surfaces, table, SIDE);
-    (problem.with_term(Arc::new(springs)).unwrap(), touch)
+    (
+        problem.with_term(Arc::new(Springs(springs))).unwrap(),
+        touch,
+    )
 }
 
 /// Half of the pressure in the box between the block and its base.
@@ -211,6 +231,33 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     assert!(off.abs() < 1e-4 * weight, "{off}");
 }
 
+/// The end of the spring has gone by `w + F(w)/k` where the block has gone by `w`: to and fro.
+#[test]
+fn an_arc_follows_a_clamp_that_has_to_go_back() {
+    let all = 6e-3;
+    let (problem, touch) = guided(&Push::Clamp(all));
+    let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
+    assert_eq!(answer.status, Status::AtRest);
+    assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
+    let free: Vec<&Seen> = seen.iter().filter(|(_, z)| -z < FREE - CLEARANCE).collect();
+    for (factor, z) in &free {
+        let off = PULLER * (factor * all + z) - truss(-z);
+        assert!(off.abs() < EXACT * largest(), "{factor} {z}");
+    }
+    let end = |way: f64| way + truss(way) / PULLER;
+    let ways = (0..10_000).map(|k| FREE * f64::from(k) / 1e4);
+    let farthest = ways.map(end).fold(0.0, f64::max);
+    let limit = answer.limit.unwrap() * all / farthest;
+    // Arcs grow to some hundredths of the square that this is below the limit by.
+    assert!(limit > 0.95 && limit < 1.0 + EXACT, "{limit}");
+    let lowest = free.last().unwrap().0 * all / farthest;
+    assert!(lowest < 0.95, "{lowest}");
+    let way = -answer.positions[0][2];
+    assert!((way - FREE).abs() < CLEARANCE, "{way}");
+    let off = force(&touch, &answer) - (PULLER * (all - way) - truss(way));
+    assert!(off.abs() < EXACT * largest(), "{off}");
+}
+
 #[test]
 fn a_volume_pushes_past_a_limit_and_against_a_plate() {
     let (problem, touch) = guided(&Push::Chamber);
@@ -244,44 +291,45 @@ fn a_volume_pushes_past_a_limit_and_against_a_plate() {
     assert!((pressed / (modulus * strain * area) - 1.0).abs() < 0.03);
 }
 
-/// Who stops a run gets the last point that was found, with what touches there.
+/// Who stops a run, wherever that is, gets the last point that was found, with what contact held there.
 #[test]
 fn a_run_that_is_stopped_ends_at_its_last_point() {
     let ratio = 1.0 + (FREE + 0.01 * SIDE) / DEPTH;
-    let weight = Push::Weight(1.5 * largest());
-    // On the falling part, on the way to the plate, and at the plate.
-    for (push, control, far) in [
-        (weight, Control::ArcLength { steps: 200 }, 0.5 * HEIGHT),
+    let cases = [
         (
-            Push::Chamber,
-            Control::Volume { ratio, steps: 40 },
-            FREE - CLEARANCE,
+            Push::Weight(1.5 * largest()),
+            Control::ArcLength { steps: 200 },
         ),
-    ] {
-        let (problem, touch) = guided(&push);
+        (Push::Chamber, Control::Volume { ratio, steps: 40 }),
+    ];
+    for (push, control) in cases {
         let settings = Settings {
             control,
             first_step: 0.05,
             ..Settings::default()
         };
-        let (mut last, mut after) = (Vec::<Vec3>::new(), 0);
-        let answer = solve(&problem, None, &settings, &mut |now| {
-            if now.record {
-                last = now.positions.to_vec();
+        for stop in 1.. {
+            let (problem, _) = guided(&push);
+            let (mut last, mut after) = (problem.body().rest().to_vec(), 0);
+            let answer = solve(&problem, None, &settings, &mut |now| {
+                if now.record {
+                    last = now.positions.to_vec();
+                }
+                // From where the truss has let go by half on.
+                after += u32::from(!now.record && last[0][2].abs() > 0.7 * HEIGHT);
+                if after == stop {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+            if answer.status == Status::AtRest {
+                assert!(stop > 10, "{stop}");
+                break;
             }
-            let met = last.first().is_some_and(|x| x[2].abs() > far);
-            after += u32::from(met && !now.record);
-            // In the middle of the next step.
-            if after == 3 {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
-        });
-        assert_eq!(answer.status, Status::Cancelled);
-        assert_eq!(answer.positions, last);
-        assert!(answer.residual < settings.tolerance);
-        let touches = touch.pairs(&answer.positions).len() == 1;
-        assert_eq!(touches, matches!(push, Push::Chamber));
+            assert_eq!(answer.status, Status::Cancelled);
+            assert_eq!(answer.positions, last);
+            assert!(answer.residual < settings.tolerance, "{stop} {answer:?}");
+        }
     }
 }
