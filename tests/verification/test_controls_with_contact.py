@@ -21,7 +21,7 @@ STIFF = 10 * CLEARANCE
 
 
 def balloon(gap, friction, pressure=PRESSURE, **settings):
-    """A hollow ball on a clamp grows towards a wall. Clamps hold it in its two planes of symmetry, past which it
+    """A hollow ball on a clamp grows toward a wall. Clamps hold it in its two planes of symmetry, past which it
     would swell to one side."""
     wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 17.5 * mm + gap))
     return vs.Design(
@@ -66,9 +66,7 @@ def fork(pressure, bodies=False, friction=0.0, **settings):
         for name, shape, loads in (("left", prong, [load]), ("right", other, []))
     }
     placed = [Body(name=name, design=design) for name, design in each.items()]
-    return vs.Design(
-        name="fork", voxel_size=side, bodies=placed, contact=contact, solver=solver
-    )
+    return vs.Design(name="fork", voxel_size=side, bodies=placed, contact=contact, solver=solver)
 
 
 CASES = {
@@ -89,7 +87,9 @@ def test_a_volume_has_the_pressure_under_which_load_control_finds_it(case, frict
     assert by_load.status == "ok", by_load.message
     (touching,), (expected,) = by_volume.contacts, by_load.contacts
     assert touching.pressed > 0.0
-    assert touching.pressed == pytest.approx(expected.pressed, rel=STIFF if friction == 0.0 else 0.01)
+    assert touching.pressed == pytest.approx(
+        expected.pressed, rel=STIFF if friction == 0.0 else 0.01
+    )
     off = np.abs(by_load.positions - by_volume.positions).max() / design(0, 0).assembled.voxel_size
     # Friction depends on the way: paths of twenty steps of other lengths differ by less than the motion in one of them.
     moved = np.abs(by_volume.displacements).max() / by_volume.design.assembled.voxel_size
@@ -186,7 +186,9 @@ def test_a_chamber_that_grows_lifts_what_lies_on_it():
 
 
 def test_an_arc_with_a_free_object_is_refused():
-    with pytest.raises(SimulationError, match=r"objects\[0\].motion: is free, .*control = \"volume"):
+    with pytest.raises(
+        SimulationError, match=r"objects\[0\].motion: is free, .*control = \"volume"
+    ):
         simulate(lifted(1 * kPa, control="arc-length"))
 
 
@@ -197,7 +199,9 @@ def test_derivatives_follow_load_control_only(way):
     result = simulate(balloon(0.5 * mm, 0.0, 5 * kPa, control=way, **how))
     assert result.status == "ok", result.message
     with pytest.raises(SimulationError, match=f'leave control = "{way}" out'):
-        gradient(result, {"up": Objective(maximize="contact_force", object="wall")}, "loads.0.value")
+        gradient(
+            result, {"up": Objective(maximize="contact_force", object="wall")}, "loads.0.value"
+        )
 
 
 def test_an_arc_that_ends_early_says_so():
