@@ -187,7 +187,8 @@ def test_an_arc_along_which_a_plate_moves_ends_where_load_control_does(friction)
     assert by_arc.limit_factor is None
     assert by_arc.stable is True
     off = np.abs(by_arc.positions - by_load.positions).max()
-    # The clearance of contact is 1e-4 voxels; friction depends on the steps, in each of which the plate moves so far.
+    # The clearance of contact is 1e-4 voxels; friction depends on the steps, in each of which the
+    # plate moves so far.
     step = abs(by_load.probes["top"][2]) / 20
     assert off < (1e-4 * by_load.design.voxel_size if friction == 0.0 else step)
 

@@ -1,6 +1,7 @@
-"""Volume and arc-length control of what touches, beside load control at the pressure that they report.
+"""Volume and arc-length control of what touches, beside load control at the pressure of either.
 
-Contact settles to its clearance, 1e-4 voxels: two states that are found on different ways are as near as that.
+Contact settles to its clearance, 1e-4 voxels: two states that are found on different ways are as
+near as that.
 """
 
 import numpy as np
@@ -21,8 +22,10 @@ STIFF = 10 * CLEARANCE
 
 
 def balloon(gap, friction, pressure=PRESSURE, **settings):
-    """A hollow ball on a clamp grows toward a wall. Clamps hold it in its two planes of symmetry, past which it
-    would swell to one side."""
+    """A hollow ball on a clamp grows toward a wall.
+
+    Clamps hold it in its two planes of symmetry, past which it would swell to one side.
+    """
     wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 17.5 * mm + gap))
     return vs.Design(
         name="balloon",
@@ -43,8 +46,10 @@ def balloon(gap, friction, pressure=PRESSURE, **settings):
 
 
 def fork(pressure, bodies=False, friction=0.0, **settings):
-    """A prong with a chamber, whose walls swell across a slit of one voxel onto another prong: of the same body on one foot,
-    or of another body."""
+    """A prong with a chamber, whose walls swell across a slit of one voxel onto another prong.
+
+    That is of the same body, on one foot, or of another body.
+    """
     side = 3 * mm
     n = lambda *cells: tuple(side * cell for cell in cells)  # noqa: E731
     prong = vs.Box(size=n(3, 7, 7)) - vs.Box(size=n(1, 5, 5), corner=n(1, 1, 1))
@@ -91,7 +96,8 @@ def test_a_volume_has_the_pressure_under_which_load_control_finds_it(case, frict
         expected.pressed, rel=STIFF if friction == 0.0 else 0.01
     )
     off = np.abs(by_load.positions - by_volume.positions).max() / design(0, 0).assembled.voxel_size
-    # Friction depends on the way: paths of twenty steps of other lengths differ by less than the motion in one of them.
+    # Friction depends on the way: paths of twenty steps of other lengths differ by less than the
+    # motion in one of them.
     moved = np.abs(by_volume.displacements).max() / by_volume.design.assembled.voxel_size
     assert off < (CLEARANCE if friction == 0.0 else moved / 20)
 
@@ -117,7 +123,8 @@ def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_li
     # As near as the clearance, and what a soft state makes of it.
     assert np.abs(by_volume.positions - by_arc.positions).max() < 2 * CLEARANCE * 5 * mm
     assert by_volume.contacts[0].force[2] == pytest.approx(contact.force[2], rel=1e-4)
-    # Both pass the limit, which is the highest of the points on either path: below the true one by the square of a step.
+    # Both pass the limit, which is the highest of the points on either path: below the true one by
+    # the square of a step.
     assert by_volume.limit_factor == pytest.approx(by_arc.limit_factor, rel=1e-3)
     assert by_volume.load_factor < by_volume.limit_factor < 1.0
     # At its pressure load control finds the state before the limit, where the wall is hardly met.
@@ -141,7 +148,7 @@ def test_clamp_and_wall_carry_one_another(past_the_limit):
 
 
 def test_a_step_that_is_too_long_is_cut_and_forgotten():
-    """All of the growth in one step is lost; the cut ones lead to the state that short ones find."""
+    """All of the growth in one step is lost; cut ones lead to the state that short ones find."""
     how = {"control": "volume", "volume_ratio": 12.0}
     short = simulate(balloon(7 * mm, 0.0, **how, steps=30))
     long = simulate(balloon(7 * mm, 0.0, **how, steps=1))
@@ -175,7 +182,7 @@ def test_a_chamber_that_grows_lifts_what_lies_on_it():
     assert found.limit_factor is None
     assert found.stable is True
     weight = 2000.0 * (20 * mm) ** 2 * 4 * mm * 9.81
-    # The residual is 1e-8 of all loads, of which pressures are the most.
+    # The lid is traced by marching cubes, which cut its edges off.
     assert found.contacts[0].force[2] == pytest.approx(-weight, rel=0.03)
     expected = simulate(lifted(20 * kPa * found.load_factor))
     assert found.contacts[0].force[2] == pytest.approx(expected.contacts[0].force[2], rel=1e-6)

@@ -215,8 +215,8 @@ def sentence(
                 )
             if way == "arc-length" and path.factor > 0.0:
                 return (
-                    f"the path was followed to {carried}, where its steps ended or found no way on, "
-                    f"after {iterations}; kept is its last equilibrium. Try {ways}"
+                    f"the path was followed to {carried}, where its steps ended or found no way "
+                    f"on, after {iterations}; kept is its last equilibrium. Try {ways}"
                 )
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "

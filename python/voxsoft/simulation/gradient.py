@@ -314,7 +314,7 @@ def _check_state(result: Result) -> None:
         way = result.solver["way"]
         raise SimulationError(
             "gradient",
-            f"the result comes from {way} control, and with contact derivatives follow load control",
+            f"the result comes from {way} control, and with contact they follow load control",
             f'leave control = "{way}" out',
         )
     if result.stable is False:
