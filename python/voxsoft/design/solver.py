@@ -70,7 +70,7 @@ class Solver(Record):
         All three know contact; with ``"arc-length"`` objects that are free are refused.
     steps
         Arc-length and volume control only: the steps; default 20. With friction a step takes at
-        most a twentieth of the load or the growth: arc-length control needs more then.
+        most a twentieth of the load or the growth: an arc that turns needs more of them.
     volume_ratio
         Volume control only: the pressurized volume at its end over that without pressure;
         default 1.5.
