@@ -169,13 +169,28 @@ def test_an_object_may_touch_the_unloaded_body():
     [
         {"method": "xpbd", "end_time": "0.1 s"},
         {"method": "relaxation"},
-        {"control": "arc-length"},
-        {"control": "volume"},
     ],
 )
 def test_methods_that_know_no_contact_refuse_it(settings):
-    with pytest.raises(SimulationError, match="found by load control and by implicit dynamics"):
+    with pytest.raises(SimulationError, match="found by statics and by implicit dynamics"):
         simulate(pressed(solver=Solver(**settings)))
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_an_arc_along_which_a_plate_moves_ends_where_load_control_does(friction):
+    by_load = simulate(pressed(contact=Contact(friction=friction)))
+    # With friction a step takes at most a twentieth of the way.
+    arc = Solver(control="arc-length", steps=60)
+    by_arc = simulate(pressed(contact=Contact(friction=friction), solver=arc))
+    assert by_arc.status == "ok", by_arc.message
+    assert by_arc.load_factor == 1.0
+    assert by_arc.limit_factor is None
+    assert by_arc.stable is True
+    off = np.abs(by_arc.positions - by_load.positions).max()
+    # The clearance of contact is 1e-4 voxels; friction depends on the steps, in each of which the
+    # plate moves so far.
+    step = abs(by_load.probes["top"][2]) / 20
+    assert off < (1e-4 * by_load.design.voxel_size if friction == 0.0 else step)
 
 
 def test_what_knows_no_contact_says_so(result):
@@ -203,6 +218,6 @@ def test_a_path_that_ends_early_proposes_what_knows_contact():
     # The plate ends 0.3 mm below the ground that the block stands on.
     result = simulate(pressed(way=-SIDE - 0.8 * mm))
     assert result.status == "not-at-rest"
-    assert "arc-length" not in result.message
+    assert 'control = "arc-length"' in result.message
     assert "xpbd" not in result.message
     assert 'method = "dynamics"' in result.message

@@ -236,6 +236,26 @@ def test_a_balloon_has_one_limit_pressure_by_volume_and_by_load():
     assert np.abs(again.positions - by_load.positions).max() < 1e-4 * size
 
 
+@pytest.mark.parametrize("control", ["volume", "arc-length"])
+def test_a_ball_that_grows_lands_on_the_floor(control):
+    hung = {
+        "clamps": [vs.Clamp(region=vs.Region(z=(14.9 * mm, "inf")))],
+        "floor": vs.Floor(z=-16 * mm),
+    }
+    soft = vs.Part(
+        shape=ball(0).parts[0].shape, material=vs.NeoHookean(young=60 * kPa, poisson=0.45)
+    )
+    design = ball(8 * kPa).replace(**hung, parts=[soft])
+    how = {"volume_ratio": 2.0} if control == "volume" else {"steps": 40}
+    found = simulate(design, method="statics", control=control, **how)
+    assert found.status == "ok", found.message
+    assert found.positions[:, 2].min() == pytest.approx(-16 * mm, abs=1e-12)
+    same = design.replace(loads=[vs.Pressure(value=8 * kPa * found.load_factor)])
+    expected = simulate(same, method="statics")
+    # What residuals of 1e-8 leave of displacements of millimeters.
+    assert np.abs(found.positions - expected.positions).max() < 1e-9
+
+
 def test_voxels_on_one_edge_are_refused_as_a_hinge():
     two = vs.Box(size=(SIDE,) * 3) | vs.Box(size=(SIDE,) * 3, corner=(SIDE, 0, SIDE))
     design = vs.Design(

@@ -1,202 +1,128 @@
-//! Paths on which the load is an unknown: what they share, and arc length. Volume control has a file of
-//! its own.
-//!
-//! They solve the equilibrium `r(x, s) = 0` with one more equation `c(x, s) = 0`. A Newton step of the
-//! bordered system takes two solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`:
-//! `δx = a + b δs`, and the extra equation gives `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The
-//! tangent may be indefinite; it is singular only at single points of the path.
+//! Arc-length control: steps are measured along the path in displacements and loads, so that it is followed where the load
+//! falls. The constraint of [`crate::bordered`] is the plane across the path's tangent at the length of the step.
 
-use std::ops::ControlFlow;
+use voxsoft_solid::vector::{Vec3, dot, scale, sub};
+use voxsoft_solid::{Problem, Status};
 
-use voxsoft_solid::vector::{Vec3, add, scale};
-use voxsoft_solid::{Progress, Status};
-
-use crate::equilibrium::Failure;
-use crate::path::{Ending, Path, status_of};
+use crate::bordered::{Bordered, Constraint, Missing, Place, Unknown, assemble, product};
+use crate::equilibrium::{Equilibrium, Failure};
+use crate::path::{Ending, LONGEST_OF_WAY, Path, status_of};
 use crate::point::Point;
 use crate::settings::Settings;
+use crate::settle::AtLoad;
 
-/// Steps of the look for a limit, and how long they are against the last step that converged.
+/// Steps of the look for a limit, and its first arc.
 const LOOK_STEPS: u32 = 60;
-/// Iterations of one bordered step.
-const BORDERED_ITERATIONS: u32 = 12;
-/// How often an arc may be halved.
-const HALVINGS: u32 = 10;
+const FIRST_LOOK: f64 = 0.02;
+/// By what an arc that is lost is divided, and how often.
+const CUT: f64 = 3.0;
+const CUTS: u32 = 10;
+/// A step that took no more iterations than this lets the next one grow, by this.
+const EASY: u32 = 5;
+const GROWTH: f64 = 1.5;
+/// The same with contact, every correction of which takes some of them.
+const EASY_WITH_CONTACT: u32 = 15;
+/// How often a step with contact is cut before a corner of the path is looked for.
+const CUTS_TO_A_CORNER: u32 = 1;
+/// How many times more than a path allows on which the answer depends the load may change where it turns in a step.
+const LONGER: f64 = 2.0;
+/// How many lengths of a step away its end may be: the plane across the tangent may meet other paths far away.
+const FARTHEST: f64 = 2.0;
+/// A correction of this many lengths of the step has lost the path.
+const LONGEST_CORRECTION: f64 = 4.0;
 
-/// Which factor is the unknown.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Unknown {
-    All,
-    Pressure,
-}
-
-impl Unknown {
-    pub fn with(self, point: Point, factor: f64) -> Point {
-        match self {
-            Self::All => Point::all(factor),
-            Self::Pressure => Point {
-                pressure: factor,
-                ..point
-            },
-        }
-    }
-}
-
-/// The derivative of the forces by the unknown factor, on free coordinates.
-pub(crate) fn load_direction(
-    path: &Path<'_, '_>,
-    positions: &[Vec3],
-    unknown: Unknown,
-) -> Vec<f64> {
-    let one = match unknown {
-        Unknown::All => Point::all(1.0),
-        Unknown::Pressure => Point::of(0.0, 1.0),
-    };
-    let mut forces = vec![[0.0; 3]; positions.len()];
-    path.equilibrium
-        .problem
-        .add_scaled_loads(positions, &one.factor_of(), &mut forces);
-    path.equilibrium.system.gather(&forces)
-}
-
-/// Solves `K a = r` and `K b = ∂r/∂s` at a state.
-fn two_solutions(
-    path: &mut Path<'_, '_>,
-    positions: &[Vec3],
-    point: Point,
-    unknown: Unknown,
-    residual: &[f64],
-) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-    let mut a = residual.to_vec();
-    let equilibrium = &mut path.equilibrium;
-    equilibrium.iterations += 1;
-    equilibrium.system.assemble(
-        equilibrium.problem,
-        positions,
-        &point.factor_of(),
-        None,
-        None,
-        &mut a,
-    );
-    let factor = equilibrium.system.factor(0.0)?;
-    let system = &path.equilibrium.system;
-    system.solve_directly(&factor, &mut a);
-    let mut b = load_direction(path, positions, unknown);
-    let system = &path.equilibrium.system;
-    system.solve_directly(&factor, &mut b);
-    if a.iter().chain(&b).all(|x| x.is_finite()) {
-        Ok((a, b))
-    } else {
-        Err(Failure::Singular)
-    }
-}
-
-pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-/// A direction along the path: displacement per arc, and change of the factor.
+/// A direction along the path: displacement of all vertices per arc, and change of the factor.
 #[derive(Clone)]
 struct Tangent {
-    moves: Vec<f64>,
+    moves: Vec<Vec3>,
     factor: f64,
 }
 
-/// One step of the arc `length` along `tangent`; displacements count in units of `unit` (m).
-fn arc_step(
-    path: &mut Path<'_, '_>,
-    tangent: &Tangent,
-    length: f64,
-    unit: f64,
-    settings: &Settings,
-) -> Result<(), Failure> {
-    let unknown = Unknown::All;
-    let mut positions = path.positions.clone();
-    let mut factor = path.point.pressure;
-    let shift = |positions: &mut Vec<Vec3>, moves: Vec<Vec3>, part: f64| {
-        for (x, m) in positions.iter_mut().zip(moves) {
-            *x = add(*x, scale(part, m));
-        }
-    };
-    let spread = path.equilibrium.system.spread(&tangent.moves);
-    shift(&mut positions, spread, length * unit);
-    factor += length * tangent.factor;
-    for iteration in 1..=BORDERED_ITERATIONS {
-        let point = unknown.with(path.point, factor);
-        path.equilibrium
-            .problem
-            .place_clamps(f64::INFINITY, factor, &mut positions);
-        let forces = path.equilibrium.forces(&positions, point);
-        let progress = Progress {
-            steps: u64::from(path.equilibrium.iterations),
-            time: factor,
-            residual: forces.relative(),
-            positions: &positions,
-            velocities: &[],
-            record: false,
-        };
-        if let ControlFlow::Break(()) = (path.observer)(&progress) {
-            return Err(Failure::Cancelled);
-        }
-        if !forces.relative().is_finite() {
-            return Err(Failure::Lost);
-        }
-        if forces.relative() <= settings.tolerance {
-            path.accept(positions, point, iteration, forces.relative());
-            return Ok(());
-        }
-        let (a, b) = two_solutions(path, &positions, point, unknown, &forces.free)?;
-        // The correction stays in the plane across the tangent.
-        let across = product(&tangent.moves, &b) / unit + tangent.factor;
-        let change = -product(&tangent.moves, &a) / unit / across;
-        let moves: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();
-        let largest = moves.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        // A correction longer than the step has lost the path.
-        if !(largest < 4.0 * length * unit + 1e-9 * unit) && iteration > 2 {
-            return Err(Failure::Lost);
-        }
-        let spread = path.equilibrium.system.spread(&moves);
-        shift(&mut positions, spread, 1.0);
-        factor += change;
+impl Tangent {
+    fn product(&self, moves: impl Iterator<Item = Vec3>, factor: f64) -> f64 {
+        let moved: f64 = self.moves.iter().zip(moves).map(|(t, m)| dot(*t, m)).sum();
+        moved + self.factor * factor
     }
-    Err(Failure::Lost)
+
+    /// Its displacements alone, as a tangent; `None` where there are none. What is met turns the path by up to a right angle
+    /// and more where the load was falling: no plane across the tangent before has the path after, which goes on in
+    /// displacements.
+    fn at_corner(&self) -> Option<Self> {
+        let size = (1.0 - self.factor * self.factor).max(0.0).sqrt();
+        (size > 0.0).then(|| Self {
+            moves: self.moves.iter().map(|m| scale(1.0 / size, *m)).collect(),
+            factor: 0.0,
+        })
+    }
 }
 
-/// The direction of the path at the present point, with the sign that goes on along `before`.
-fn tangent_at(
-    path: &mut Path<'_, '_>,
-    before: Option<&Tangent>,
+/// The plane across a tangent, a length away from where it touches the path.
+#[derive(Clone)]
+struct Plane<'a> {
+    tangent: &'a Tangent,
+    length: f64,
+    /// The length that displacements count in, m.
     unit: f64,
-) -> Result<Tangent, Failure> {
-    let positions = path.positions.clone();
-    let forces = path.equilibrium.forces(&positions, path.point);
-    let (_, b) = two_solutions(path, &positions, path.point, Unknown::All, &forces.free)?;
-    let length = (product(&b, &b) / (unit * unit) + 1.0).sqrt();
-    let mut tangent = Tangent {
-        moves: b.iter().map(|x| x / (unit * length)).collect(),
-        factor: 1.0 / length,
-    };
-    if let Some(before) = before {
-        let along = product(&tangent.moves, &before.moves) + tangent.factor * before.factor;
-        if along < 0.0 {
-            tangent.moves.iter_mut().for_each(|x| *x = -*x);
-            tangent.factor = -tangent.factor;
+    /// Where the tangent touches the path.
+    start: &'a [Vec3],
+    factor: f64,
+}
+
+impl Plane<'_> {
+    /// How far a state is from where the tangent touches the path; at a corner of the path, in displacements alone.
+    fn distance(&self, positions: &[Vec3], factor: f64) -> f64 {
+        let pairs = positions.iter().zip(self.start);
+        let free = pairs.zip(&self.tangent.moves);
+        // What the tangent does not move is held, or moves with the load.
+        let free = free.filter(|(_, tangent)| **tangent != [0.0; 3]);
+        let moved: f64 = free
+            .map(|((x, start), _)| sub(*x, *start))
+            .map(|m| dot(m, m))
+            .sum();
+        let load = if self.tangent.factor == 0.0 {
+            0.0
+        } else {
+            factor - self.factor
+        };
+        f64::hypot(moved.sqrt() / self.unit, load)
+    }
+}
+
+impl Constraint for Plane<'_> {
+    fn unknown(&self) -> Unknown {
+        Unknown::All
+    }
+
+    fn missing(&self, _problem: &Problem, positions: &[Vec3], factor: f64) -> Missing {
+        let pairs = positions.iter().zip(self.start);
+        let moves = pairs.map(|(x, start)| scale(1.0 / self.unit, sub(*x, *start)));
+        let size = self.length - self.tangent.product(moves, factor - self.factor);
+        Missing {
+            size,
+            relative: (size / self.length).abs(),
         }
     }
-    Ok(tangent)
+
+    fn gradient(&self, equilibrium: &Equilibrium<'_>, _positions: &[Vec3]) -> (Vec<f64>, f64) {
+        let mut across = equilibrium.system.gather(&self.tangent.moves);
+        across.iter_mut().for_each(|x| *x /= self.unit);
+        (across, self.tangent.factor)
+    }
+
+    fn has_potential(&self, _problem: &Problem) -> bool {
+        false
+    }
+
+    fn longest_correction(&self) -> f64 {
+        LONGEST_CORRECTION * self.length * self.unit
+    }
 }
 
 /// Follows the path by arc length to the full load.
 pub(crate) fn follow_arc(path: &mut Path<'_, '_>, settings: &Settings, steps: u32) -> Ending {
-    let unit = path_unit(path);
-    let first = settings.first_step;
-    let (status, limit) = match walk(path, settings, steps, first, unit, 1.0) {
-        Ok(limit) if path.point.pressure >= 1.0 => {
-            let full = Point::all(1.0);
-            let start = path.positions.clone();
-            let settled = path.settle(start, full, settings, true);
-            (settled.map_or_else(status_of, |_| Status::AtRest), limit)
-        }
+    let mut walk = Walk::new(path, settings.first_step);
+    let (status, limit) = match walk.walk(path, settings, steps) {
+        Ok(limit) if path.point.pressure >= 1.0 => (Status::AtRest, limit),
         Ok(limit) => (
             limit.map_or(Status::NotConverged, |_| Status::LimitReached),
             limit,
@@ -206,75 +132,202 @@ pub(crate) fn follow_arc(path: &mut Path<'_, '_>, settings: &Settings, steps: u3
     Ending::new(status, limit, path.point.pressure)
 }
 
-/// Displacements are measured against the diameter of the body, times the root of the number of
-/// coordinates: an arc of one is about a body length of motion.
-fn path_unit(path: &Path<'_, '_>) -> f64 {
-    0.05 * path.equilibrium.problem.body().size() * (path.equilibrium.system.size() as f64).sqrt()
+/// A walk along a path.
+struct Walk {
+    /// Displacements are measured against the size of the body, times the root of the number of
+    /// coordinates: an arc of one is about a body length of motion.
+    unit: f64,
+    length: f64,
+    /// The largest change of the load in a step.
+    longest: f64,
+    /// Steps that took no more iterations than this let the next one grow.
+    easy: u32,
+    highest: f64,
+    /// The largest factor of a path that turned back.
+    limit: Option<f64>,
 }
 
-/// Walks along the path until the factor passes `end`; the largest factor seen if it turned back.
-fn walk(
-    path: &mut Path<'_, '_>,
-    settings: &Settings,
-    steps: u32,
-    first: f64,
-    unit: f64,
-    end: f64,
-) -> Result<Option<f64>, Failure> {
-    let mut tangent = tangent_at(path, None, unit)?;
-    let mut length = first;
-    let (mut highest, mut limit) = (path.point.pressure, None);
-    let mut halvings = 0;
-    let mut taken = 0;
-    while taken < steps {
-        match arc_step(path, &tangent, length, unit, settings) {
-            Ok(()) => {
-                taken += 1;
-                halvings = 0;
-                let last = path.points.last().map_or(0, |p| p.iterations);
-                if last <= 4 {
-                    length *= 1.5;
-                }
-                let now = path.point.pressure;
-                let turned = now < highest - 1e-9;
-                if turned && limit.is_none() {
-                    limit = Some(highest);
-                }
-                if let Some(point) = path.points.last_mut() {
-                    point.stable = limit.is_none();
-                }
-                highest = highest.max(now);
-                if now >= end || (path.looking && limit.is_some()) {
-                    return Ok(limit);
-                }
-                tangent = tangent_at(path, Some(&tangent), unit)?;
-            }
-            Err(Failure::Cancelled) => return Err(Failure::Cancelled),
-            Err(failure) => {
-                halvings += 1;
-                path.equilibrium.back_offs += 1;
-                length /= 3.0;
-                if halvings > HALVINGS {
-                    return if limit.is_some() {
-                        Ok(limit)
-                    } else {
-                        Err(failure)
-                    };
-                }
-            }
+impl Walk {
+    fn new(path: &Path<'_, '_>, length: f64) -> Self {
+        let equilibrium = &path.equilibrium;
+        let contact = equilibrium.problem.contact();
+        let size = equilibrium.problem.body().size();
+        Self {
+            unit: 0.05 * size * (equilibrium.system.size() as f64).sqrt(),
+            length,
+            longest: match contact {
+                Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
+                _ => f64::INFINITY,
+            },
+            easy: contact.map_or(EASY, |_| EASY_WITH_CONTACT),
+            highest: path.point.pressure,
+            limit: None,
         }
     }
-    Ok(limit)
+
+    /// Walks until the full load is reached; the largest factor seen if the path turned back.
+    fn walk(
+        &mut self,
+        path: &mut Path<'_, '_>,
+        settings: &Settings,
+        steps: u32,
+    ) -> Result<Option<f64>, Failure> {
+        let contact = path.equilibrium.problem.contact();
+        let mut tangent = self.tangent_at(path, None)?;
+        let (mut last, mut cuts, mut taken) = (f64::INFINITY, 0, 0);
+        while taken < steps {
+            let mut length = self.length.min(self.longest / tangent.factor.abs());
+            contact.inspect(|contact| contact.extrapolate(length / last));
+            let mut outcome = self.step(path, &tangent, length, settings);
+            let lost = matches!(outcome, Err(failure) if failure != Failure::Cancelled);
+            if lost
+                && let Some(contact) = contact
+                && cuts >= CUTS_TO_A_CORNER
+                && let Some(corner) = tangent.at_corner()
+            {
+                contact.go_back();
+                outcome = self.step(path, &corner, length, settings);
+                if outcome.is_ok() {
+                    // Cuts came of the corner, not of what follows.
+                    (tangent, length) = (corner, f64::max(length, settings.first_step));
+                }
+            }
+            let failure = match outcome {
+                Ok(iterations) => {
+                    (last, cuts) = (length, 0);
+                    taken += 1;
+                    self.length = length;
+                    if iterations <= self.easy {
+                        self.length *= GROWTH;
+                    }
+                    self.see(path);
+                    let now = path.point.pressure;
+                    if now >= 1.0 || (path.looking && self.limit.is_some()) {
+                        return Ok(self.limit);
+                    }
+                    tangent = self.tangent_at(path, Some(&tangent))?;
+                    continue;
+                }
+                Err(failure) => failure,
+            };
+            contact.inspect(|contact| contact.go_back());
+            if failure == Failure::Cancelled {
+                return Err(failure);
+            }
+            cuts += 1;
+            path.equilibrium.back_offs += 1;
+            self.length = length / CUT;
+            if cuts > CUTS {
+                return self.limit.map_or(Err(failure), |limit| Ok(Some(limit)));
+            }
+        }
+        Ok(self.limit)
+    }
+
+    /// One step along `tangent`, or the last one to the full load where it passes that; the iterations that it took.
+    fn step(
+        &self,
+        path: &mut Path<'_, '_>,
+        tangent: &Tangent,
+        length: f64,
+        settings: &Settings,
+    ) -> Result<u32, Failure> {
+        let start = path.positions.clone();
+        let plane = Plane {
+            tangent,
+            length,
+            unit: self.unit,
+            start: &start,
+            factor: path.point.pressure,
+        };
+        let mut search = Bordered {
+            constraint: plane,
+            point: path.point,
+        };
+        let mut trial = start.clone();
+        let mut found =
+            path.equilibrium
+                .settle(&mut trial, &mut search, settings, path.observer)?;
+        let mut point = search.point;
+        if search.constraint.distance(&trial, point.pressure) > FARTHEST * length {
+            return Err(Failure::Lost);
+        }
+        if (point.pressure - path.point.pressure).abs() > LONGER * self.longest {
+            return Err(Failure::Lost);
+        }
+        if point.pressure > 1.0 && !path.looking {
+            // Contact may depend on the way, which does not lead past the full load and back.
+            if let Some(contact) = path.equilibrium.problem.contact() {
+                contact.go_back();
+                trial = start.clone();
+            }
+            point = Point::all(1.0);
+            let mut full = AtLoad { point, safe: true };
+            let last = path
+                .equilibrium
+                .settle(&mut trial, &mut full, settings, path.observer)?;
+            found.iterations += last.iterations;
+            found.residual = last.residual;
+        }
+        path.accept(trial, point, found.iterations, found.residual);
+        Ok(found.iterations)
+    }
+
+    /// Sees where a new point of the path is.
+    fn see(&mut self, path: &mut Path<'_, '_>) {
+        let now = path.point.pressure;
+        if now < self.highest - 1e-9 && self.limit.is_none() {
+            self.limit = Some(self.highest);
+        }
+        if let Some(point) = path.points.last_mut() {
+            point.stable = self.limit.is_none();
+        }
+        self.highest = self.highest.max(now);
+    }
+
+    /// The direction of the path at the present point, with the sign that goes on along `before`.
+    fn tangent_at(
+        &self,
+        path: &mut Path<'_, '_>,
+        before: Option<&Tangent>,
+    ) -> Result<Tangent, Failure> {
+        let (positions, equilibrium) = (&path.positions, &mut path.equilibrium);
+        equilibrium.follow_contact(positions)?;
+        let residual = equilibrium.forces(positions, path.point).free;
+        let place = Place {
+            positions,
+            point: path.point,
+            unknown: Unknown::All,
+            strains: None,
+            jump: None,
+        };
+        let sides = assemble(equilibrium, place, &residual);
+        let factor = equilibrium.system.factor(0.0)?;
+        let (_, b) = sides.solve(equilibrium, &factor)?;
+        let length = (product(&b, &b) / (self.unit * self.unit) + 1.0).sqrt();
+        let moves = equilibrium.system.spread(&b);
+        let mut sign = 1.0;
+        let moved = moves.iter().map(|m| scale(1.0 / self.unit, *m));
+        if before.is_some_and(|before| before.product(moved, 1.0) < 0.0) {
+            sign = -1.0;
+        }
+        Ok(Tangent {
+            moves: moves
+                .iter()
+                .map(|m| scale(sign / (self.unit * length), *m))
+                .collect(),
+            factor: sign / length,
+        })
+    }
 }
 
 /// From the last equilibrium of a load path that got stuck: is there a limit just ahead? The state
 /// stays at the last stable equilibrium.
 pub(crate) fn look_for_limit(path: &mut Path<'_, '_>, settings: &Settings) -> Option<f64> {
     let kept = (path.positions.clone(), path.point, path.points.len());
-    let unit = path_unit(path);
-    let first = 0.02;
     path.looking = true;
-    let highest = walk(path, settings, LOOK_STEPS, first, unit, 1.0)
+    let highest = Walk::new(path, FIRST_LOOK)
+        .walk(path, settings, LOOK_STEPS)
         .ok()
         .flatten();
     path.looking = false;

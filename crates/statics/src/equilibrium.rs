@@ -358,7 +358,7 @@ impl<'a> Equilibrium<'a> {
 
     /// The forces at the start of an iteration and what the clamps still have to move, told to the
     /// observer.
-    fn look(
+    pub fn look(
         &self,
         positions: &[Vec3],
         point: Point,
@@ -404,7 +404,7 @@ impl<'a> Equilibrium<'a> {
     }
 
     /// Whether a step of the size `largest` (m) is nothing but rounding.
-    fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
+    pub fn stands_still(&self, positions: &[Vec3], largest: f64, relative: f64) -> bool {
         let body = self.problem.body();
         let moved = if self.has_loose {
             0.0

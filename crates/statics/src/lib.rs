@@ -38,6 +38,7 @@
 //! ```
 
 mod adjoint;
+mod bordered;
 mod control;
 mod direct;
 mod ensemble;

@@ -15,7 +15,9 @@ use voxsoft_solid::{Problem, Status};
 use crate::equilibrium::{Failure, Found};
 use crate::inertia::Inertia;
 use crate::path::{Ending, Path};
+use crate::point::Point;
 use crate::settings::Settings;
+use crate::settle::Search;
 
 /// How far the load of a loose component takes it in one step of the path, in lengths of contact: a path of twenty steps
 /// under a load that grows evenly takes what nothing touches half a length away.
@@ -223,30 +225,37 @@ fn rank(mut matrix: [[f64; 6]; 6]) -> usize {
 }
 
 impl Path<'_, '_> {
-    /// Lets what is loose go to where it is in equilibrium under the whole load.
-    pub fn release(&mut self, loose: &Loose, settings: &Settings) -> Ending {
-        let point = self.point;
+    /// Lets what is loose go to where it is in equilibrium, as the `search` finds it.
+    pub fn release(
+        &mut self,
+        loose: &Loose,
+        search: &mut impl Search,
+        settings: &Settings,
+    ) -> Ending {
         let known = self.points.len().saturating_sub(1);
         let (mut rate, mut reach, mut rounded) = (1.0, loose.length, 0);
         self.looking = true;
         for _ in 0..STEPS {
             loose.dampers.set(rate, self.positions.clone());
             let mut trial = self.positions.clone();
+            let mut next = search.clone();
             let failure =
                 match self
                     .equilibrium
-                    .settle(&mut trial, point, settings, true, self.observer)
+                    .settle(&mut trial, &mut next, settings, self.observer)
                 {
                     Ok(found) => {
+                        search.clone_from(&next);
+                        let point = search.point();
                         let moved = farthest(&trial, &self.positions);
-                        let left = self.left_to_dampers(loose, &trial);
+                        let left = self.left_to_dampers(loose, &trial, point);
                         rounded = if left <= 2.0 * found.residual {
                             rounded + 1
                         } else {
                             0
                         };
                         if left <= settings.tolerance || rounded == ROUNDED {
-                            return self.rest(loose, trial, &found, known);
+                            return self.rest(loose, trial, point, &found, known);
                         }
                         self.accept(trial, point, found.iterations, found.residual);
                         if loose.is_gone(self.equilibrium.problem, &self.positions) {
@@ -274,18 +283,25 @@ impl Path<'_, '_> {
     }
 
     /// The force of the dampers, as a part of the load.
-    fn left_to_dampers(&self, loose: &Loose, positions: &[Vec3]) -> f64 {
-        loose.dampers.size(positions) / self.equilibrium.forces(positions, self.point).scale
+    fn left_to_dampers(&self, loose: &Loose, positions: &[Vec3], point: Point) -> f64 {
+        loose.dampers.size(positions) / self.equilibrium.forces(positions, point).scale
     }
 
     /// Records the equilibrium in place of the points that led to it.
-    fn rest(&mut self, loose: &Loose, positions: Vec<Vec3>, found: &Found, known: usize) -> Ending {
+    fn rest(
+        &mut self,
+        loose: &Loose,
+        positions: Vec<Vec3>,
+        at: Point,
+        found: &Found,
+        known: usize,
+    ) -> Ending {
         // Neutral motions leave the tangent singular; what is unstable has it indefinite by more than this rate makes up.
         loose.dampers.set(LEAST_RATE, positions.clone());
-        let stable = self.equilibrium.is_stable(&positions, self.point);
+        let stable = self.equilibrium.is_stable(&positions, at);
         self.looking = false;
         self.points.truncate(known);
-        self.accept(positions, self.point, found.iterations, found.residual);
+        self.accept(positions, at, found.iterations, found.residual);
         if let Some(point) = self.points.last_mut() {
             point.stable = stable;
         }

@@ -10,6 +10,7 @@ use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
 use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
+use crate::settle::AtLoad;
 use crate::step_length::StepLength;
 use crate::system::{FactorError, Means, System};
 use crate::volume;
@@ -27,9 +28,9 @@ const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
-const LONGEST_OF_WAY: f64 = 0.05;
-/// How much of the load comes on while the body snaps.
-const SNAP: f64 = 0.0125;
+pub(crate) const LONGEST_OF_WAY: f64 = 0.05;
+/// How much of the load, or of the growth of a volume, comes on while the body snaps.
+pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
@@ -59,6 +60,24 @@ impl Ending {
     }
 }
 
+/// What grows under load control.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Along {
+    /// All loads and motions.
+    All,
+    /// All but pressures, which volume control goes on with.
+    Dead,
+}
+
+impl Along {
+    fn at(self, factor: f64) -> Point {
+        match self {
+            Self::All => Point::all(factor),
+            Self::Dead => Point::of(factor, 0.0),
+        }
+    }
+}
+
 /// A path under way.
 pub(crate) struct Path<'a, 'b> {
     pub equilibrium: Equilibrium<'a>,
@@ -81,8 +100,9 @@ pub fn solve(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let loose = match settings.control {
-        Control::Load => Loose::find(problem),
-        Control::ArcLength { .. } | Control::Volume { .. } => None,
+        Control::Load | Control::Volume { .. } => Loose::find(problem),
+        // What is loose goes to rest under a load, which past a limit nothing is stable under.
+        Control::ArcLength { .. } => None,
     };
     let Some(loose) = loose else {
         return follow(problem, start, settings, observer, None);
@@ -134,10 +154,11 @@ fn follow(
         looking: false,
     };
     let ending = match settings.control {
-        Control::Load => path.follow_load(settings, start.is_some(), loose),
+        Control::Load => path.follow_load(settings, Along::All, start.is_some(), loose),
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
-            volume::follow_volume(&mut path, settings, ratio, steps)
+            let growth = (ratio, steps);
+            volume::follow_volume(&mut path, settings, growth, start.is_some(), loose)
         }
     };
     loose.inspect(|loose| loose.let_go(&path.positions));
@@ -178,9 +199,9 @@ pub(crate) fn status_of(failure: Failure) -> Status {
 
 impl Path<'_, '_> {
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
-        // Load control has asked at each point; with the load as an unknown, a point knows only its turn.
-        let stable = match self.points.last() {
-            Some(last) if settings.control == Control::Load => last.stable,
+        // Load and volume control have asked at each point; a point of an arc knows only whether the load has turned.
+        let stable = match (self.points.last(), settings.control) {
+            (Some(last), Control::Load | Control::Volume { .. }) => last.stable,
             _ => self.equilibrium.is_stable(&self.positions, self.point),
         };
         let residual = self
@@ -201,22 +222,6 @@ impl Path<'_, '_> {
             path: self.points,
             snaps: self.snaps,
         }
-    }
-
-    /// Newton at a point, with the floor settled; on failure nothing has moved.
-    pub fn settle(
-        &mut self,
-        trial: Vec<Vec3>,
-        point: Point,
-        settings: &Settings,
-        safe: bool,
-    ) -> Result<(), Failure> {
-        let mut positions = trial;
-        let found =
-            self.equilibrium
-                .settle(&mut positions, point, settings, safe, self.observer)?;
-        self.accept(positions, point, found.iterations, found.residual);
-        Ok(())
     }
 
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
@@ -255,7 +260,13 @@ impl Path<'_, '_> {
     }
 
     /// Load control. From a given start the full load is tried first.
-    fn follow_load(&mut self, settings: &Settings, warm: bool, loose: Option<&Loose>) -> Ending {
+    pub fn follow_load(
+        &mut self,
+        settings: &Settings,
+        along: Along,
+        warm: bool,
+        loose: Option<&Loose>,
+    ) -> Ending {
         let first = if warm {
             1.0
         } else {
@@ -277,36 +288,38 @@ impl Path<'_, '_> {
         let mut last = f64::INFINITY;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
-            let now = self.point.pressure;
+            let now = self.point.dead;
             let step = length.get();
             let next = if now + LAST * step < 1.0 {
                 now + step
             } else {
                 1.0
             };
-            let point = Point::all(next);
+            let point = along.at(next);
             let mut trial = self.positions.clone();
             contact.inspect(|contact| contact.extrapolate((next - now) / last));
             loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
+            let mut search = AtLoad { point, safe };
             let found = self
                 .equilibrium
-                .settle(&mut trial, point, settings, safe, self.observer);
+                .settle(&mut trial, &mut search, settings, self.observer);
             let failure = match found {
                 Ok(found) => {
                     let stable = self.equilibrium.is_stable(&trial, point);
                     if stable || cuts == UNSTABLE_CUTS {
-                        self.looking = loose.is_some() && next == 1.0;
+                        // Under dead loads alone only the end is a point of the path.
+                        self.looking = match along {
+                            Along::All => loose.is_some() && next == 1.0,
+                            Along::Dead => next < 1.0,
+                        };
                         self.accept(trial, point, found.iterations, found.residual);
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
                         }
                         last = next - now;
                         if next == 1.0 {
-                            return match loose {
-                                Some(loose) => self.release(loose, settings),
-                                None => Ending::new(Status::AtRest, None, 1.0),
-                            };
+                            return self.end(along, loose, settings);
                         }
                         length.succeeded(found.iterations <= easy);
                         continue;
@@ -333,24 +346,22 @@ impl Path<'_, '_> {
             }
             length.failed(next - now);
             if length.get() < settings.least_step {
+                let point = along.at((now + SNAP).min(1.0));
                 if let Some(contact) = contact
                     && !contact.is_recorded()
-                    && self.snap(contact, Point::all((now + SNAP).min(1.0)), settings)
+                    && self.snap(contact, &mut AtLoad { point, safe: true }, settings)
                 {
                     length.set(SNAP);
                     last = f64::INFINITY;
-                    if self.point.pressure < 1.0 {
+                    if self.point.dead < 1.0 {
                         continue;
                     }
-                    return match loose {
-                        Some(loose) => self.release(loose, settings),
-                        None => Ending::new(Status::AtRest, None, 1.0),
-                    };
+                    return self.end(along, loose, settings);
                 }
                 // Contact makes corners in the path, which no tangent foresees.
-                let limit = match contact {
-                    Some(_) => None,
-                    None => self.look_ahead(settings),
+                let limit = match (contact, along) {
+                    (None, Along::All) => self.look_ahead(settings),
+                    _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.
                 let failure = match failure {
@@ -359,6 +370,26 @@ impl Path<'_, '_> {
                 };
                 let status = limit.map_or(status_of(failure), |_| Status::LimitReached);
                 return Ending::new(status, limit, now);
+            }
+        }
+    }
+
+    /// The end of load control, where all that grows is there.
+    fn end(&mut self, along: Along, loose: Option<&Loose>, settings: &Settings) -> Ending {
+        match (along, loose) {
+            (Along::All, Some(loose)) => {
+                let mut search = AtLoad {
+                    point: self.point,
+                    safe: true,
+                };
+                self.release(loose, &mut search, settings)
+            }
+            (Along::All, None) => Ending::new(Status::AtRest, None, 1.0),
+            (Along::Dead, _) => {
+                self.looking = false;
+                let before = self.points.len().saturating_sub(1);
+                self.points.drain(..before);
+                Ending::new(Status::AtRest, None, 1.0)
             }
         }
     }

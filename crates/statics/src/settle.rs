@@ -1,4 +1,5 @@
-//! Equilibria in which the floor and contact have settled.
+//! Equilibria in which the floor and contact have settled, whatever is kept while they are found: the loads, a volume, or a
+//! distance along the path.
 
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Observer, Problem};
@@ -17,14 +18,56 @@ const LEFT: f64 = 0.05;
 /// and what the loads lack of a counterforce there is told from 0.1 % on.
 const AT_THE_END: f64 = 0.3;
 
+/// A search for an equilibrium under what contact holds for now.
+pub(crate) trait Search: Clone {
+    /// Where on the path its equilibrium is, or begins to be looked for.
+    fn point(&self) -> Point;
+
+    /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one under what
+    /// contact held before a correction.
+    fn find(
+        &mut self,
+        equilibrium: &mut Equilibrium<'_>,
+        positions: &mut Vec<Vec3>,
+        settings: &Settings,
+        round: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure>;
+}
+
+/// The search for the equilibrium under given loads.
+#[derive(Clone, Copy)]
+pub(crate) struct AtLoad {
+    pub point: Point,
+    /// Whether a line search follows where the quick way is lost.
+    pub safe: bool,
+}
+
+impl Search for AtLoad {
+    fn point(&self) -> Point {
+        self.point
+    }
+
+    fn find(
+        &mut self,
+        equilibrium: &mut Equilibrium<'_>,
+        positions: &mut Vec<Vec3>,
+        settings: &Settings,
+        round: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let way = way_of(round, equilibrium.problem, self.safe);
+        equilibrium.newton(positions, self.point, settings, way, observer)
+    }
+}
+
 impl Equilibrium<'_> {
-    /// Finds the equilibrium at `point` from `positions`, which it changes, with floor and contact settled.
+    /// Finds the equilibrium of a `search` from `positions`, which it changes, with floor and contact settled.
     pub fn settle(
         &mut self,
         positions: &mut Vec<Vec3>,
-        point: Point,
+        search: &mut impl Search,
         settings: &Settings,
-        safe: bool,
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let mut iterations = 0;
@@ -33,7 +76,7 @@ impl Equilibrium<'_> {
         let mut round = 0;
         while round < ROUNDS {
             let tolerance = if loose {
-                let changed = self.forces(positions, point).relative();
+                let changed = self.forces(positions, search.point()).relative();
                 settings.tolerance.max(LOOSE.min(LEFT * changed))
             } else {
                 settings.tolerance
@@ -42,12 +85,11 @@ impl Equilibrium<'_> {
                 tolerance,
                 ..*settings
             };
-            let way = way_of(round, self.problem, safe);
-            let found = self.newton(positions, point, &settings, way, observer)?;
+            let found = search.find(self, positions, &settings, round, observer)?;
             iterations += found.iterations;
             round += 1;
-            let floor_changed = self.update_floor(positions, point)?;
-            let settled = !floor_changed && self.is_contact_settled(positions, point);
+            let floor_changed = self.update_floor(positions, search.point())?;
+            let settled = !floor_changed && self.is_contact_settled(positions, search.point());
             if settled && !loose {
                 if self.lets_go(positions) {
                     (round, loose) = (1, true);

@@ -12,13 +12,19 @@ use std::sync::Arc;
 use crate::equilibrium::Equilibrium;
 use crate::loose::Loose;
 use crate::path::Path;
-use crate::point::Point;
 use crate::settings::{LinearSolver, Settings};
+use crate::settle::Search;
 use crate::system::{Means, System};
 
 impl Path<'_, '_> {
-    /// Moves on to an equilibrium at `point`, to which no short step leads; whether one was found. If not, nothing has changed.
-    pub fn snap(&mut self, contact: &dyn Contact, point: Point, settings: &Settings) -> bool {
+    /// Moves on to an equilibrium that the `search` finds, to which no short step leads; whether one was found. If not, nothing has
+    /// changed.
+    pub fn snap(
+        &mut self,
+        contact: &dyn Contact,
+        search: &mut impl Search,
+        settings: &Settings,
+    ) -> bool {
         let problem = self.equilibrium.problem;
         let dampers = Loose::of_everything(problem, contact.length());
         let term = Arc::clone(&dampers.dampers) as Arc<dyn Term>;
@@ -40,16 +46,17 @@ impl Path<'_, '_> {
                 ..equilibrium
             },
             positions: self.positions.clone(),
-            point,
+            point: search.point(),
             points: Vec::new(),
             snaps: Vec::new(),
             observer: self.observer,
             looking: true,
         };
-        let ending = path.release(&dampers, settings);
+        let ending = path.release(&dampers, search, settings);
         let Path {
             equilibrium,
             positions,
+            point,
             points,
             ..
         } = path;

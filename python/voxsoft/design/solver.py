@@ -65,10 +65,12 @@ class Solver(Record):
         Dynamics only. Run to this time exactly, at rest or not: for motion over time.
     control
         Statics only. ``"load"`` (default): all loads grow together; ``"arc-length"``: the
-        same, followed through snaps; ``"volume"``: the pressurized volume grows to
-        ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
+        same, followed through snaps; ``"volume"``: other loads first, then the pressurized volume
+        grows to ``volume_ratio`` and the pressure is what it takes, past the limit of a balloon.
+        All three know contact; with ``"arc-length"`` objects that are free are refused.
     steps
-        Arc-length and volume control only: the steps; default 20.
+        Arc-length and volume control only: the steps; default 20. With friction a step takes at
+        most a twentieth of the load or the growth: an arc that turns needs more of them.
     volume_ratio
         Volume control only: the pressurized volume at its end over that without pressure;
         default 1.5.

@@ -178,11 +178,17 @@ def unused_settings(
 
 def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
     """Find what a design with contact cannot be solved by."""
-    if kind not in {LoadControl, *DYNAMICS} or solver.method == "xpbd":
+    if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
         title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
-        what = f"means {title}, and contact is found by load control and by implicit dynamics"
-        hint = 'write method = "statics" and control = "load", or method = "dynamics"'
+        what = f"means {title}, and contact is found by statics and by implicit dynamics"
+        hint = 'write method = "statics", or method = "dynamics"'
         yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
+    if kind is ArcLengthControl:
+        for index, each in enumerate(design.objects):
+            if each.is_free:
+                what = "is free, and past a limit of the load nothing holds what arc length follows"
+                hint = 'fix it or move it, or write control = "load" or control = "volume"'
+                yield ErrorDetail(f"objects[{index}].motion", what, hint)
     for index, part in enumerate(design.parts):
         material = design.material_of(part)
         if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:

@@ -158,7 +158,7 @@ def sentence(
 ) -> str:
     """Say how statics ended: its control, how it ended, its iterations, its residual, its path.
 
-    What `touches` has no other ways than load control and motion over time.
+    What `touches` has no other ways than statics and motion over time.
     """
     iterations = f"{steps} Newton iterations"
     residual = f"residual {format_percent(residual_left)} of the load"
@@ -173,7 +173,7 @@ def sentence(
                 words += f"; the path has a limit at {limit}"
             if path.stable:
                 return words
-            if touches:
+            if touches and way == "load":
                 return (
                     f"{words}; it is not stable: the slightest push lets it buckle, tip or roll on"
                 )
@@ -209,7 +209,15 @@ def sentence(
         case _:
             ways = f'{_OTHER_WAYS[way]}, smaller voxels, or method = "xpbd"'
             if touches:
-                ways = 'a smaller load, smaller voxels, or motion over time (method = "dynamics")'
+                ways = (
+                    f"{_OTHER_WAYS[way]}, a smaller load, smaller voxels, or motion over time "
+                    '(method = "dynamics")'
+                )
+            if way == "arc-length" and path.factor > 0.0:
+                return (
+                    f"the path was followed to {carried}, where its steps ended or found no way "
+                    f"on, after {iterations}; kept is its last equilibrium. Try {ways}"
+                )
             return (
                 f"no equilibrium found past {carried} after {iterations}; kept is the last one. "
                 f"Try {ways}"

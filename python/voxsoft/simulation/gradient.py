@@ -310,6 +310,13 @@ def _check_state(result: Result) -> None:
             f"the result is no equilibrium under the full loads: {result.message}",
             'lower the loads, and leave control = "volume" out',
         )
+    if has_contact(result.design) and result.solver["way"] != "load":
+        way = result.solver["way"]
+        raise SimulationError(
+            "gradient",
+            f"the result comes from {way} control, and with contact they follow load control",
+            f'leave control = "{way}" out',
+        )
     if result.stable is False:
         raise SimulationError(
             "gradient",

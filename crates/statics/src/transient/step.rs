@@ -10,6 +10,7 @@ use super::{Run, Stop};
 use crate::implicit::scheme::Start;
 use crate::point::Point;
 use crate::settings::Settings;
+use crate::settle::AtLoad;
 
 /// What a step may leave of the forces that act in it.
 const STEP_TOLERANCE: f64 = 1e-7;
@@ -128,8 +129,9 @@ impl Run<'_> {
             tolerance: STEP_TOLERANCE,
             ..Settings::default()
         };
+        let mut search = AtLoad { point, safe: true };
         self.equilibrium
-            .settle(positions, point, &settings, true, observer)?;
+            .settle(positions, &mut search, &settings, observer)?;
         Ok(())
     }
 }

@@ -1,0 +1,650 @@
+//! Newton's method where the load is an unknown, which arc length and volume control share.
+//!
+//! Equilibrium `r(x, s) = 0` comes with one more equation `c(x, s) = 0`, the constraint. A step of the bordered system takes two
+//! solutions with the same tangent, `K a = r` and `K b = ∂r/∂s`: `δx = a + b δs`, and the constraint gives
+//! `δs` (Riks 1979, doi 10.1016/0020-7683(79)90081-7). The tangent may be indefinite; it is singular only at single points of
+//! the path. Clamps that move with the load are part of `∂r/∂s`.
+//!
+//! Strains are carried along first ([`voxsoft_solid::mixed`]), which is quick but may go round in circles, as where layers
+//! change between taut and wrinkled. From the best state of that it goes on with a line search: where the equilibria are
+//! minima of an energy among all states that keep the constraint, on the augmented Lagrangian
+//! `Π − s c + ρ/2 c²` (Nocedal and Wright 2006, chapter 17, doi 10.1007/978-0-387-40065-5); else, which only contact asks for, on
+//! the residual. Long because the two ways share how they see a state and how they step.
+
+use voxsoft_solid::mixed::Strains;
+use voxsoft_solid::vector::{Vec3, add, norm, scale};
+use voxsoft_solid::{Observer, Problem};
+
+use crate::equilibrium::{Equilibrium, Failure, Forces, Found};
+use crate::point::Point;
+use crate::settings::Settings;
+use crate::settle::Search;
+use crate::system::Factor;
+
+/// A constraint counts as kept within this part of what it asks for.
+const KEPT: f64 = 1e-9;
+/// Iterations with strains carried along: most steps take less than ten.
+const MIXED_ITERATIONS: u32 = 30;
+/// Such iterations without the residual halving, after which they count as lost.
+const PATIENCE: u32 = 6;
+/// Iterations with a line search.
+const SEARCHED_ITERATIONS: u32 = 60;
+/// The smallest and the largest shift of the diagonal.
+const LEAST_SHIFT: f64 = 1e-6;
+const LARGEST_SHIFT: f64 = 10.0;
+/// Armijo's condition: the part of the predicted gain that a step must bring.
+const SUFFICIENT: f64 = 1e-4;
+/// How often a step may be halved.
+const HALVINGS: u32 = 14;
+/// Energies are sums of many terms and known to about this part of their size.
+const ROUNDING: f64 = 1e-12;
+/// How far a vertex may move in an iteration, in sizes of the body: beyond it that is lost. With contact less, since what may meet on such
+/// a way would be listed, and is of no use.
+const FARTHEST: f64 = 1.0;
+const FARTHEST_WITH_CONTACT: f64 = 0.5;
+/// The change of the factor over which the velocity of clamps is a difference: rotations are good to its square.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Which factor is the unknown.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Unknown {
+    All,
+    Pressure,
+}
+
+impl Unknown {
+    pub fn with(self, point: Point, factor: f64) -> Point {
+        match self {
+            Self::All => Point::all(factor),
+            Self::Pressure => Point {
+                pressure: factor,
+                ..point
+            },
+        }
+    }
+
+    /// The factors that it moves.
+    fn direction(self) -> Point {
+        match self {
+            Self::All => Point::all(1.0),
+            Self::Pressure => Point::of(0.0, 1.0),
+        }
+    }
+}
+
+/// One more equation on the way along a path.
+pub(crate) trait Constraint: Clone {
+    /// The factor that is unknown.
+    fn unknown(&self) -> Unknown;
+
+    /// What is missing at a state.
+    fn missing(&self, problem: &Problem, positions: &[Vec3], factor: f64) -> Missing;
+
+    /// Its derivatives by free coordinates and by the factor.
+    fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64);
+
+    /// Whether equilibria are stationary points of an energy among all states that keep it, with the factor as its multiplier.
+    fn has_potential(&self, problem: &Problem) -> bool;
+
+    /// The longest move of a coordinate (m) that a correction may take.
+    fn longest_correction(&self) -> f64 {
+        f64::INFINITY
+    }
+}
+
+/// What a constraint misses, in its own unit and as a part of what it asks for.
+#[derive(Clone, Copy)]
+pub(crate) struct Missing {
+    pub size: f64,
+    pub relative: f64,
+}
+
+/// A search for the equilibrium that keeps a constraint.
+#[derive(Clone)]
+pub(crate) struct Bordered<C> {
+    pub constraint: C,
+    pub point: Point,
+}
+
+impl<C: Constraint> Search for Bordered<C> {
+    fn point(&self) -> Point {
+        self.point
+    }
+
+    fn find(
+        &mut self,
+        equilibrium: &mut Equilibrium<'_>,
+        positions: &mut Vec<Vec3>,
+        settings: &Settings,
+        round: usize,
+        observer: &mut Observer<'_>,
+    ) -> Result<Found, Failure> {
+        let start = Iterate {
+            positions: positions.clone(),
+            factor: self.point.pressure,
+            iterations: 0,
+        };
+        let touches = equilibrium.problem.contact().is_some();
+        let searches = touches || self.constraint.has_potential(equilibrium.problem);
+        let mut newton = Newton {
+            equilibrium,
+            constraint: &self.constraint,
+            point: self.point,
+            settings,
+            observer,
+        };
+        let mut now = start.clone();
+        let seen = if touches && round > 0 {
+            // Near its end, but friction may let go there, and iterations without a line search overshoot.
+            match newton.searched(&mut now) {
+                Err(Failure::Lost | Failure::Singular) => {
+                    now = start;
+                    newton.mixed(&mut now)?
+                }
+                other => other?,
+            }
+        } else {
+            match newton.mixed(&mut now) {
+                Err(Failure::Lost) if now.iterations > 0 && searches => {
+                    newton.searched(&mut now)?
+                }
+                other => other?,
+            }
+        };
+        if !equilibrium.is_sound(&now.positions) {
+            return Err(Failure::Lost);
+        }
+        self.point = seen.point;
+        *positions = now.positions;
+        Ok(Found {
+            iterations: now.iterations,
+            residual: seen.forces.relative(),
+        })
+    }
+}
+
+/// The derivative of the forces by an unknown factor, on free coordinates, with clamps where they are.
+pub(crate) fn load_direction(
+    equilibrium: &Equilibrium<'_>,
+    positions: &[Vec3],
+    unknown: Unknown,
+) -> Vec<f64> {
+    let mut forces = vec![[0.0; 3]; positions.len()];
+    let one = unknown.direction();
+    equilibrium
+        .problem
+        .add_scaled_loads(positions, &one.factor_of(), &mut forces);
+    equilibrium.system.gather(&forces)
+}
+
+/// How fast clamps move with an unknown factor, for all vertices; `None` where they do not.
+fn clamp_velocity(problem: &Problem, point: Point, unknown: Unknown) -> Option<Vec<Vec3>> {
+    let moves = problem.clamps().iter().any(|clamp| clamp.motion.is_some());
+    if unknown == Unknown::Pressure || !moves {
+        return None;
+    }
+    let placed = |ramp: f64| {
+        let mut positions = vec![[0.0; 3]; problem.body().rest().len()];
+        problem.place_clamps(point.time, ramp, &mut positions);
+        positions
+    };
+    let after = placed(point.dead + DIFFERENCE);
+    let before = placed(point.dead - DIFFERENCE);
+    let speed = |(a, b): (&Vec3, &Vec3)| [0, 1, 2].map(|i| (a[i] - b[i]) / (2.0 * DIFFERENCE));
+    Some(after.iter().zip(&before).map(speed).collect())
+}
+
+/// The right-hand sides of both solutions on free coordinates.
+pub(crate) struct Sides {
+    residual: Vec<f64>,
+    /// `∂r/∂s`, with the clamps that move.
+    direction: Vec<f64>,
+    velocity: Option<Vec<Vec3>>,
+}
+
+/// A state at which the tangent is asked for.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub positions: &'a [Vec3],
+    pub point: Point,
+    pub unknown: Unknown,
+    pub strains: Option<&'a Strains<'a>>,
+    /// How held coordinates are about to move.
+    pub jump: Option<&'a [Vec3]>,
+}
+
+/// Assembles the tangent at a place, where contact has been followed to.
+pub(crate) fn assemble(
+    equilibrium: &mut Equilibrium<'_>,
+    place: Place<'_>,
+    residual: &[f64],
+) -> Sides {
+    let Place {
+        positions,
+        point,
+        unknown,
+        strains,
+        jump,
+    } = place;
+    equilibrium.iterations += 1;
+    let problem = equilibrium.problem;
+    let mut direction = load_direction(equilibrium, positions, unknown);
+    let mut residual = residual.to_vec();
+    let velocity = clamp_velocity(problem, point, unknown);
+    let (system, factor_of) = (&mut equilibrium.system, point.factor_of());
+    let mut put = |jump: Option<&[Vec3]>, side: &mut [f64]| {
+        system.assemble(problem, positions, &factor_of, strains, jump, side);
+    };
+    if velocity.is_some() {
+        put(velocity.as_deref(), &mut direction);
+    }
+    if velocity.is_none() || jump.is_some() {
+        put(jump, &mut residual);
+    }
+    Sides {
+        residual,
+        direction,
+        velocity,
+    }
+}
+
+impl Sides {
+    /// `a` and `b` with a factorized tangent.
+    pub fn solve(
+        &self,
+        equilibrium: &Equilibrium<'_>,
+        factor: &Factor,
+    ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+        let (mut a, mut b) = (self.residual.clone(), self.direction.clone());
+        equilibrium.system.solve_directly(factor, &mut a);
+        equilibrium.system.solve_directly(factor, &mut b);
+        if a.iter().chain(&b).all(|x| x.is_finite()) {
+            Ok((a, b))
+        } else {
+            Err(Failure::Singular)
+        }
+    }
+}
+
+pub(crate) fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+/// Where Newton's method stands between two equilibria.
+#[derive(Clone)]
+struct Iterate {
+    positions: Vec<Vec3>,
+    factor: f64,
+    iterations: u32,
+}
+
+impl Iterate {
+    fn shift(&mut self, moves: &[Vec3], part: f64) {
+        for (x, m) in self.positions.iter_mut().zip(moves) {
+            *x = add(*x, scale(part, *m));
+        }
+    }
+}
+
+/// A state on the way to an equilibrium.
+struct Seen {
+    point: Point,
+    forces: Forces,
+    missing: Missing,
+    /// How far held coordinates are from where they belong.
+    jump: Option<Vec<Vec3>>,
+}
+
+impl Seen {
+    /// How much both equations are off, in parts.
+    fn both(&self) -> f64 {
+        self.forces.relative() + self.missing.relative
+    }
+
+    fn is_solved(&self, settings: &Settings) -> bool {
+        self.jump.is_none()
+            && self.forces.relative() <= settings.tolerance
+            && self.missing.relative <= KEPT
+    }
+}
+
+/// A solution of the bordered system.
+struct Step {
+    free: Vec<f64>,
+    change: f64,
+    /// `δ·K δ` (J).
+    curvature: f64,
+    /// How the constraint grows with the factor along the path of equilibria.
+    compliance: f64,
+}
+
+/// What a line search keeps from one iteration to the next.
+#[derive(Default)]
+struct Memory {
+    penalty: f64,
+    shift: f64,
+}
+
+/// Newton's method on both equations.
+struct Newton<'n, 'e, 'o, C> {
+    equilibrium: &'n mut Equilibrium<'e>,
+    constraint: &'n C,
+    /// Whose factors the unknown one is among.
+    point: Point,
+    settings: &'n Settings,
+    observer: &'n mut Observer<'o>,
+}
+
+impl<C: Constraint> Newton<'_, '_, '_, C> {
+    /// Looks at both equations, with room in the tangent for what touches, and tells the observer.
+    fn look(&mut self, positions: &[Vec3], factor: f64) -> Result<Seen, Failure> {
+        self.equilibrium.follow_contact(positions)?;
+        let point = self.constraint.unknown().with(self.point, factor);
+        let (forces, jump) = self.equilibrium.look(positions, point, self.observer)?;
+        let problem = self.equilibrium.problem;
+        let missing = self.constraint.missing(problem, positions, factor);
+        if !missing.size.is_finite() {
+            return Err(Failure::Lost);
+        }
+        Ok(Seen {
+            point,
+            forces,
+            missing,
+            jump,
+        })
+    }
+
+    fn place<'p>(
+        &self,
+        now: &'p Iterate,
+        seen: &'p Seen,
+        strains: Option<&'p Strains<'p>>,
+    ) -> Place<'p> {
+        Place {
+            positions: &now.positions,
+            point: seen.point,
+            unknown: self.constraint.unknown(),
+            strains,
+            jump: seen.jump.as_deref(),
+        }
+    }
+
+    /// Solves the bordered system with a factorized tangent.
+    fn step(
+        &self,
+        factor: &Factor,
+        sides: &Sides,
+        now: &Iterate,
+        seen: &Seen,
+    ) -> Result<Step, Failure> {
+        let (a, b) = sides.solve(self.equilibrium, factor)?;
+        let (across, along) = self.constraint.gradient(self.equilibrium, &now.positions);
+        let compliance = product(&across, &b) + along;
+        let change = (seen.missing.size - product(&across, &a)) / compliance;
+        let free: Vec<f64> = a.iter().zip(&b).map(|(a, b)| a + change * b).collect();
+        if !free.iter().all(|x| x.is_finite()) {
+            return Err(Failure::Singular);
+        }
+        let curvature = product(&free, &sides.residual) + change * product(&free, &sides.direction);
+        Ok(Step {
+            free,
+            change,
+            curvature,
+            compliance,
+        })
+    }
+
+    /// The moves of all vertices in a step, held ones included.
+    fn moves(&self, step: &Step, sides: &Sides, seen: &Seen) -> Vec<Vec3> {
+        let mut moves = self.equilibrium.system.spread(&step.free);
+        let mut shift = |by: &[Vec3], part: f64| {
+            for (m, by) in moves.iter_mut().zip(by) {
+                *m = add(*m, scale(part, *by));
+            }
+        };
+        sides.velocity.iter().for_each(|by| shift(by, step.change));
+        seen.jump.iter().for_each(|by| shift(by, 1.0));
+        moves
+    }
+
+    /// Puts clamps exactly where the factor has them.
+    fn place_clamps(&self, now: &mut Iterate) {
+        if self.constraint.unknown() == Unknown::All {
+            let problem = self.equilibrium.problem;
+            let (time, ramp) = (self.point.time, now.factor);
+            problem.place_clamps(time, ramp, &mut now.positions);
+        }
+    }
+
+    /// A tangent for an iteration with strains carried along. With contact it goes astray from where more than one direction
+    /// goes downhill, as one does past a limit.
+    fn carried(&mut self) -> Result<Factor, Failure> {
+        let factor = self.equilibrium.system.factor(0.0)?;
+        let problem = self.equilibrium.problem;
+        let astray = problem.contact().is_some()
+            && self.constraint.has_potential(problem)
+            && self.equilibrium.system.negative_pivots(&factor) > Some(1);
+        if astray {
+            Err(Failure::Lost)
+        } else {
+            Ok(factor)
+        }
+    }
+
+    fn farthest(&self) -> f64 {
+        let size = self.equilibrium.problem.body().size();
+        match self.equilibrium.problem.contact() {
+            Some(_) => FARTHEST_WITH_CONTACT * size + self.equilibrium.largest_motion,
+            None => FARTHEST * size + self.equilibrium.largest_motion,
+        }
+    }
+
+    /// With strains carried along. Where it is lost, `now` is the best that it came by.
+    fn mixed(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
+        let mut at = now.clone();
+        let mut strains: Option<Strains<'_>> = None;
+        let (mut best, mut lowest, mut since_lowest) = (f64::INFINITY, f64::INFINITY, 0);
+        for iteration in 0..=MIXED_ITERATIONS {
+            let seen = self.look(&at.positions, at.factor)?;
+            // A step begins at an equilibrium, whose residual is no measure.
+            let both = seen.both();
+            if iteration > 0 && both < best {
+                best = both;
+                now.clone_from(&at);
+                now.iterations = iteration;
+            }
+            if seen.is_solved(self.settings) {
+                now.clone_from(&at);
+                now.iterations = iteration;
+                return Ok(seen);
+            }
+            since_lowest += 1;
+            if iteration > 0 && both < 0.5 * lowest {
+                (lowest, since_lowest) = (both, 0);
+            }
+            if since_lowest > PATIENCE {
+                return Err(Failure::Lost);
+            }
+            let residual = match &strains {
+                Some(strains) => {
+                    self.equilibrium
+                        .predicted_forces(strains, &at.positions, seen.point)
+                }
+                None => seen.forces.free.clone(),
+            };
+            let place = self.place(&at, &seen, strains.as_ref());
+            let sides = assemble(self.equilibrium, place, &residual);
+            let factor = self.carried()?;
+            let step = self.step(&factor, &sides, &at, &seen)?;
+            let longest = step.free.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            if iteration > 2 && !(longest < self.constraint.longest_correction()) {
+                return Err(Failure::Lost);
+            }
+            let moves = self.moves(&step, &sides, &seen);
+            let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+            if !(largest < self.farthest()) {
+                return Err(Failure::Lost);
+            }
+            if self.stands_still(&at, &seen, largest) {
+                now.clone_from(&at);
+                now.iterations = iteration;
+                return Ok(seen);
+            }
+            let body = self.equilibrium.problem.body();
+            strains = Some(Strains::predict(body, &at.positions, &moves));
+            at.shift(&moves, 1.0);
+            at.factor += step.change;
+            self.place_clamps(&mut at);
+        }
+        Err(Failure::Lost)
+    }
+
+    /// Whether all that a step of the size `largest` (m) would change is rounding.
+    fn stands_still(&self, at: &Iterate, seen: &Seen, largest: f64) -> bool {
+        let relative = seen.forces.relative();
+        seen.missing.relative <= KEPT
+            && self
+                .equilibrium
+                .stands_still(&at.positions, largest, relative)
+    }
+
+    /// With a line search.
+    fn searched(&mut self, now: &mut Iterate) -> Result<Seen, Failure> {
+        let mut memory = Memory::default();
+        for _ in 0..SEARCHED_ITERATIONS {
+            let seen = self.look(&now.positions, now.factor)?;
+            if seen.is_solved(self.settings) {
+                return Ok(seen);
+            }
+            now.iterations += 1;
+            let place = self.place(now, &seen, None);
+            let sides = assemble(self.equilibrium, place, &seen.forces.free);
+            let potential = self.constraint.has_potential(self.equilibrium.problem);
+            let step = if potential {
+                self.descending(&sides, now, &seen, &mut memory)?
+            } else {
+                let factor = self.equilibrium.system.factor(0.0)?;
+                self.step(&factor, &sides, now, &seen)?
+            };
+            let moves = self.moves(&step, &sides, &seen);
+            let largest = moves.iter().map(|m| norm(*m)).fold(0.0, f64::max);
+            if self.stands_still(now, &seen, largest) {
+                return Ok(seen);
+            }
+            if seen.jump.is_some() {
+                // What carries held coordinates along may raise either measure.
+                now.shift(&moves, 1.0);
+                now.factor += step.change;
+            } else if potential {
+                self.along_energy(now, &step, &moves, &seen, memory.penalty)?;
+            } else {
+                self.along_residual(now, &step, &moves, &seen)?;
+            }
+        }
+        Err(Failure::Lost)
+    }
+
+    /// Finds a step along which the augmented Lagrangian falls, by `δ·K δ + ρ c²`: where it would not, the diagonal is
+    /// lifted. The penalty ρ only grows: to twice the stiffness of the factor against the constraint, so that it outweighs that of a
+    /// balloon past its limit, which is negative.
+    fn descending(
+        &mut self,
+        sides: &Sides,
+        now: &Iterate,
+        seen: &Seen,
+        memory: &mut Memory,
+    ) -> Result<Step, Failure> {
+        let mut trial = memory.shift / 10.0;
+        loop {
+            if trial < LEAST_SHIFT {
+                trial = 0.0;
+            }
+            let factor = self.equilibrium.system.factor(trial)?;
+            let step = self.step(&factor, sides, now, seen)?;
+            memory.penalty = memory.penalty.max(2.0 / step.compliance.abs());
+            if gain(&step, seen, memory.penalty) > 0.0 {
+                memory.shift = trial;
+                return Ok(step);
+            }
+            trial = (10.0 * trial).max(LEAST_SHIFT);
+            if trial > LARGEST_SHIFT {
+                return Err(Failure::Lost);
+            }
+        }
+    }
+
+    /// Goes along `moves` as far as the augmented Lagrangian falls.
+    fn along_energy(
+        &self,
+        now: &mut Iterate,
+        step: &Step,
+        moves: &[Vec3],
+        seen: &Seen,
+        penalty: f64,
+    ) -> Result<(), Failure> {
+        // The multiplier.
+        let factor = now.factor + step.change;
+        let point = self.constraint.unknown().with(self.point, factor);
+        let merit = |positions: &[Vec3]| {
+            let (potential, size) = self.equilibrium.potential(positions, point);
+            let problem = self.equilibrium.problem;
+            let missing = self.constraint.missing(problem, positions, factor).size;
+            (potential + 0.5 * penalty * missing * missing, size)
+        };
+        let (start, size) = merit(&now.positions);
+        let falls = gain(step, seen, penalty);
+        self.halve(now, step, moves, |trial, part| {
+            let (end, end_size) = merit(&trial.positions);
+            end <= start - SUFFICIENT * part * falls + ROUNDING * size.max(end_size)
+        })
+    }
+
+    /// Goes along `moves` as far as the residual and what is missing fall.
+    fn along_residual(
+        &self,
+        now: &mut Iterate,
+        step: &Step,
+        moves: &[Vec3],
+        seen: &Seen,
+    ) -> Result<(), Failure> {
+        let problem = self.equilibrium.problem;
+        let unit = seen.forces.scale;
+        let start = seen.both();
+        self.halve(now, step, moves, |trial, part| {
+            let point = self.constraint.unknown().with(self.point, trial.factor);
+            let residual = self.equilibrium.forces(&trial.positions, point).residual;
+            let missing = self
+                .constraint
+                .missing(problem, &trial.positions, trial.factor);
+            residual / unit + missing.relative <= start * (1.0 - SUFFICIENT * part)
+        })
+    }
+
+    /// Halves the way along `moves` until a state is good and no voxel inside out.
+    fn halve(
+        &self,
+        now: &mut Iterate,
+        step: &Step,
+        moves: &[Vec3],
+        is_good: impl Fn(&Iterate, f64) -> bool,
+    ) -> Result<(), Failure> {
+        let mut part = 1.0;
+        for _ in 0..HALVINGS {
+            let mut trial = now.clone();
+            trial.shift(moves, part);
+            trial.factor += part * step.change;
+            self.place_clamps(&mut trial);
+            if is_good(&trial, part) && self.equilibrium.is_sound(&trial.positions) {
+                *now = trial;
+                return Ok(());
+            }
+            part /= 2.0;
+        }
+        Err(Failure::Lost)
+    }
+}
+
+/// How fast the augmented Lagrangian falls along a step (J).
+fn gain(step: &Step, seen: &Seen, penalty: f64) -> f64 {
+    step.curvature + penalty * seen.missing.size * seen.missing.size
+}

@@ -1,0 +1,335 @@
+//! Paths past a limit on which something is met, by arc length and by volume, beside closed forms.
+//!
+//! A block of one voxel is guided along z and hangs in four springs, a shallow truss that snaps through: with the springs at rest at
+//! a height `h` beside their anchors, at a distance `a`, its force at a displacement `w` is
+//! `4 k (L₀/L − 1) (h − w)`, `L² = a² + (h − w)²`. On the falling part of that it meets a plate.
+
+mod common;
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use common::touching::{NONE, add_box, moved, touching};
+use common::{block, vertices_where};
+use voxsoft_contact::touch::{Surface, Touch};
+use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Body, Clamp, Load, Pressure, Problem, Spring, Springs, Status};
+use voxsoft_statics::{Answer, Control, Settings, solve};
+
+/// The side of the block, its height over the anchors, their distance, m; a spring, N/m.
+const SIDE: f64 = 10e-3;
+const HEIGHT: f64 = 3e-3;
+const ASIDE: f64 = 20e-3;
+const STIFFNESS: f64 = 2e3;
+/// Where it meets the plate, m: the truss has let go by a half there.
+const FREE: f64 = 0.8 * HEIGHT;
+/// The depth of the chamber, m, and the pressure of all of the load, Pa.
+const DEPTH: f64 = 5e-3;
+const PRESSURE: f64 = 1e4;
+
+/// The force of the truss against a displacement.
+fn truss(way: f64) -> f64 {
+    let up = HEIGHT - way;
+    let natural = f64::hypot(ASIDE, HEIGHT);
+    4.0 * STIFFNESS * (natural / f64::hypot(ASIDE, up) - 1.0) * up
+}
+
+/// The largest of these forces, N: where its derivative is zero, `L³ = L₀ a²`.
+fn largest() -> f64 {
+    let length = (f64::hypot(ASIDE, HEIGHT) * ASIDE * ASIDE).cbrt();
+    truss(HEIGHT - (length * length - ASIDE * ASIDE).sqrt())
+}
+
+/// What pushes the block: its weight down (N), a clamp that goes down by a way (m) and pulls by a spring, or a chamber below it
+/// up.
+enum Push {
+    Weight(f64),
+    Clamp(f64),
+    Chamber,
+}
+/// That spring, N/m: softer than the truss is where it snaps through, so that its end goes back there.
+const PULLER: f64 = 30.0;
+
+fn guided(push: &Push) -> (Problem, Arc<Touch>) {
+    let sign = match push {
+        Push::Weight(_) | Push::Clamp(_) => -1.0,
+        Push::Chamber => 1.0,
+    };
+    let mut mesh = block([1, 1, 1], SIDE);
+    let all: Vec<u32> = (0..8).collect();
+    let bottom = vertices_where(&mesh, |x| x[2] < 1e-9);
+    // Along x for one pair of corners, along y for the other; to vertices that are held, which no damper needs to.
+    let anchors = mesh.vertices.len() as u32;
+    for &vertex in &bottom {
+        let [x, y, z] = mesh.vertices[vertex as usize];
+        let out = |x: f64| if x > 0.5 * SIDE { ASIDE } else { -ASIDE };
+        let (dx, dy) = if (x > 0.5 * SIDE) == (y > 0.5 * SIDE) {
+            (out(x), 0.0)
+        } else {
+            (0.0, out(y))
+        };
+        mesh.vertices.push([x + dx, y + dy, z + sign * HEIGHT]);
+    }
+    let spring = |(&vertex, anchor): (&u32, u32)| Spring {
+        vertices: vec![vertex, anchor],
+        weights: vec![1.0, -1.0],
+        anchor: [0.0; 3],
+        length: f64::hypot(ASIDE, HEIGHT),
+        stiffness: STIFFNESS,
+    };
+    let mut springs: Vec<Spring> = bottom.iter().zip(anchors..).map(spring).collect();
+    let near = if sign > 0.0 { SIDE + FREE } else { -FREE };
+    let far = near + sign * SIDE;
+    let plate = add_box(
+        &mut mesh,
+        [-SIDE, -SIDE, f64::min(near, far)],
+        [2.0 * SIDE, 2.0 * SIDE, f64::max(near, far)],
+    );
+    let base = mesh.vertices.len() as u32;
+    let below = bottom.iter().map(|&v| mesh.vertices[v as usize]);
+    let below: Vec<Vec3> = below.map(|[x, y, z]| [x, y, z - DEPTH]).collect();
+    mesh.vertices.extend(below);
+    let guide = Clamp {
+        vertices: all,
+        axes: [true, true, false],
+        motion: None,
+    };
+    let mut clamps = vec![guide, Clamp::fixed((anchors..base + 4).collect())];
+    if let Push::Clamp(way) = push {
+        let end = mesh.vertices.len() as u32;
+        mesh.vertices.push([0.5 * SIDE, 0.5 * SIDE, -SIDE]);
+        clamps.push(moved(vec![end], [true; 3], [0.0, 0.0, -way]));
+        springs.push(Spring {
+            vertices: bottom.iter().copied().chain([end]).collect(),
+            weights: vec![0.25, 0.25, 0.25, 0.25, -1.0],
+            anchor: [0.0; 3],
+            length: SIDE,
+            stiffness: PULLER,
+        });
+    }
+    let body = Body::new(&mesh, &[common::rubber()]).unwrap();
+    let loads = match push {
+        Push::Weight(weight) => {
+            let mass: f64 = body.masses().iter().sum();
+            vec![Load::gravity([0.0, 0.0, -weight / mass])]
+        }
+        Push::Clamp(_) => Vec::new(),
+        // Either diagonal of the faces carries half of the pressure, so that all corners get the same.
+        Push::Chamber => [false, true]
+            .map(|other| chamber(&mesh.vertices, &bottom, base, other))
+            .to_vec(),
+    };
+    let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
+    let table = vec![vec![NONE, 0.0], vec![0.0, NONE]];
+    let (problem, touch) = touching(&mesh, clamps, loads, surfaces, table, SIDE);
+    (
+        problem.with_term(Arc::new(Springs(springs))).unwrap(),
+        touch,
+    )
+}
+
+/// Half of the pressure in the box between the block and its base.
+fn chamber(vertices: &[Vec3], top: &[u32], base: u32, other_diagonal: bool) -> Load {
+    let at = |x: bool, y: bool| {
+        let is = |v: f64, high: bool| (v > 0.5 * SIDE) == high;
+        let mut places = top.iter().enumerate();
+        let corner = places.find(|(_, v)| {
+            let [vx, vy, _] = vertices[**v as usize];
+            is(vx, x) && is(vy, y)
+        });
+        let (place, vertex) = corner.unwrap();
+        (*vertex, base + place as u32)
+    };
+    let ring = [(false, false), (true, false), (true, true), (false, true)].map(|(x, y)| at(x, y));
+    let mut faces = vec![ring.map(|(high, _)| high)];
+    let mut low = ring.map(|(_, low)| low);
+    low.reverse();
+    faces.push(low);
+    for k in 0..4 {
+        let ((a, below_a), (b, below_b)) = (ring[k], ring[(k + 1) % 4]);
+        faces.push([below_a, below_b, b, a]);
+    }
+    // Normals out of the solid point into the chamber.
+    let split = |[a, b, c, d]: [u32; 4]| {
+        if other_diagonal {
+            [[b, a, d], [b, d, c]]
+        } else {
+            [[a, c, b], [a, d, c]]
+        }
+    };
+    Load::constant(Pressure {
+        triangles: faces.into_iter().flat_map(split).collect(),
+        voids: Vec::new(),
+        pressure: PRESSURE / 2.0,
+    })
+}
+
+/// A point of a path: the factor, and how far the bottom of the block has moved along z.
+type Seen = (f64, f64);
+
+fn follow(problem: &Problem, control: Control) -> (Answer, Vec<Seen>) {
+    let settings = Settings {
+        control,
+        first_step: match control {
+            Control::Load => 1.0,
+            _ => 0.05,
+        },
+        ..Settings::default()
+    };
+    let mut seen = Vec::new();
+    let answer = solve(problem, None, &settings, &mut |now| {
+        if now.record {
+            seen.push((now.time, now.positions[0][2]));
+        }
+        ControlFlow::Continue(())
+    });
+    (answer, seen)
+}
+
+/// The force on the block.
+fn force(touch: &Touch, answer: &Answer) -> f64 {
+    let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+    pair.force[2]
+}
+
+/// Of the block from its top to its bottom, where contact has not come into it.
+const EXACT: f64 = 1e-6;
+/// The clearance of contact, m.
+const CLEARANCE: f64 = 1e-4 * SIDE;
+
+#[test]
+fn an_arc_leads_past_a_limit_and_onto_a_plate() {
+    let weight = 1.5 * largest();
+    let (problem, touch) = guided(&Push::Weight(weight));
+    let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
+    assert_eq!(answer.status, Status::AtRest);
+    assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
+    // Until it meets the plate, the truss alone carries what there is of the load.
+    let free: Vec<&Seen> = seen.iter().filter(|(_, z)| -z < FREE - CLEARANCE).collect();
+    assert!(free.len() >= 8, "{seen:?}");
+    for (factor, z) in &free {
+        let off = factor * weight - truss(-z);
+        assert!(off.abs() < EXACT * weight, "{factor} {z}");
+    }
+    // The highest point of the path is below the limit by the square of a step.
+    let limit = answer.limit.unwrap() * weight / largest();
+    assert!(limit > 0.98 && limit < 1.0 + EXACT, "{limit}");
+    let lowest = free.last().unwrap().0 * weight / largest();
+    assert!(lowest < 0.7, "{lowest}");
+    // On the plate it carries the rest.
+    let way = -answer.positions[0][2];
+    assert!((way - FREE).abs() < CLEARANCE, "{way}");
+    let off = force(&touch, &answer) - (weight - truss(way));
+    assert!(off.abs() < EXACT * weight, "{off}");
+    // Load control knows the end only, to which it jumps.
+    let (problem, touch) = guided(&Push::Weight(weight));
+    let (snapped, jumps) = follow(&problem, Control::Load);
+    assert_eq!(snapped.status, Status::AtRest);
+    let on_way = |(_, z): &Seen| -z > 0.5 * HEIGHT && -z < FREE - CLEARANCE;
+    assert!(!jumps.iter().any(on_way));
+    let off = force(&touch, &snapped) - (weight - truss(way));
+    assert!(off.abs() < 1e-4 * weight, "{off}");
+}
+
+/// The end of the spring has gone by `w + F(w)/k` where the block has gone by `w`: to and fro.
+#[test]
+fn an_arc_follows_a_clamp_that_has_to_go_back() {
+    let all = 6e-3;
+    let (problem, touch) = guided(&Push::Clamp(all));
+    let (answer, seen) = follow(&problem, Control::ArcLength { steps: 200 });
+    assert_eq!(answer.status, Status::AtRest);
+    assert!(answer.stable && answer.factor == 1.0, "{answer:?}");
+    let free: Vec<&Seen> = seen.iter().filter(|(_, z)| -z < FREE - CLEARANCE).collect();
+    for (factor, z) in &free {
+        let off = PULLER * (factor * all + z) - truss(-z);
+        assert!(off.abs() < EXACT * largest(), "{factor} {z}");
+    }
+    let end = |way: f64| way + truss(way) / PULLER;
+    let ways = (0..10_000).map(|k| FREE * f64::from(k) / 1e4);
+    let farthest = ways.map(end).fold(0.0, f64::max);
+    let limit = answer.limit.unwrap() * all / farthest;
+    // Arcs grow to some hundredths of the square that this is below the limit by.
+    assert!(limit > 0.95 && limit < 1.0 + EXACT, "{limit}");
+    let lowest = free.last().unwrap().0 * all / farthest;
+    assert!(lowest < 0.95, "{lowest}");
+    let way = -answer.positions[0][2];
+    assert!((way - FREE).abs() < CLEARANCE, "{way}");
+    let off = force(&touch, &answer) - (PULLER * (all - way) - truss(way));
+    assert!(off.abs() < EXACT * largest(), "{off}");
+}
+
+#[test]
+fn a_volume_pushes_past_a_limit_and_against_a_plate() {
+    let (problem, touch) = guided(&Push::Chamber);
+    // A hundredth of the block's height farther than to the plate.
+    let way = FREE + 0.01 * SIDE;
+    let control = Control::Volume {
+        ratio: 1.0 + way / DEPTH,
+        steps: 40,
+    };
+    let (answer, seen) = follow(&problem, control);
+    assert_eq!(answer.status, Status::AtRest);
+    let area = SIDE * SIDE;
+    let push = |factor: f64| factor * PRESSURE * area;
+    for (factor, z) in seen.iter().filter(|(_, z)| *z < FREE - CLEARANCE) {
+        let off = push(*factor) - truss(*z);
+        assert!(off.abs() < EXACT * largest(), "{factor} {z}");
+    }
+    let limit = push(answer.limit.unwrap()) / largest();
+    assert!(limit > 0.99 && limit < 1.0 + EXACT, "{limit}");
+    // The volume says where the bottom is, and pressure carries what truss and plate do not.
+    let bottom = answer.positions[0][2];
+    assert!((bottom - way).abs() < 1e-8 * way, "{bottom}");
+    let pressed = -force(&touch, &answer);
+    let off = push(answer.factor) - truss(way) - pressed;
+    assert!(off.abs() < EXACT * pressed, "{off} {pressed}");
+    // Held at its sides, rubber has the modulus E (1 − ν)/((1 + ν)(1 − 2ν)); to first order in a strain of a hundredth.
+    let top = answer.positions[7][2];
+    let strain = (way - (top - SIDE)) / SIDE;
+    assert!((strain - 0.01).abs() < CLEARANCE / SIDE, "{strain}");
+    let modulus = 60e3 * 0.51 / (1.49 * 0.02);
+    assert!((pressed / (modulus * strain * area) - 1.0).abs() < 0.03);
+}
+
+/// Who stops a run, wherever that is, gets the last point that was found, with what contact held there.
+#[test]
+fn a_run_that_is_stopped_ends_at_its_last_point() {
+    let ratio = 1.0 + (FREE + 0.01 * SIDE) / DEPTH;
+    let cases = [
+        (
+            Push::Weight(1.5 * largest()),
+            Control::ArcLength { steps: 200 },
+        ),
+        (Push::Chamber, Control::Volume { ratio, steps: 40 }),
+    ];
+    for (push, control) in cases {
+        let settings = Settings {
+            control,
+            first_step: 0.05,
+            ..Settings::default()
+        };
+        for stop in 1.. {
+            let (problem, _) = guided(&push);
+            let (mut last, mut after) = (problem.body().rest().to_vec(), 0);
+            let answer = solve(&problem, None, &settings, &mut |now| {
+                if now.record {
+                    last = now.positions.to_vec();
+                }
+                // From where the truss has let go by half on.
+                after += u32::from(!now.record && last[0][2].abs() > 0.7 * HEIGHT);
+                if after == stop {
+                    ControlFlow::Break(())
+                } else {
+                    ControlFlow::Continue(())
+                }
+            });
+            if answer.status == Status::AtRest {
+                assert!(stop > 10, "{stop}");
+                break;
+            }
+            assert_eq!(answer.status, Status::Cancelled);
+            assert_eq!(answer.positions, last);
+            assert!(answer.residual < settings.tolerance, "{stop} {answer:?}");
+        }
+    }
+}
