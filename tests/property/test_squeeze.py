@@ -51,11 +51,13 @@ def test_what_snaps_and_what_passes_through_itself_says_so():
     # It buckles on its way, and walls end in each other, as both judges of `judged` find.
     result = vs.simulate(squeezed(7, SMALL))
     assert result.status == "ok"
-    (snap,) = result.snaps
-    assert 0.5 < snap < 1.0
+    assert result.snaps
+    assert all(0.5 < snap < 1.0 for snap in result.snaps)
     warnings = [str(each) for each in result.warnings]
     assert any("snapped to another one" in each for each in warnings)
-    assert any("surfaces pass through each other" in each for each in warnings)
+    # By the depth of the surface that touches, or by that of the voxels' faces where it is more.
+    through = ("surfaces pass through each other", "contact has not kept them apart")
+    assert any(what in each for each in warnings for what in through)
     assert judged(7, SMALL).pairs > 0
 
 

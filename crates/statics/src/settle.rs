@@ -14,9 +14,9 @@ const ROUNDS: usize = 100;
 /// may be left; at the end corrections are checked at the tolerance that was asked for.
 const LOOSE: f64 = 1e-3;
 const LEFT: f64 = 0.05;
-/// The precision of contact under the whole load, where forces are read: bounds of friction may be off by 0.3 % on the way,
-/// and what the loads lack of a counterforce there is told from 0.1 % on.
-const AT_THE_END: f64 = 0.3;
+/// The precision of contact under the whole load, where forces are read: on the way bounds of friction may be off by 0.3 % of the
+/// largest one at each vertex, which adds up, and what the loads lack of a counterforce there is told from 0.1 % on.
+const AT_THE_END: f64 = 0.1;
 
 /// A search for an equilibrium under what contact holds for now.
 pub(crate) trait Search: Clone {
