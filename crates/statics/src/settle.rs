@@ -10,6 +10,8 @@ use crate::settings::Settings;
 
 /// How often the floor or contact may change their minds at one point.
 const ROUNDS: usize = 100;
+/// How often in a row without having changed less than ever before: what goes to and fro takes a shorter step.
+const STALE: usize = 20;
 /// How good an equilibrium must be for contact to be corrected by it, and how much of what the last correction has changed
 /// may be left; at the end corrections are checked at the tolerance that was asked for.
 const LOOSE: f64 = 1e-3;
@@ -74,9 +76,12 @@ impl Equilibrium<'_> {
         // Where more precision is asked for, anchors of friction must not depend on what an iteration has left.
         let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
         let mut round = 0;
-        while round < ROUNDS {
+        let (mut least, mut stale) = (f64::INFINITY, 0);
+        while round < ROUNDS && stale < STALE {
+            let changed = self.forces(positions, search.point()).relative();
+            stale = if changed < least { 0 } else { stale + 1 };
+            least = least.min(changed);
             let tolerance = if loose {
-                let changed = self.forces(positions, search.point()).relative();
                 settings.tolerance.max(LOOSE.min(LEFT * changed))
             } else {
                 settings.tolerance
@@ -93,6 +98,7 @@ impl Equilibrium<'_> {
             if settled && !loose {
                 if self.lets_go(positions) {
                     (round, loose) = (1, true);
+                    (least, stale) = (f64::INFINITY, 0);
                     continue;
                 }
                 return Ok(Found {
