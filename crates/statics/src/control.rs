@@ -262,7 +262,11 @@ impl Walk {
                 trial = start.clone();
             }
             point = Point::all(1.0);
-            let mut full = AtLoad { point, safe: true };
+            let mut full = AtLoad {
+                point,
+                safe: true,
+                can_be_cut: false,
+            };
             let last = path
                 .equilibrium
                 .settle(&mut trial, &mut full, settings, path.observer)?;

@@ -300,7 +300,11 @@ impl Path<'_, '_> {
             contact.inspect(|contact| contact.extrapolate((next - now) / last));
             loose.inspect(|loose| loose.hold(&self.positions, next - now));
             let safe = step <= SAFE_STEP;
-            let mut search = AtLoad { point, safe };
+            let mut search = AtLoad {
+                point,
+                safe,
+                can_be_cut: step >= 2.0 * settings.least_step,
+            };
             let found = self
                 .equilibrium
                 .settle(&mut trial, &mut search, settings, self.observer);
@@ -349,7 +353,15 @@ impl Path<'_, '_> {
                 let point = along.at((now + SNAP).min(1.0));
                 if let Some(contact) = contact
                     && !contact.is_recorded()
-                    && self.snap(contact, &mut AtLoad { point, safe: true }, settings)
+                    && self.snap(
+                        contact,
+                        &mut AtLoad {
+                            point,
+                            safe: true,
+                            can_be_cut: false,
+                        },
+                        settings,
+                    )
                 {
                     length.set(SNAP);
                     last = f64::INFINITY;
@@ -381,6 +393,7 @@ impl Path<'_, '_> {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
+                    can_be_cut: false,
                 };
                 self.release(loose, &mut search, settings)
             }

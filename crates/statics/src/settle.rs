@@ -10,7 +10,7 @@ use crate::settings::Settings;
 
 /// How often the floor or contact may change their minds at one point.
 const ROUNDS: usize = 100;
-/// How often in a row without having changed less than ever before: what goes to and fro takes a shorter step.
+/// How often in a row without having changed less than ever before: what goes to and fro takes a shorter step, where there is one.
 const STALE: usize = 20;
 /// How good an equilibrium must be for contact to be corrected by it, and how much of what the last correction has changed
 /// may be left; at the end corrections are checked at the tolerance that was asked for.
@@ -24,6 +24,11 @@ const AT_THE_END: f64 = 0.1;
 pub(crate) trait Search: Clone {
     /// Where on the path its equilibrium is, or begins to be looked for.
     fn point(&self) -> Point;
+
+    /// Whether a shorter step can be taken where this one does not settle soon.
+    fn can_be_cut(&self) -> bool {
+        false
+    }
 
     /// Finds the equilibrium from `positions`, which it changes. In a `round` after the first it begins at one under what
     /// contact held before a correction.
@@ -43,11 +48,17 @@ pub(crate) struct AtLoad {
     pub point: Point,
     /// Whether a line search follows where the quick way is lost.
     pub safe: bool,
+    /// As [`Search::can_be_cut`].
+    pub can_be_cut: bool,
 }
 
 impl Search for AtLoad {
     fn point(&self) -> Point {
         self.point
+    }
+
+    fn can_be_cut(&self) -> bool {
+        self.can_be_cut
     }
 
     fn find(
@@ -77,7 +88,8 @@ impl Equilibrium<'_> {
         let mut loose = self.problem.contact().is_some() && self.precision == 1.0;
         let mut round = 0;
         let (mut least, mut stale) = (f64::INFINITY, 0);
-        while round < ROUNDS && stale < STALE {
+        let enough = if search.can_be_cut() { STALE } else { ROUNDS };
+        while round < ROUNDS && stale < enough {
             let changed = self.forces(positions, search.point()).relative();
             stale = if changed < least { 0 } else { stale + 1 };
             least = least.min(changed);

@@ -125,9 +125,9 @@ fn a_smooth_plate_presses_as_a_clamp_across_does() {
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let clamped = Problem::new(body, clamps, vec![], None).unwrap();
     let expected = reaction(&clamped, &settle(&clamped).positions, &top)[2];
-    // The clearance adds 4e-7 m to the 2 mm.
+    // The clearance adds 8e-7 m to the 2 mm, 4e-4 of it, and the block gets stiffer as it is pressed.
     assert!(
-        (pair.force[2] / expected - 1.0).abs() < 5e-4,
+        (pair.force[2] / expected - 1.0).abs() < 8e-4,
         "{pair:?} {expected}"
     );
     assert!(pair.gap > 0.0 && pair.gap < 1e-3 * 4e-3, "{pair:?}");

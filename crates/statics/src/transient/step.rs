@@ -129,7 +129,11 @@ impl Run<'_> {
             tolerance: STEP_TOLERANCE,
             ..Settings::default()
         };
-        let mut search = AtLoad { point, safe: true };
+        let mut search = AtLoad {
+            point,
+            safe: true,
+            can_be_cut: false,
+        };
         self.equilibrium
             .settle(positions, &mut search, &settings, observer)?;
         Ok(())
