@@ -194,8 +194,8 @@ fn force(touch: &Touch, answer: &Answer) -> f64 {
 
 /// Of the block from its top to its bottom, where contact has not come into it.
 const EXACT: f64 = 1e-6;
-/// The clearance of contact, m.
-const CLEARANCE: f64 = 2e-4 * SIDE;
+/// The clearance of contact and a tenth more, m.
+const CLEARANCE: f64 = 2.2e-4 * SIDE;
 
 #[test]
 fn an_arc_leads_past_a_limit_and_onto_a_plate() {

@@ -78,18 +78,18 @@ fn cube_on_block(friction: f64) -> (Problem, Arc<Touch>, u32) {
 
 #[test]
 fn a_cube_that_starts_above_a_block_comes_to_lie_on_it() {
-    // Where nothing slips the balance is that of the search; what slips gets its anchors anew in the end, by which the
-    // balance is off by some millionths.
-    for (friction, off) in [(0.5, 1e-7), (0.2, 1e-5)] {
+    // At its rim the cube slips, under a tenth of the pressure or all of it. Bounds of what slips are settled to a tenth of
+    // 0.3 % under the whole load, and the balance is off by as much at most.
+    let off = 3e-4;
+    for friction in [0.5, 0.2] {
         let (problem, touch, first) = cube_on_block(friction);
         let answer = settle(&problem);
         assert_eq!(answer.status, Status::AtRest, "{friction}");
-        assert!(answer.residual < off, "{}", answer.residual);
-        assert!(answer.stable);
         let [pair] = touch.pairs(&answer.positions).try_into().unwrap();
+        assert!(answer.residual < off, "{} {pair:?}", answer.residual);
+        assert!(answer.stable);
         let weight = MASS * GRAVITY;
-        let allowed = f64::max(off, 1e-6);
-        assert!((pair.force[2] / -weight - 1.0).abs() < allowed, "{pair:?}");
+        assert!((pair.force[2] / -weight - 1.0).abs() < off, "{pair:?}");
         let at = middle(&answer, first);
         // Where it was, but for what corners that are pressed into facets slide before friction holds them.
         let aside = norm([at[0] - 9.37e-3, at[1] - 8.77e-3, 0.0]);

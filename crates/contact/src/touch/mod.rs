@@ -64,8 +64,8 @@ const LEAST_AREA: f64 = 0.5;
 const STICK: [f64; 2] = [0.01, 1.0];
 /// By how much a correction must bring down what sticks and still creeps, and how much stiffer it is else.
 const STIFFER: f64 = 4.0;
-/// The clearance of surfaces that touch, in voxels: that of points, and that of edges, which is what points have left of theirs at
-/// least. So edges carry nothing where surfaces lie flat on each other, as the sides of mismatched squares cross everywhere.
+/// The clearance of surfaces that touch, in voxels: that of points, and that of edges, or of points where there are no edges, which is
+/// what points have left of theirs at least. So edges carry nothing where surfaces lie flat on each other, as the sides of mismatched squares cross everywhere.
 const CLEARANCE: [f64; 2] = [2e-4, 1e-4];
 /// Looks at the start of a search for equilibrium; after a correction there is one.
 const LOOKS: u32 = 2;
@@ -291,6 +291,11 @@ impl Touch {
         self
     }
 
+    /// Whether edges are kept out of edges.
+    fn has_edges(&self) -> bool {
+        self.samples.len() > self.points.len()
+    }
+
     /// Leaves edges to themselves: only points are kept out of surfaces.
     pub(super) fn without_edges(mut self, rest: &[Vec3]) -> Self {
         self.samples.truncate(self.points.len());
@@ -350,8 +355,8 @@ impl Touch {
 
     /// The gap that a sample keeps, m.
     fn clearance(&self, sample: u32) -> f64 {
-        let is_edge = self.samples[sample as usize].is_edge();
-        CLEARANCE[usize::from(is_edge)] * self.description.voxel
+        let leaves_to_edges = sample < self.points.len() as u32 && self.has_edges();
+        CLEARANCE[usize::from(!leaves_to_edges)] * self.description.voxel
     }
 
     fn ends(&self, sample: u32, points: &[Vec3]) -> [Vec3; 2] {
