@@ -11,7 +11,7 @@
 //!
 //! With a multiplier `λ` (N) for each sample and a penalty `k` (N/m), the energy is `k/2 ⟨λ/k − (g − δ)⟩²`, its force
 //! `p = k ⟨λ/k − (g − δ)⟩`; after each equilibrium `λ ← p`, until no
-//! sample is deeper than nine tenths of the clearance `δ`, so that surfaces which touch do not intersect. The answer
+//! gap is below the clearance `δ` by more than [`DEEPEST`], so that surfaces which touch do not intersect. The answer
 //! does not depend on `k` (Alart and Curnier 1991, doi 10.1016/0045-7825(91)90022-X).
 //!
 //! # Friction
