@@ -235,3 +235,38 @@ def test_the_forces_of_two_bodies_balance():
     assert carried[2] > 0.0
     assert np.abs(carried + contact.force).max() < 1e-3 * contact.pressed
     assert np.abs(result.reactions[slab].sum(axis=0) - contact.force).max() < 1e-3 * contact.pressed
+
+
+def test_rims_that_lie_on_each_other_do_not_roll_off():
+    """Two mirrored pads face to face bulge by the same, so that nothing slides, up to the last edge.
+
+    What friction there is is what Newton's method leaves, and the contact is as large as a face.
+    """
+    length, width, height = 20 * mm, 10 * mm, 10 * mm
+    pad = Design(
+        name="pad",
+        voxel_size=5 * mm,
+        parts=[Part(shape=vs.Box(size=(length, width, height)), material=RUBBER)],
+        clamps=[Clamp(region=Region(z=(0, 0)))],
+    )
+    upper = Body(
+        name="upper",
+        design=pad,
+        position=(0, 0, 2 * height + 0.5 * mm),
+        mirror="z",
+        motion=Motion(displacement=(0, 0, -1.5 * mm)),
+    )
+    stack = Design(
+        name="stack",
+        voxel_size=5 * mm,
+        bodies=[Body(name="lower", design=pad), upper],
+        contact=Contact(friction=0.5),
+        solver=Solver(method="statics"),
+    )
+    result = vs.simulate(stack)
+    assert result.status == "ok" and not result.warnings
+    (touch,) = result.contacts
+    assert touch.force[2] < 0
+    assert np.linalg.norm(touch.friction) < 1e-6 * touch.pressure
+    assert touch.slipping == 0.0
+    assert touch.area == pytest.approx(length * width, rel=1e-9)

@@ -9,6 +9,11 @@ use super::state::{Facing, State};
 
 /// How far a sample may be beside an edge and still count as flush with it, in voxels.
 const FLUSH: f64 = 1e-6;
+/// How far a sample may be beyond the edge of a triangle and still count as in front of it, in voxels.
+///
+/// Around an edge normals turn within the clearance, and by as much as friction lets samples creep: of two rims that lie on each other, each
+/// would be rolled off the other.
+const RIM: f64 = 1e-3;
 
 impl Touch {
     /// What a sample at `point` is in front of, or in, among its candidates.
@@ -38,6 +43,9 @@ impl Touch {
                 return met.then_some(Facing::Plane(beside));
             }
         }
+        if let Some(plane) = self.over_rim(state, index, triangle, found, point, points) {
+            return Some(Facing::Plane(plane));
+        }
         let outward = self.normal_beside(triangle, found.weights, points);
         let normal = if found.distance <= 1e-9 * self.description.voxel {
             outward
@@ -48,6 +56,45 @@ impl Touch {
             scale(sign / found.distance, found.away)
         };
         Some(Facing::Edge(triangle, found.weights, normal))
+    }
+
+    /// The triangle at an edge or corner in front of which a point is that is beyond that by next to nothing: the one that it faces
+    /// already, or of those that its own surface looks at the one that it is farthest from.
+    fn over_rim(
+        &self,
+        state: &State,
+        index: usize,
+        triangle: u32,
+        found: Closest,
+        point: Vec3,
+        points: &[Vec3],
+    ) -> Option<u32> {
+        let looks = self.normal_at(index as u32, points);
+        let mut best: Option<(u32, f64)> = None;
+        for other in self.triangles_at(triangle, found) {
+            let away = closest(point, self.corners(other, points)).away;
+            let outward = normal(self.corners(other, points));
+            let height = dot(away, outward);
+            let beyond = norm(sub(away, scale(height, outward)));
+            let met = height > 0.0 && dot(looks, outward) < 0.0;
+            if !met || beyond > RIM * self.description.voxel {
+                continue;
+            }
+            if state.facing[index] == Some(Facing::Plane(other)) {
+                return Some(other);
+            }
+            if best.is_none_or(|(_, most)| height > most) {
+                best = Some((other, height));
+            }
+        }
+        best.map(|(plane, _)| plane)
+    }
+
+    /// The triangles at the corners on which the closest point of a triangle depends.
+    fn triangles_at(&self, triangle: u32, found: Closest) -> impl Iterator<Item = u32> {
+        let corners = self.triangles[triangle as usize];
+        let on = (0..3).filter(move |c| found.weights[*c] > 0.0);
+        on.flat_map(move |c| self.around[corners[c] as usize].iter().copied())
     }
 
     /// Whether a sample that looks to be behind an edge or a corner has gone through it since the accepted state.
@@ -77,13 +124,9 @@ impl Touch {
         point: Vec3,
         points: &[Vec3],
     ) -> Option<(u32, Closest)> {
-        let corners = self.triangles[triangle as usize];
-        let on = (0..3)
-            .filter(|c| found.weights[*c] > 0.0)
-            .map(|c| corners[c]);
         let least = found.distance - 1e-9 * self.description.voxel;
         let mut best: Option<(u32, Closest)> = None;
-        for &other in on.flat_map(|corner| &self.around[corner as usize]) {
+        for other in self.triangles_at(triangle, found) {
             let beside = closest(point, self.corners(other, points));
             if beside.distance < best.map_or(least, |(_, best)| best.distance) {
                 best = Some((other, beside));
@@ -106,6 +149,16 @@ impl Touch {
         let found = closest(point, self.corners(triangle, points));
         let outward = self.normal_beside(triangle, found.weights, points);
         dot(found.away, outward) >= 0.0 || found.distance <= depth * self.description.voxel
+    }
+
+    /// The mean normal at a point of a surface.
+    fn normal_at(&self, point: u32, points: &[Vec3]) -> Vec3 {
+        let Some(&triangle) = self.around[point as usize].first() else {
+            return [0.0; 3];
+        };
+        let corners = self.triangles[triangle as usize];
+        let weights = corners.map(|corner| f64::from(u8::from(corner == point)));
+        self.normal_beside(triangle, weights, points)
     }
 
     /// The mean normal at a point of a triangle, on an edge or corner that of all that meet there, which tells outside from inside (Baerentzen and
