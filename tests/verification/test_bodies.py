@@ -238,7 +238,7 @@ def test_the_forces_of_two_bodies_balance():
 
 
 def test_rims_that_lie_on_each_other_do_not_roll_off():
-    """Two mirrored pads face to face bulge by the same, so that nothing slides, up to the last edge.
+    """Two mirrored pads face to face bulge by the same: nothing slides, up to the last edge.
 
     What friction there is is what Newton's method leaves, and the contact is as large as a face.
     """
@@ -264,7 +264,8 @@ def test_rims_that_lie_on_each_other_do_not_roll_off():
         solver=Solver(method="statics"),
     )
     result = vs.simulate(stack)
-    assert result.status == "ok" and not result.warnings
+    assert result.status == "ok"
+    assert not result.warnings
     (touch,) = result.contacts
     assert touch.force[2] < 0
     assert np.linalg.norm(touch.friction) < 1e-6 * touch.pressure

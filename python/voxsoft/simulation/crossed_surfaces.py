@@ -16,11 +16,10 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.touching import Touching, has_contact
 
 #: Faces of one body nearer than this along its unloaded surface, in voxels, are a crease, which
-#: follows voxels that are crushed: contact does not look at neighbors.
+#: follows voxels that are crushed: contact does not look at neighbors. It is said in other words.
 CREASE: Final = 1.5
-#: How far two faces may be in each other, in voxels. Contact keeps points out of faces; where edges
-#: of surfaces that do not fit each other lie crosswize they cut each other by some hundredths.
-GRAZING: Final = 0.05
+#: How far two faces may be in each other without a word, in voxels.
+GRAZING: Final = 0.01
 
 #: Pairs whose ways along the surface are looked for at once: each takes memory for every point.
 _AT_ONCE: Final = 64
@@ -67,14 +66,15 @@ def crossed_surfaces(design: Design, mesh: Mesh, positions: Floats) -> Iterator[
     if not len(pairs):
         return
     rest, _, _ = _faces(touching, mesh.vertices)
-    wrong = np.flatnonzero(are_apart(rest, triangles, pairs, CREASE * size))
-    if len(wrong):
-        place_of = first[wrong[np.argmax(depths[wrong])]]
-        at_x, at_y, at_z = rest[place_of].mean(axis=0).tolist()
-        place = (at_x, at_y, at_z)
-        what = f"surfaces pass through each other {near(place)}, which contact has not kept apart"
-        hint = "lower the load, or take smaller voxels"
-        yield Diagnostic("warning", "contact", what, hint, place)
+    apart = are_apart(rest, triangles, pairs, CREASE * size)
+    worst = int(np.argmax(np.where(apart, depths, -1.0) if apart.any() else depths))
+    at_x, at_y, at_z = rest[first[worst]].mean(axis=0).tolist()
+    place = (at_x, at_y, at_z)
+    what = f"surfaces pass through each other {near(place)}, which contact has not kept apart"
+    if not apart.any():
+        how = f"{depths[worst] / size:.2f} voxels deep, in a crease of crushed voxels"
+        what = f"the surface is folded into itself {near(place)}, {how}"
+    yield Diagnostic("warning", "contact", what, "lower the load, or take smaller voxels", place)
 
 
 def are_apart(
