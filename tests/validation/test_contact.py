@@ -39,9 +39,9 @@ def blocks_force(contact, voxel, press, friction=0.0):
 
 @pytest.mark.parametrize(("below", "above"), [(3, 4), (4, 5)])
 def test_a_uniform_pressure_passes_between_voxels_that_do_not_match(contact, below, above):
-    """Seen are 0.03 % (force) and 0.05 % (stress of the worst voxel).
+    """Seen are 0.05 % (force) and 0.06 % (stress of the worst voxel).
 
-    The clearance of 1e-4 voxels, 0.4 µm, adds 0.025 % to the 1.6 mm of the way.
+    The clearance of 2e-4 voxels, 0.8 µm, adds 0.05 % to the 1.6 mm of the way.
     """
     design, force, stress = contact.designs.mismatched_blocks(below, above)
     result = found(design)
@@ -76,6 +76,18 @@ def test_friction_between_two_blocks_adds_what_it_does_in_the_reference(contact)
     smooth, rough = (blocks_force(contact, 2.0, 1, friction) for friction in (0.0, 0.5))
     # Seen are -0.16 %.
     assert rough / smooth == pytest.approx(1.0, abs=5e-3)
+
+
+def test_a_corner_slides_out_over_what_it_has_dented(contact):
+    """Points of the lower block go around the corner of the upper one, which nothing may hold.
+
+    Seen are +3.0 % where a corner that is caught by one of them is 42 % off; the rest is the error
+    of the element at that corner.
+    """
+    result = found(contact.designs.two_blocks(1.0, 1.75))
+    row = contact.row_of("two_blocks", friction=0.0, press_mm=1.75)
+    aside = 1e3 * result.probes["upper"][0]
+    assert aside == pytest.approx(row["upper_corner_ux_mm"], rel=0.05)
 
 
 @pytest.mark.slow

@@ -105,6 +105,10 @@ pub(crate) struct Equilibrium<'a> {
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
 /// Such iterations without the residual halving, after which they count as lost.
 pub(crate) const PATIENCE: u32 = 8;
+/// Iterations with contact without one that halves the residual, once it was that near, after which a line search goes on from
+/// there: near the answer, samples that press and let go in turn lead full steps around in a circle.
+const TO_AND_FRO: u32 = 3;
+const NEARBY: f64 = 0.01;
 /// How far a vertex may move in an iteration, in sizes of the body; beyond it that is lost.
 const FARTHEST: f64 = 20.0;
 /// The same with contact. What may meet on such a way would be listed, and is of no use.
@@ -281,7 +285,7 @@ impl<'a> Equilibrium<'a> {
 
     fn newton_mixed(
         &mut self,
-        positions: &mut [Vec3],
+        positions: &mut Vec<Vec3>,
         point: Point,
         settings: &Settings,
         observer: &mut Observer<'_>,
@@ -313,6 +317,13 @@ impl<'a> Equilibrium<'a> {
                 if relative < 0.5 * lowest {
                     (lowest, since_lowest) = (relative, 0);
                 }
+            }
+            if since_lowest > TO_AND_FRO && lowest < NEARBY && self.problem.contact().is_some() {
+                let found = self.newton_searched(positions, point, settings, observer)?;
+                return Ok(Found {
+                    iterations: iteration + found.iterations,
+                    ..found
+                });
             }
             if since_lowest > PATIENCE {
                 return Err(Failure::Lost);

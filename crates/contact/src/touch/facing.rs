@@ -14,6 +14,8 @@ const FLUSH: f64 = 1e-6;
 /// Around an edge normals turn within the clearance, and by as much as friction lets samples creep: of two rims that lie on each other, each
 /// would be rolled off the other.
 const RIM: f64 = 1e-3;
+/// By how much more, as a cosine, a surface has to look at another triangle for a sample to leave the one that it faces there.
+const STAYS: f64 = 0.1;
 
 impl Touch {
     /// What a sample at `point` is in front of, or in, among its candidates.
@@ -58,8 +60,8 @@ impl Touch {
         Some(Facing::Edge(triangle, found.weights, normal))
     }
 
-    /// The triangle at an edge or corner in front of which a point is that is beyond that by next to nothing: the one that it faces
-    /// already, or of those that its own surface looks at the one that it is farthest from.
+    /// The triangle at an edge or corner in front of which a point is that is beyond that by next to nothing: the one that its own
+    /// surface looks at the most, or that it faces already where two are alike.
     fn over_rim(
         &self,
         state: &State,
@@ -76,15 +78,14 @@ impl Touch {
             let outward = normal(self.corners(other, points));
             let height = dot(away, outward);
             let beyond = norm(sub(away, scale(height, outward)));
-            let met = height > 0.0 && dot(looks, outward) < 0.0;
-            if !met || beyond > RIM * self.description.voxel {
+            let toward = dot(looks, outward);
+            if toward >= 0.0 || height <= 0.0 || beyond > RIM * self.description.voxel {
                 continue;
             }
-            if state.facing[index] == Some(Facing::Plane(other)) {
-                return Some(other);
-            }
-            if best.is_none_or(|(_, most)| height > most) {
-                best = Some((other, height));
+            let faced = state.facing[index] == Some(Facing::Plane(other));
+            let toward = if faced { toward - STAYS } else { toward };
+            if best.is_none_or(|(_, least)| toward < least) {
+                best = Some((other, toward));
             }
         }
         best.map(|(plane, _)| plane)
