@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft import _core
 from voxsoft._memory import memory_limit, shortage
 from voxsoft.errors import MeshError
-from voxsoft.geometry import enclosed_volume
+from voxsoft.geometry import enclosed_volume, tet_volumes
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +41,11 @@ class MeshCavity:
         What the design calls it; empty where it has no name.
     body : str
         The name of the body that it is in; empty where there is only one.
+    other_triangles : ndarray of int32, shape (t, 3), optional
+        The surface with its bilinear faces, those of hyperelastic voxels, cut along their other
+        diagonals: volume and pressure are the mean over both. Default: none is bilinear.
+    other_void_tets : ndarray of int32, shape (k, 4), optional
+        The voids cut so.
     """
 
     triangles: NDArray[np.int32] = field(repr=False)
@@ -52,10 +57,13 @@ class MeshCavity:
     void_parts: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0), repr=False)
     name: str = ""
     body: str = ""
+    other_triangles: NDArray[np.int32] | None = field(default=None, repr=False)
+    other_void_tets: NDArray[np.int32] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
-        for name in ("triangles", "void_tets"):
-            object.__setattr__(self, name, _frozen(getattr(self, name), np.int32))
+        for name in ("triangles", "void_tets", "other_triangles", "other_void_tets"):
+            if (array := getattr(self, name)) is not None:
+                object.__setattr__(self, name, _frozen(array, np.int32))
         object.__setattr__(self, "void_parts", _frozen(self.void_parts, np.float64))
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -64,7 +72,7 @@ class MeshCavity:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, MeshCavity):
             return NotImplemented
-        arrays = ("triangles", "void_tets", "void_parts")
+        arrays = ("triangles", "void_tets", "void_parts", "other_triangles", "other_void_tets")
         mine, its = ((each.volume, each.area, each.name, each.body) for each in (self, other))
         return mine == its and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
@@ -89,10 +97,30 @@ class MeshCavity:
         >>> round(mesh.cavities[0].volume_at(2 * mesh.vertices), 12)
         8e-06
         """
-        enclosed = enclosed_volume(self.triangles, positions)
-        if len(self.void_tets) == 0:
-            return enclosed
-        return enclosed + float(self.void_parts @ _tet_volumes(positions, self.void_tets))
+        volume = 0.0
+        for triangles, tets, weight in self.splits:
+            volume += weight * enclosed_volume(triangles, positions)
+            if len(tets):
+                volume += weight * float(self.void_parts @ tet_volumes(positions, tets))
+        return volume
+
+    @property
+    def splits(self) -> tuple[tuple[NDArray[np.int32], NDArray[np.int32], float], ...]:
+        """The ways in which it is cut: triangles, voids, weight.
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> shell = np.ones((3, 3, 3), dtype=bool)
+        >>> shell[1, 1, 1] = False
+        >>> cavity = Voxels.from_array(shell, voxel_size=0.01).mesh().cavities[0]
+        >>> [weight for _, _, weight in cavity.splits]
+        [1.0]
+        """
+        if self.other_triangles is None or self.other_void_tets is None:
+            return ((self.triangles, self.void_tets, 1.0),)
+        other = (self.other_triangles, self.other_void_tets, 0.5)
+        return ((self.triangles, self.void_tets, 0.5), other)
 
 
 @dataclass(frozen=True, eq=False)
@@ -389,7 +417,7 @@ class Mesh:
     @property
     def tet_volumes(self) -> NDArray[np.float64]:
         """Volume of each tet [m³], shape (m,)."""
-        return _tet_volumes(self.vertices, self.tets)
+        return tet_volumes(self.vertices, self.tets)
 
     @property
     def surface_volume(self) -> float:
@@ -442,15 +470,6 @@ _DTYPES: dict[str, type[np.generic]] = {
     "fractions": np.float64,
     "moments": np.float64,
 }
-
-
-def _tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDArray[np.float64]:
-    corners = positions.T.take(tets.T, axis=1)  # three axes, four corners, m
-    (ux, vx, wx), (uy, vy, wy), (uz, vz, wz) = corners[:, 1:] - corners[:, :1]
-    six_volumes: NDArray[np.float64] = (
-        ux * (vy * wz - vz * wy) + uy * (vz * wx - vx * wz) + uz * (vx * wy - vy * wx)
-    )
-    return six_volumes / 6.0
 
 
 def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[Any]:

@@ -81,12 +81,10 @@ def edge_directions(mesh: Mesh) -> Floats | None:
 def of_body(cavity: MeshCavity, body: BodyMesh) -> MeshCavity:
     """A cavity of the own mesh of a body among those of the joined mesh."""
     first = np.int32(body.first_vertex)
-    return replace(
-        cavity,
-        triangles=cavity.triangles + first,
-        void_tets=cavity.void_tets + first,
-        body=body.name,
-    )
+    names = ("triangles", "void_tets", "other_triangles", "other_void_tets")
+    arrays = {name: getattr(cavity, name) for name in names}
+    moved = {name: array + first for name, array in arrays.items() if array is not None}
+    return replace(cavity, body=body.name, **moved)
 
 
 def _fractions(mesh: Mesh) -> Floats:

@@ -38,14 +38,15 @@ def _add_slope(cavity: MeshCavity, positions: Floats, slope: Floats) -> None:
 
     The volume of a tet grows by ``((c - b) x (d - b))/6``, turned inward, at its corner a.
     """
-    a, b, c = positions[cavity.triangles].transpose(1, 0, 2)
-    for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
-        np.add.at(slope, cavity.triangles[:, corner], -np.cross(one, other) / 6.0)
-    a, b, c, d = positions[cavity.void_tets].transpose(1, 0, 2)
-    parts = cavity.void_parts[:, None] / 6.0
-    edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))
-    for corner, (one, other) in enumerate(edges):
-        np.add.at(slope, cavity.void_tets[:, corner], parts * np.cross(one, other))
+    for triangles, tets, weight in cavity.splits:
+        a, b, c = positions[triangles].transpose(1, 0, 2)
+        for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
+            np.add.at(slope, triangles[:, corner], -weight / 6.0 * np.cross(one, other))
+        a, b, c, d = positions[tets].transpose(1, 0, 2)
+        parts = weight / 6.0 * cavity.void_parts[:, None]
+        edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))
+        for corner, (one, other) in enumerate(edges):
+            np.add.at(slope, tets[:, corner], parts * np.cross(one, other))
 
 
 CAVITY_VOLUME: Final = Metric(
