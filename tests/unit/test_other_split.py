@@ -7,7 +7,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Objective
-from voxsoft.geometry import enclosed_volume, tet_volumes
+from voxsoft.geometry import enclosed_volume
 from voxsoft.materials import Lattice, NeoHookean
 from voxsoft.metrics.chambers import CAVITY_VOLUME
 from voxsoft.simulation import Setup
@@ -47,7 +47,7 @@ def pressure_forces(setup, positions):
 def test_each_split_encloses_the_same_at_rest_and_the_mean_what_is_below_bilinear_faces():
     setup = Setup.of(shell(fill="binary"))
     (cavity,) = setup.mesh.cavities
-    for triangles, _, _ in cavity.splits:
+    for triangles, _ in cavity.splits:
         assert enclosed_volume(triangles, setup.mesh.vertices) == pytest.approx(cavity.volume)
     # The empty cells themselves: the mean of det F over eight points of each is exact.
     positions = moved(setup.mesh)
@@ -128,17 +128,6 @@ def test_an_open_surface_shares_whole_faces_evenly_and_no_others():
     assert (setup.other_split.triangles(lone) == lone).all()
 
 
-def test_the_other_tets_of_a_cut_voxel_fill_it_too():
-    setup = Setup.of(shell())
-    (cavity,) = setup.mesh.cavities
-    own, other = (
-        tet_volumes(setup.mesh.vertices, tets).reshape(-1, 5) for _, tets, _ in cavity.splits
-    )
-    assert own.sum(axis=1) == pytest.approx(SIZE**3)
-    assert other.min() > 0.0
-    assert other.sum(axis=1) == pytest.approx(SIZE**3)
-
-
 @pytest.mark.parametrize(("inside", "is_split"), [(SPRINGS, False), (RUBBER, True)])
 def test_springs_keep_the_triangles_that_are_their_surface(inside, is_split):
     """Of a shell of two materials, the one beside the air decides."""
@@ -153,9 +142,8 @@ def test_springs_keep_the_triangles_that_are_their_surface(inside, is_split):
         ]
     )
     (cavity,) = Setup.of(design).mesh.cavities
-    (triangles, tets, _), (others, other_tets, _) = cavity.splits
+    (triangles, _), (others, _) = cavity.splits
     assert (triangles == others).all() != is_split
-    assert (tets == other_tets).all() != is_split
 
 
 def test_a_body_of_springs_has_one_split():

@@ -8,10 +8,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design
 from voxsoft.design.chamber import chosen_cavities, name_of_cavity
 from voxsoft.design.cut_cells import built_parts
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings

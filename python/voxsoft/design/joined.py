@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.mesh import BodyMesh, Mesh, MeshCavity
+from voxsoft.cavity import MeshCavity
+from voxsoft.mesh import BodyMesh, Mesh
 
 Floats = NDArray[np.float64]
 #: The name of a body, its mesh, its rotation and its position.
@@ -81,7 +82,7 @@ def edge_directions(mesh: Mesh) -> Floats | None:
 def of_body(cavity: MeshCavity, body: BodyMesh) -> MeshCavity:
     """A cavity of the own mesh of a body among those of the joined mesh."""
     first = np.int32(body.first_vertex)
-    names = ("triangles", "void_tets", "other_triangles", "other_void_tets")
+    names = ("triangles", "void_tets", "other_triangles")
     arrays = {name: getattr(cavity, name) for name in names}
     moved = {name: array + first for name, array in arrays.items() if array is not None}
     return replace(cavity, body=body.name, **moved)

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.mesh import MeshCavity
 from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 
 
@@ -38,15 +38,15 @@ def _add_slope(cavity: MeshCavity, positions: Floats, slope: Floats) -> None:
 
     The volume of a tet grows by ``((c - b) x (d - b))/6``, turned inward, at its corner a.
     """
-    for triangles, tets, weight in cavity.splits:
+    for triangles, weight in cavity.splits:
         a, b, c = positions[triangles].transpose(1, 0, 2)
         for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
             np.add.at(slope, triangles[:, corner], -weight / 6.0 * np.cross(one, other))
-        a, b, c, d = positions[tets].transpose(1, 0, 2)
-        parts = weight / 6.0 * cavity.void_parts[:, None]
-        edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))
-        for corner, (one, other) in enumerate(edges):
-            np.add.at(slope, tets[:, corner], parts * np.cross(one, other))
+    a, b, c, d = positions[cavity.void_tets].transpose(1, 0, 2)
+    parts = cavity.void_parts[:, None] / 6.0
+    edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))
+    for corner, (one, other) in enumerate(edges):
+        np.add.at(slope, cavity.void_tets[:, corner], parts * np.cross(one, other))
 
 
 CAVITY_VOLUME: Final = Metric(

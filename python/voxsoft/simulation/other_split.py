@@ -13,9 +13,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design
 from voxsoft.materials import CompliantLattice, Lattice
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 
 Ints = NDArray[np.int64]
 
@@ -54,12 +55,8 @@ class OtherSplit:
         return cls(mesh, ~has_tets[mesh.tet_part[::5].astype(np.intp) - 1])
 
     def cavity(self, cavity: MeshCavity) -> MeshCavity:
-        """A cavity of the mesh with the other split of its surface and of its voids."""
-        return replace(
-            cavity,
-            other_triangles=self.triangles(cavity.triangles),
-            other_void_tets=self._void_tets(cavity.void_tets),
-        )
+        """A cavity of the mesh with the other split of its surface."""
+        return replace(cavity, other_triangles=self.triangles(cavity.triangles))
 
     def triangles(self, triangles: NDArray[np.int32]) -> NDArray[np.int32]:
         """Triangles of the surface, (t, 3), with whole faces cut the other way.
@@ -116,27 +113,6 @@ class OtherSplit:
         diagonals, at = np.unique(np.concatenate(keys), return_index=True)
         return diagonals, np.concatenate(sums)[at]
 
-    def _void_tets(self, tets: NDArray[np.int32]) -> NDArray[np.int32]:
-        """Tets of whole voxels, (5 k, 4), cut the other way where the voxel is bilinear."""
-        blocks = tets.reshape(-1, 5, 4)
-        if len(blocks) == 0:
-            return tets
-        found = blocks.copy()
-        own = self.mesh.tets.reshape(-1, 5, 4)[self.bilinear, 0]
-        chosen = _in_rows(blocks[:, 0], own)
-        _, apexes, across = _corners(blocks[chosen].astype(np.int64))
-        turned = np.empty((len(apexes), 5, 4), dtype=np.int64)
-        turned[:, 0] = apexes
-        for corner in range(4):
-            turned[:, 1 + corner] = apexes
-            turned[:, 1 + corner, corner] = across[:, corner]
-        points = self.mesh.vertices[turned]
-        edges = points[:, :, 1:] - points[:, :, :1]
-        negative = np.linalg.det(edges) < 0.0
-        turned[negative] = turned[negative][:, [1, 0, 2, 3]]
-        found[chosen] = turned
-        return found.reshape(-1, 4)
-
 
 def with_other_split(design: Design, mesh: Mesh) -> Mesh:
     """Return the mesh with cavities that know the other split of their surface.
@@ -168,13 +144,3 @@ def _corners(blocks: Ints) -> tuple[Ints, Ints, Ints]:
     apexes = np.where(is_inner, 0, blocks[:, 1:]).sum(axis=2)
     across = middle.sum(axis=1)[:, None] - np.where(is_inner, blocks[:, 1:], 0).sum(axis=2)
     return middle, apexes, across
-
-
-def _in_rows(rows: NDArray[np.int32], among: NDArray[np.int32]) -> NDArray[np.bool_]:
-    """Which of some rows are among others, (k,)."""
-    kind = np.dtype([("", rows.dtype)] * rows.shape[1])
-    found: NDArray[np.bool_] = np.isin(
-        np.ascontiguousarray(rows).view(kind).ravel(),
-        np.ascontiguousarray(among).view(kind).ravel(),
-    )
-    return found

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import shortage
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Probe, Region
 from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
@@ -25,7 +26,7 @@ from voxsoft.errors import (
     VoxSoftError,
 )
 from voxsoft.materials import Material
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
@@ -388,9 +389,9 @@ class _CoreLoads(LoadReceiver):
             surfaces = [triangles, self._split.triangles(triangles)]
             voids = None
         else:
-            surfaces = [each for each, _, _ in cavity.splits]
-            tets = np.concatenate([each for _, each, _ in cavity.splits])
-            voids = (tets.astype(np.uint32), np.tile(cavity.void_parts, len(surfaces)))
+            surfaces = [each for each, _ in cavity.splits]
+            parts = len(surfaces) * cavity.void_parts  # each void is there once
+            voids = (cavity.void_tets.astype(np.uint32), parts)
         each = value / len(surfaces)
         self._parts.pressure(np.concatenate(surfaces).astype(np.uint32), each, self._history, voids)
 
