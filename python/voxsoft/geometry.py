@@ -100,6 +100,30 @@ def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]
     return -float(six_volumes.sum()) / 6.0
 
 
+def tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Volumes in m³ of tetrahedra, (m,), negative for those that are inside out.
+
+    Parameters
+    ----------
+    positions
+        Vertices, (n, 3), m.
+    tets
+        (m, 4).
+
+    Examples
+    --------
+    >>> corners = np.eye(4, 3, k=-1)  # the origin and the three unit vectors
+    >>> tet_volumes(corners, np.array([[0, 1, 2, 3]], dtype=np.int32)).round(6).tolist()
+    [0.166667]
+    """
+    corners = positions.T.take(tets.T, axis=1)  # three axes, four corners, m
+    (ux, vx, wx), (uy, vy, wy), (uz, vz, wz) = corners[:, 1:] - corners[:, :1]
+    six_volumes: NDArray[np.float64] = (
+        ux * (vy * wz - vz * wy) + uy * (vz * wx - vx * wz) + uz * (vx * wy - vy * wx)
+    )
+    return six_volumes / 6.0
+
+
 def rotation_matrix(axis: ArrayLike, angle: float) -> NDArray[np.float64]:
     """The matrix of a right-handed turn about an axis through the origin.
 

@@ -15,84 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from voxsoft import _core
+from voxsoft._arrays import frozen
 from voxsoft._memory import memory_limit, shortage
+from voxsoft.cavity import MeshCavity
 from voxsoft.errors import MeshError
-from voxsoft.geometry import enclosed_volume
-
-
-@dataclass(frozen=True, eq=False)
-class MeshCavity:
-    """The part of a mesh's boundary that faces one cavity.
-
-    Attributes
-    ----------
-    triangles : ndarray of int32, shape (t, 3)
-        Vertex indices, pointing out of the material, that is into the cavity.
-    volume : float
-        Enclosed volume [m³], voids included.
-    area : float
-        Area of the triangles [m²].
-    void_tets : ndarray of int32, shape (k, 4)
-        Tets of cut voxels into which the cavity reaches beyond its triangles; none by default.
-    void_parts : ndarray of float64, shape (k,)
-        The part of each that belongs to the cavity; negative where the voxel holds more material
-        than it has room for.
-    name : str
-        What the design calls it; empty where it has no name.
-    body : str
-        The name of the body that it is in; empty where there is only one.
-    """
-
-    triangles: NDArray[np.int32] = field(repr=False)
-    volume: float
-    area: float
-    void_tets: NDArray[np.int32] = field(
-        default_factory=lambda: np.zeros((0, 4), np.int32), repr=False
-    )
-    void_parts: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0), repr=False)
-    name: str = ""
-    body: str = ""
-
-    def __post_init__(self) -> None:
-        for name in ("triangles", "void_tets"):
-            object.__setattr__(self, name, _frozen(getattr(self, name), np.int32))
-        object.__setattr__(self, "void_parts", _frozen(self.void_parts, np.float64))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return MeshCavity, tuple(getattr(self, each.name) for each in fields(self))
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, MeshCavity):
-            return NotImplemented
-        arrays = ("triangles", "void_tets", "void_parts")
-        mine, its = ((each.volume, each.area, each.name, each.body) for each in (self, other))
-        return mine == its and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in arrays
-        )
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def volume_at(self, positions: NDArray[np.float64]) -> float:
-        """Return the volume [m³] when the vertices have moved.
-
-        Parameters
-        ----------
-        positions : ndarray, shape (n, 3)
-            All vertices of the mesh now [m].
-
-        Examples
-        --------
-        >>> from voxsoft.voxels import Voxels
-        >>> shell = np.ones((3, 3, 3), dtype=bool)
-        >>> shell[1, 1, 1] = False
-        >>> mesh = Voxels.from_array(shell, voxel_size=0.01).mesh()
-        >>> round(mesh.cavities[0].volume_at(2 * mesh.vertices), 12)
-        8e-06
-        """
-        enclosed = enclosed_volume(self.triangles, positions)
-        if len(self.void_tets) == 0:
-            return enclosed
-        return enclosed + float(self.void_parts @ _tet_volumes(positions, self.void_tets))
+from voxsoft.geometry import tet_volumes
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +169,7 @@ class Mesh:
         for name, dtype in _DTYPES.items():
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, _frozen(value, dtype))
+                object.__setattr__(self, name, frozen(value, dtype))
 
     @classmethod
     def from_tets(
@@ -299,7 +226,6 @@ class Mesh:
     def with_fractions(
         self,
         fractions: ArrayLike,
-        voids: Sequence[tuple[NDArray[np.integer], NDArray[np.float64]]] = (),
         moments: ArrayLike | None = None,
     ) -> Self:
         """Return the mesh with voxels that are partly filled.
@@ -308,8 +234,6 @@ class Mesh:
         ----------
         fractions : array_like, shape (v,)
             The material of each voxel in volumes of a voxel, positive.
-        voids : sequence of pairs, one for each cavity
-            Numbers of voxels and the part of each that belongs to the cavity.
         moments : array_like, shape (v, 6), optional
             Where in each voxel the material is, see the attribute; default: all over.
 
@@ -335,16 +259,50 @@ class Mesh:
         where = _matrix("moments", where, 6, np.float64)
         if where.shape != (count, 6) or not (np.isfinite(where).all() and (where[:, 3:] > 0).all()):
             raise MeshError("moments", f"must be {count} rows of finite numbers, spreads positive")
-        cavities = list(self.cavities)
-        for index, (numbers, parts) in enumerate(voids):
-            tets = self.tets.reshape(count, 5, 4)[numbers].reshape(-1, 4)
-            cavities[index] = replace(
-                cavities[index],
-                volume=cavities[index].volume + float(parts.sum()) * self.voxel_size**3,
-                void_tets=tets,
-                void_parts=np.repeat(parts, 5),
-            )
-        return replace(self, fractions=values, moments=where, cavities=tuple(cavities))
+        return replace(self, fractions=values, moments=where)
+
+    def with_voids(
+        self,
+        tets: NDArray[np.integer],
+        voids: Sequence[tuple[NDArray[np.integer], NDArray[np.float64]]],
+    ) -> Self:
+        """Return the mesh with cavities that reach into voxels.
+
+        Parameters
+        ----------
+        tets : ndarray, shape (t, 4)
+            Tets between corners of a voxel; corner c lies at (c >> 2 & 1, c >> 1 & 1, c & 1).
+        voids : sequence of pairs, one for each cavity
+            Numbers of voxels, (k,), and the factor of each of those tets in them, (k, t).
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> shell = np.ones((3, 3, 3), dtype=bool)
+        >>> shell[1, 1, 1] = False
+        >>> mesh = Voxels.from_array(shell, voxel_size=0.01).mesh()
+        >>> half = np.array([0]), np.full((1, 1), 3.0)  # of a sixth of the first voxel
+        >>> round(mesh.with_voids(np.array([[0, 4, 2, 1]]), [half]).cavities[0].volume * 1e6, 12)
+        1.5
+        """
+        cavities = []
+        for cavity, (numbers, parts) in zip(self.cavities, voids, strict=True):
+            found = self._voxel_corners(numbers)[:, tets].reshape(-1, 4)
+            factors = parts.ravel()
+            volume = cavity.volume + float(factors @ tet_volumes(self.vertices, found))
+            changed = replace(cavity, volume=volume, void_tets=found, void_parts=factors)
+            cavities.append(changed)
+        return replace(self, cavities=tuple(cavities))
+
+    def _voxel_corners(self, numbers: NDArray[np.integer]) -> NDArray[np.int32]:
+        """The corners of voxels along the axes, (k, 8); see :meth:`with_voids` for their order."""
+        blocks = self.tets.reshape(-1, 20)[numbers]
+        points = self.vertices[blocks]
+        low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
+        places = (2 * points > low + high) @ np.array([4, 2, 1])
+        corners = np.empty((len(blocks), 8), dtype=np.int32)
+        corners[np.arange(len(blocks))[:, None], places] = blocks
+        return corners
 
     @property
     def each_body(self) -> tuple[BodyMesh, ...]:
@@ -389,7 +347,7 @@ class Mesh:
     @property
     def tet_volumes(self) -> NDArray[np.float64]:
         """Volume of each tet [m³], shape (m,)."""
-        return _tet_volumes(self.vertices, self.tets)
+        return tet_volumes(self.vertices, self.tets)
 
     @property
     def surface_volume(self) -> float:
@@ -442,22 +400,6 @@ _DTYPES: dict[str, type[np.generic]] = {
     "fractions": np.float64,
     "moments": np.float64,
 }
-
-
-def _tet_volumes(positions: NDArray[np.float64], tets: NDArray[np.int32]) -> NDArray[np.float64]:
-    corners = positions.T.take(tets.T, axis=1)  # three axes, four corners, m
-    (ux, vx, wx), (uy, vy, wy), (uz, vz, wz) = corners[:, 1:] - corners[:, :1]
-    six_volumes: NDArray[np.float64] = (
-        ux * (vy * wz - vz * wy) + uy * (vz * wx - vx * wz) + uz * (vx * wy - vy * wx)
-    )
-    return six_volumes / 6.0
-
-
-def _frozen(array: ArrayLike, dtype: type[np.generic]) -> NDArray[Any]:
-    """Return a read-only view, so that the caller's own array keeps its flags."""
-    view = np.ascontiguousarray(array, dtype=dtype).view()
-    view.setflags(write=False)
-    return view
 
 
 def _matrix(place: str, values: ArrayLike, columns: int, dtype: type[np.generic]) -> NDArray[Any]:

@@ -55,7 +55,7 @@ def test_stairs_under_pressure_are_distinguished_from_boxes(shape, round, fill):
     assert not list(cautions_of(design(shape, fill, vs.Gravity()), mesh))
     for warning in found:
         assert (warning.where, warning.severity) == ("cavity 0", "warning")
-        assert "may be low by up to five times" in warning.what
+        assert "may be low by up to two times" in warning.what
         assert max(map(abs, warning.at)) < 20 * mm
 
 
@@ -63,7 +63,7 @@ def test_stairs_under_pressure_are_distinguished_from_boxes(shape, round, fill):
 def test_it_is_reported_where_the_estimates_are_shown(tmp_path, capsys):
     body = design(SPHERE, "binary").replace(voxel_size=5 * mm)
     found = vs.compare(body, solvers=["statics"], outside="none", voxel_sizes=[], splits=[1, 2])
-    words = "may be low by up to five times"
+    words = "may be low by up to two times"
     assert words in found.summary()["warnings"][0]["what"]
     page = write_comparison(found, tmp_path / "report.html").read_text(encoding="utf-8")
     assert words in page

@@ -51,24 +51,26 @@ def test_angles_are_compared_where_both_are_known(bender):
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_the_first_bending_is_predicted_and_the_transition_comes_late(bender):
-    """Up to 30 kPa 0.14 degrees off on average were seen; 3 degrees come 0.9 kPa too late.
+    """Up to 30 kPa 0.25 degrees off on average were seen; 3 degrees come 2.1 kPa too late.
 
-    The whole path to 62 kPa, 10.6 degrees off, takes minutes; `docs/validation.md` has it.
+    Uneven shares of pressure, which swell chambers too much, came nearer, to 0.14 degrees and 0.9
+    kPa, and made up for chambers that are one voxel wide.
+    The whole path to 62 kPa, 13 degrees off, takes minutes; `docs/validation.md` has it.
     """
     simulated, real = bender.predicted(ratio=4.5), bender.measured()
     at, apart = bender.errors(simulated, real)
     assert at[-1] >= 30 * kPa
     early = np.degrees(apart[at <= 30 * kPa])
-    assert np.abs(early).mean() < 0.2
+    assert np.abs(early).mean() < 0.3
     assert early[-1] < 0.0  # stiffer than the silicone was
     curves = bender.from_start(simulated), real
     here, there = (bender.reached(curve, np.radians(3)) for curve in curves)
-    assert 0.0 < here - there < 2 * kPa
+    assert 0.0 < here - there < 2.5 * kPa
 
 
 @pytest.mark.slow
-def test_the_tip_that_is_held_pushes_harder_than_measured():
-    """0.872 N at 50 kPa, measured 0.724 N: 1.204 of it were seen."""
+def test_the_tip_that_is_held_pushes_as_hard_as_measured():
+    """0.679 N at 50 kPa, measured 0.724 N: 0.938 of it were seen."""
     blocked = script("benchmarks", "blocked_force")
     force = blocked.predicted(50 * kPa, blocked.VARIANTS[0])
-    assert force / blocked.measured()[50 * kPa] == pytest.approx(1.204, abs=0.01)
+    assert force / blocked.measured()[50 * kPa] == pytest.approx(0.938, abs=0.01)

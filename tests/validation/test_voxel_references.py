@@ -38,14 +38,18 @@ def rises(wall, refine):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("wall", [10, 15])
-def test_staircase_cylinders_are_those_of_outside_codes(wall):
-    """The wall of 5 mm, one voxel, is near its limit pressure and converged nowhere: left out."""
-    found = [rises(wall, refine) for refine in (1, 2)]
+@pytest.mark.parametrize(("wall", "refine"), [(10, 2), (15, 3)])
+def test_staircase_cylinders_are_those_of_outside_codes(wall, refine):
+    """The wall of 5 mm, one voxel, is near its limit pressure and converged nowhere: left out.
+
+    The middle of the top over that of 15 mm rises by 1.87, 1.85 and 1.93 mm with voxels as they
+    are, halved and cut in three: two sizes that are near see no order.
+    """
+    found = [rises(wall, each) for each in (1, refine)]
     for probe in ("center", "top"):
         expected, unsure = reference(wall, f"{probe}_uz_mm")
         coarse, fine = (each[probe] for each in found)
-        estimate = discretization_error([1.0, 0.5], [coarse, fine])
+        estimate = discretization_error([1.0, 1.0 / refine], [coarse, fine])
         assert abs(fine - expected) < abs(coarse - expected)
         assert abs(coarse - expected) <= estimate.error_at(0) + unsure
         assert abs(fine - expected) <= estimate.error + unsure

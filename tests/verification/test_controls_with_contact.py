@@ -80,12 +80,18 @@ CASES = {
     "another body": (3.0, lambda pressure, friction, **how: fork(pressure, True, friction, **how)),
 }
 
+#: The friction of two bodies depends on the way the most: in 20 steps it presses 1.1 % less than
+#: load control, in 40 and in 80 it presses 0.8 % more.
+STEPS = {"a wall": 20, "itself": 20, "another body": 40}
+
 
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 @pytest.mark.parametrize("case", CASES)
 def test_a_volume_has_the_pressure_under_which_load_control_finds_it(case, friction):
     ratio, design = CASES[case]
-    by_volume = simulate(design(PRESSURE, friction, control="volume", volume_ratio=ratio))
+    by_volume = simulate(
+        design(PRESSURE, friction, control="volume", volume_ratio=ratio, steps=STEPS[case])
+    )
     assert by_volume.status == "ok", by_volume.message
     pressure = PRESSURE * by_volume.load_factor
     by_load = simulate(design(pressure, friction))

@@ -16,12 +16,13 @@ from typing import Final, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.comparison.brick_contact import BrickContact, check_contact, facing_walls, tools_of
 from voxsoft.design import Clamp
 from voxsoft.design.attachment import attachments_of
 from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loads import LoadReceiver
 from voxsoft.simulation.touching import refuse_bodies

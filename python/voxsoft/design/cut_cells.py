@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,9 @@ Ints = NDArray[np.intp]
 #: Sampled at once: small cubes of a slab, and cells that are cut into small cubes.
 _SLAB = 2**26
 _CHUNK = 4096
+
+#: What :func:`measures_of` gives for a full cell.
+WHOLE: Final[Floats] = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3, 0.0, 0.0, 0.0])
 
 # A cell that is full or empty up to rounding is full or empty.
 _ROUNDING = 1e-9
@@ -125,10 +129,10 @@ def built_parts(design: Design) -> list[_core.Shape]:
 
 
 def measures_of(design: Design, cells: Ints, size: float) -> Floats:
-    """Return the integrals of 1, ξ, η, ζ, ξ², η², ζ² over the material of some cells, (k, 7).
+    """Return integrals over the material of some cells, (k, 10).
 
-    The coordinates count from the center of a cell in halves of its edge; the integrals are in
-    volumes of a cell. A full cell gives 1, 0, 0, 0, 1/3, 1/3, 1/3.
+    Those of 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates count from
+    the center of a cell in halves of its edge. A full cell gives :data:`WHOLE`.
 
     Parameters
     ----------
@@ -139,31 +143,38 @@ def measures_of(design: Design, cells: Ints, size: float) -> Floats:
     size
         Edge of a cell [m].
     """
-    found = np.zeros((len(cells), 7))
+    found = np.zeros((len(cells), len(WHOLE)))
     for start in range(0, len(cells), _CHUNK):
         chunk = slice(start, start + _CHUNK)
         filled, normals, _ = filled_parts(design, cells[chunk], size)
-        found[chunk] = _integrals(filled, normals)
-    whole = np.array([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3])
-    found[found[:, 0] > 1.0 - _ROUNDING] = whole
+        found[chunk] = integrals(filled, normals)
+    found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
     found[found[:, 0] < _ROUNDING] = 0.0
     return found
 
 
-def _integrals(filled: Floats, normals: Floats) -> Floats:
-    """Sum over the small cubes of cells, (k, 7).
+def integrals(filled: Floats, normals: Floats) -> Floats:
+    """Sum over the small cubes of cells, (k, 10), see :func:`measures_of`.
 
     The filled part f of a cube of edge w cut by a plane with the unit normal n has its center
-    (1 - f)/2 w n away and the variance (1 - (1 - f²) n²) w²/12: right across the axes, and for
+    (1 - f)/2 w n away and the covariance (1 - (1 - f²) n ⊗ n) w²/12: right across the axes, and for
     halves across a diagonal the center is 6 % off.
+
+    Parameters
+    ----------
+    filled, normals
+        Of each small cube, as :func:`voxsoft.shapes.fractions.fill` gives them.
     """
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
     unit = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
     part = filled[..., None]
     edge = 2.0 / SUBCELLS
     center = _MIDDLES - (0.5 * edge) * (1.0 - part) * unit
-    square = center**2 + edge**2 / 12.0 * (1.0 - (1.0 - part**2) * unit**2)
-    rows = np.concatenate([part, part * center, part * square], axis=-1)
+    flat = edge**2 / 12.0 * (1.0 - part**2)
+    square = center**2 + edge**2 / 12.0 - flat * unit**2
+    one, other = [1, 2, 0], [2, 0, 1]
+    product = center[..., one] * center[..., other] - flat * unit[..., one] * unit[..., other]
+    rows = np.concatenate([part, part * center, part * square, part * product], axis=-1)
     total: Floats = rows.mean(axis=1)
     return total
 

@@ -8,8 +8,18 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design.cut_cells import CutCells, Floats, Ints, cut_cells, filled_parts, measures_of
+from voxsoft.design.cut_cells import (
+    WHOLE,
+    CutCells,
+    Floats,
+    Ints,
+    cut_cells,
+    filled_parts,
+    integrals,
+    measures_of,
+)
 from voxsoft.design.model import Design
+from voxsoft.design.rooms import ROOM_TETS, room_parts
 from voxsoft.errors import DesignError, ShapeError
 from voxsoft.mesh import Mesh
 from voxsoft.shapes.fractions import SUBCELLS
@@ -64,8 +74,9 @@ class CutVoxels:
         Where the material of each voxel is, (n, 6): see :attr:`voxsoft.Mesh.moments`. What a
         neighbor gave lies outside the voxel, and counts there.
     voids
-        For each cavity the voxels (their numbers, and parts of a cell) by which it is larger than
-        the empty cells it is made of; negative where a voxel holds more than it has room for.
+        For each cavity the voxels (their numbers, and parts of the tetrahedra of
+        :data:`~voxsoft.design.rooms.ROOM_TETS`) by which it is larger than the empty cells it is
+        made of.
     lost
         Volume [m³] of material in walls too thin to hold a voxel.
     """
@@ -147,7 +158,8 @@ class CutVoxels:
 
     def mesh(self) -> Mesh:
         """Return the mesh: five tetrahedra for each voxel, with fractions and voids."""
-        return self.voxels.mesh().with_fractions(self.fractions, self.voids, self.moments)
+        mesh = self.voxels.mesh().with_fractions(self.fractions, self.moments)
+        return mesh.with_voids(ROOM_TETS, self.voids)
 
 
 def fractions_of(design: Design, cells: CutVoxels) -> Floats:
@@ -241,11 +253,11 @@ def _nearest(seen: NDArray[np.int16]) -> NDArray[np.int16]:
 
 
 def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, ...], float]:
-    """Fractions and moments of the voxels, voids of the cavities [cells], lost volume [m³]."""
+    """Fractions and moments of the voxels, voids of the cavities, lost volume [m³]."""
     measures = measures_of(design, t.places, t.size)
     filled = measures[:, 0]
     own = t.voxel >= 0
-    held = np.tile([1.0, 0.0, 0.0, 0.0, 1 / 3, 1 / 3, 1 / 3], (t.whole, 1))
+    held = np.tile(WHOLE, (t.whole, 1))
     held[t.voxel[own]] = measures[own]
     # Each donor's material goes to its receivers in proportion to how full they are.
     weights = filled[t.receivers]
@@ -254,36 +266,49 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, .
     gifts = filled[t.donors] * shares
     takers = t.voxel[t.receivers]
     away = (2 * (t.places[t.donors] - t.places[t.receivers])).astype(np.float64)
-    moved = _shifted(measures[t.donors], away)
-    np.add.at(held, takers, moved * shares[:, None])
+    given_to = _shifted(measures[t.donors], away) * shares[:, None]
+    np.add.at(held, takers, given_to)
     given = np.bincount(t.donors, gifts, len(filled))
     lost = float((filled - given)[~own].sum()) * t.size**3
     fractions = held[:, 0]
     center = held[:, 1:4] / fractions[:, None]
-    variance = held[:, 4:] / fractions[:, None] - center**2
+    variance = held[:, 4:7] / fractions[:, None] - center**2
     moments = np.hstack([center, np.sqrt(3.0 * variance)])
 
-    torn = filled_parts(design, t.places[t.torn], t.size)[0] if len(t.torn) else None
+    if len(t.torn):
+        torn, normals, _ = filled_parts(design, t.places[t.torn], t.size)
     voids = []
     for cavity in range(t.cavities):
-        room = np.zeros(t.whole)
+        room, over = np.zeros((t.whole, len(WHOLE))), np.zeros((t.whole, len(WHOLE)))
         beside = own & (t.region == cavity)
-        room[t.voxel[beside]] = 1.0 - filled[beside]
-        if torn is not None:
-            room[t.voxel[t.torn]] += ((1.0 - torn) * (t.zones == cavity)).mean(axis=1)
+        room[t.voxel[beside]] = WHOLE - measures[beside]
+        if len(t.torn):
+            empty = np.where(t.zones == cavity, 1.0 - torn, 0.0)
+            room[t.voxel[t.torn]] += integrals(empty, -normals)
         into = t.region[t.donors] == cavity
-        np.add.at(room, takers[into], -gifts[into])
-        numbers = np.flatnonzero(room)
-        voids.append((numbers, room[numbers]))
+        np.add.at(over, takers[into], given_to[into])
+        numbers = np.flatnonzero((room[:, 0] > 0.0) | (over[:, 0] > 0.0))
+        # What a voxel holds of its neighbors lies beyond its own space, and has a gradient there.
+        parts = _parts(room[numbers]) - _parts(over[numbers])
+        voids.append((numbers, parts))
     return fractions, moments, tuple(voids), lost
+
+
+def _parts(measures: Floats) -> Floats:
+    volume = measures[:, 0]
+    filled = np.where(volume > 0.0, volume, 1.0)[:, None]
+    return room_parts(volume, measures[:, [1, 2, 3, 7, 8, 9]] / filled)
 
 
 def _shifted(measures: Floats, by: Floats) -> Floats:
     """The measures of material counted from a point that lies `by` the other way."""
     filled = measures[:, :1]
     first = measures[:, 1:4] + by * filled
-    second = measures[:, 4:] + 2.0 * by * measures[:, 1:4] + by**2 * filled
-    return np.hstack([filled, first, second])
+    second = measures[:, 4:7] + 2.0 * by * measures[:, 1:4] + by**2 * filled
+    one, other = [1, 2, 0], [2, 0, 1]
+    product = measures[:, 7:] + by[:, one] * by[:, other] * filled
+    product += by[:, one] * measures[:, 1:4][:, other] + by[:, other] * measures[:, 1:4][:, one]
+    return np.hstack([filled, first, second, product])
 
 
 def _offsets(reach: int) -> Ints:

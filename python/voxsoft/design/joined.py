@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.mesh import BodyMesh, Mesh, MeshCavity
+from voxsoft.cavity import MeshCavity
+from voxsoft.mesh import BodyMesh, Mesh
 
 Floats = NDArray[np.float64]
 #: The name of a body, its mesh, its rotation and its position.
@@ -81,12 +82,10 @@ def edge_directions(mesh: Mesh) -> Floats | None:
 def of_body(cavity: MeshCavity, body: BodyMesh) -> MeshCavity:
     """A cavity of the own mesh of a body among those of the joined mesh."""
     first = np.int32(body.first_vertex)
-    return replace(
-        cavity,
-        triangles=cavity.triangles + first,
-        void_tets=cavity.void_tets + first,
-        body=body.name,
-    )
+    names = ("triangles", "void_tets", "other_triangles")
+    arrays = {name: getattr(cavity, name) for name in names}
+    moved = {name: array + first for name, array in arrays.items() if array is not None}
+    return replace(cavity, body=body.name, **moved)
 
 
 def _fractions(mesh: Mesh) -> Floats:

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.errors import FileError
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.mesh import MeshCavity
 from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 
 
@@ -38,9 +38,10 @@ def _add_slope(cavity: MeshCavity, positions: Floats, slope: Floats) -> None:
 
     The volume of a tet grows by ``((c - b) x (d - b))/6``, turned inward, at its corner a.
     """
-    a, b, c = positions[cavity.triangles].transpose(1, 0, 2)
-    for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
-        np.add.at(slope, cavity.triangles[:, corner], -np.cross(one, other) / 6.0)
+    for triangles, weight in cavity.splits:
+        a, b, c = positions[triangles].transpose(1, 0, 2)
+        for corner, (one, other) in enumerate(((b, c), (c, a), (a, b))):
+            np.add.at(slope, triangles[:, corner], -weight / 6.0 * np.cross(one, other))
     a, b, c, d = positions[cavity.void_tets].transpose(1, 0, 2)
     parts = cavity.void_parts[:, None] / 6.0
     edges = ((d - b, c - b), (c - a, d - a), (d - a, b - a), (b - a, c - a))

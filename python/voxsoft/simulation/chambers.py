@@ -9,9 +9,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Chamber, Design
 from voxsoft.errors import DesignError, NoCavityError
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 from voxsoft.metrics import Target
 from voxsoft.shapes import Shape
 from voxsoft.simulation.diagnostic import Diagnostic

@@ -17,10 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Layer
 from voxsoft.design.joined import of_body
 from voxsoft.errors import DesignError
-from voxsoft.mesh import BodyMesh, Mesh, MeshCavity
+from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.places import on_the_body, vertices_in
 
 Triangles = NDArray[np.int32]

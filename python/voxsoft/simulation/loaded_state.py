@@ -123,8 +123,13 @@ class LoadedState:
         return distance_between(self.mesh, self.positions, surface)
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
-        """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
+        """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa.
+
+        Either split of each surface carries half of its pressure.
+        """
         for load in self.setup.loads:
             for action in load.actions:
                 if isinstance(action, SurfacePressure) and action.cavity is None:
-                    yield action.triangles, action.value * load.reading.final_factor
+                    half = 0.5 * action.value * load.reading.final_factor
+                    yield action.triangles, half
+                    yield self.setup.other_split.triangles(action.triangles), half

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import shortage
+from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Probe, Region
 from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
@@ -25,12 +26,13 @@ from voxsoft.errors import (
     VoxSoftError,
 )
 from voxsoft.materials import Material
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.touching import (
@@ -77,7 +79,8 @@ class Setup:
     def __post_init__(self) -> None:
         object.__setattr__(self, "design", self.design.assembled)
         closed = sealed(self.mesh, self.layers)
-        object.__setattr__(self, "mesh", with_chamber_names(self.design, closed))
+        named = with_chamber_names(self.design, closed)
+        object.__setattr__(self, "mesh", with_other_split(self.design, named))
 
     @classmethod
     def of(
@@ -139,6 +142,11 @@ class Setup:
         return all_layer_triangles(self.design, self.mesh)
 
     @cached_property
+    def other_split(self) -> OtherSplit:
+        """The other way to cut the faces that pressure pushes."""
+        return OtherSplit.of(self.design, self.mesh)
+
+    @cached_property
     def points(self) -> NDArray[np.float64]:
         """Where the vertices count as being when regions look for them, (n, 3), m."""
         return on_the_body(self.design, self.mesh)
@@ -186,7 +194,7 @@ class Setup:
             axes = [axis in clamp.axes for axis in "xyz"]
             parts.clamp(vertices, axes, **motion_arguments(clamp.motion))
         for load in self.loads:
-            receiver = _CoreLoads(self.mesh, parts, times_and_factors(load.reading.history))
+            receiver = _CoreLoads(self.other_split, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
         for term, elements in self.attached.items():
@@ -366,9 +374,9 @@ def core_problem(
 class _CoreLoads(LoadReceiver):
     """Loads of the core's problem."""
 
-    def __init__(self, mesh: Mesh, parts: _core.ProblemParts, history: CoreHistory) -> None:
-        super().__init__(mesh)
-        self._parts, self._history = parts, history
+    def __init__(self, split: OtherSplit, parts: _core.ProblemParts, history: CoreHistory) -> None:
+        super().__init__(split.mesh)
+        self._split, self._parts, self._history = split, parts, history
 
     def acceleration(self, acceleration: NDArray[np.float64]) -> None:
         self._parts.gravity(acceleration.tolist(), self._history)
@@ -376,10 +384,20 @@ class _CoreLoads(LoadReceiver):
     def pressure(
         self, triangles: NDArray[np.int32], value: float, cavity: MeshCavity | None
     ) -> None:
-        voids = None
-        if cavity is not None:
-            voids = (cavity.void_tets.astype(np.uint32), cavity.void_parts)
-        self._parts.pressure(triangles.astype(np.uint32), value, self._history, voids)
+        # Half the pressure on both splits at once is the mean of the two, and one load.
+        if cavity is None:
+            surfaces = [triangles, self._split.triangles(triangles)]
+            voids = None
+        else:
+            surfaces = [each for each, _ in cavity.splits]
+            parts = len(surfaces) * cavity.void_parts  # each void is there once
+            voids = (cavity.void_tets.astype(np.uint32), parts)
+        each = value / len(surfaces)
+        self._parts.pressure(np.concatenate(surfaces).astype(np.uint32), each, self._history, voids)
+
+    def traction(self, triangles: NDArray[np.int32], stress: NDArray[np.float64]) -> None:
+        both = np.concatenate([triangles, self._split.triangles(triangles)])
+        super().traction(both, 0.5 * stress)
 
     def forces(self, vertices: NDArray[np.uint32], forces: NDArray[np.float64]) -> None:
         self._parts.forces(vertices, forces, self._history)

@@ -12,7 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.mesh import Mesh, MeshCavity
+from voxsoft.cavity import MeshCavity
+from voxsoft.mesh import Mesh
 
 Floats = NDArray[np.float64]
 Vertices = NDArray[np.uint32]
