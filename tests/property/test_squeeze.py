@@ -45,7 +45,7 @@ def test_a_random_body_is_squeezed(seed):
         assert verdict.kind == "at half its height"
 
 
-def said(seed):
+def warned(seed):
     from squeeze_bodies import squeezed
 
     result = vs.simulate(squeezed(seed, SMALL))
@@ -55,7 +55,7 @@ def said(seed):
 
 def test_what_snaps_says_so():
     # It buckles on its way.
-    result, warnings = said(7)
+    result, warnings = warned(7)
     assert result.snaps
     assert all(0.5 < snap < 1.0 for snap in result.snaps)
     assert any("snapped to another one" in each for each in warnings)
@@ -68,7 +68,7 @@ def test_what_passes_through_itself_says_so(seed, what):
     # Walls end in each other, or a crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
 
-    _, warnings = said(seed)
+    _, warnings = warned(seed)
     assert any(what in each for each in warnings)
     verdict = judged(seed, SMALL)
     assert (verdict.pairs if "pass" in what else verdict.folds) > 0
