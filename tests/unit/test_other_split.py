@@ -12,6 +12,7 @@ from voxsoft.materials import Lattice, NeoHookean
 from voxsoft.metrics.chambers import CAVITY_VOLUME
 from voxsoft.simulation import Setup
 from voxsoft.simulation.loaded_state import LoadedState
+from voxsoft.simulation.other_split import OtherSplit
 from voxsoft.units import mm
 
 SIZE = 2.5 * mm
@@ -148,3 +149,12 @@ def test_springs_keep_the_triangles_that_are_their_surface(inside, is_split):
 
 def test_a_body_of_springs_has_one_split():
     assert len(Setup.of(shell(SPRINGS)).mesh.cavities[0].splits) == 1
+
+
+def test_a_mesh_that_is_not_made_of_voxels_has_no_other_split():
+    design = shell()
+    whole = Setup.of(design).mesh
+    # Three tetrahedra, where a voxel has five.
+    mesh = vs.Mesh.from_tets(whole.vertices, whole.tets[:3])
+    kept = OtherSplit.of(design, mesh).triangles(mesh.triangles)
+    assert np.array_equal(kept, mesh.triangles)

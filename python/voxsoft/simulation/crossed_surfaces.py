@@ -16,9 +16,10 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.touching import Touching, has_contact
 
 #: Faces of one body nearer than this along its unloaded surface, in voxels, are a crease, which
-#: follows voxels that are crushed: contact does not look at neighbors. It is said in other words.
+#: follows voxels that are crushed: contact does not look at neighbors. Its warning says so.
 CREASE: Final = 1.5
-#: How far two faces may be in each other without a word, in voxels.
+#: How far two faces may be in each other without a warning, in voxels: fifty times the gap that
+#: contact keeps, and far less than voxels resolve.
 GRAZING: Final = 0.01
 
 #: Pairs whose ways along the surface are looked for at once: each takes memory for every point.

@@ -63,6 +63,8 @@ class OtherSplit:
 
         A triangle whose face is not whole among them, or not one of a bilinear voxel, stays.
         """
+        if not self.bilinear.any():
+            return triangles
         count = np.int64(len(self.mesh.vertices))
         odd = self._is_apex[triangles]
         candidates = np.flatnonzero(odd.sum(axis=1) == 1)
