@@ -1,7 +1,7 @@
 """Whether error bars hold: sixty bodies that were fixed before any of them was solved.
 
 ``python benchmarks/error_bars.py TABLE [KIND ...]``. Eight kinds of bodies, drawn from a generator
-of random numbers by kind and number; the rule of `voxsoft.comparison.error_bars` was fixed before
+of random numbers by kind and number; the rule of `voxsoft.comparison.bars` was fixed before
 too. Each body is run as ``voxsoft run`` does, and its estimate held against the truth: the same
 number on voxels a quarter as large and smaller, extrapolated from the finest sizes. An error bar
 holds where the truth, give or take a fifth of the last change, is within it. Its width is compared

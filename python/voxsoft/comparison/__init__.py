@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
+    from voxsoft.comparison.bars import ErrorBar, ErrorBars, error_bars
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
-    from voxsoft.comparison.error_bars import ErrorBar, ErrorBars, error_bars
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
 
@@ -30,13 +30,13 @@ __all__ = [
 _HOMES = {
     "Comparison": "voxsoft.comparison.comparison",
     "Confirmation": "voxsoft.comparison.confirmation",
-    "ErrorBar": "voxsoft.comparison.error_bars",
-    "ErrorBars": "voxsoft.comparison.error_bars",
+    "ErrorBar": "voxsoft.comparison.bars",
+    "ErrorBars": "voxsoft.comparison.bars",
     "Estimate": "voxsoft.comparison.richardson",
     "Run": "voxsoft.comparison.comparison",
     "compare": "voxsoft.comparison.run",
     "confirm": "voxsoft.comparison.confirmation",
     "discretization_error": "voxsoft.comparison.richardson",
-    "error_bars": "voxsoft.comparison.error_bars",
+    "error_bars": "voxsoft.comparison.bars",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft import files, simulation
-from voxsoft.comparison.error_bars import ErrorBars, error_bars
+from voxsoft.comparison.bars import ErrorBars, error_bars
 from voxsoft.files.figures import save_figure, save_thumbnail
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job

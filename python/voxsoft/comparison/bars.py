@@ -80,7 +80,7 @@ class ErrorBar:
         """
         largest = max(abs(self.estimate), self.error)
         text = format_quantity(float(f"{largest:.4g}"), self.kind)
-        unit = text.partition(" ")[2]
+        unit = "deg" if self.kind == "angle" else text.partition(" ")[2]
         factor = si_value(f"1 {unit}", self.kind, "unit") if unit else 1.0
         digits = _most_digits(largest / factor)
         if self.error > 0.0:

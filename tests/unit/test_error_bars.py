@@ -1,0 +1,166 @@
+"""Error bars of runs: which voxels they come from, and that they hold where the answer is known."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.comparison import ErrorBar, discretization_error
+from voxsoft.jobs import RunSpec, run_job
+from voxsoft.units import kPa, mm
+
+RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.45)
+
+
+def beam(**solver):
+    """A beam of 2 x 2 voxels."""
+    return vs.Design(
+        name="beam",
+        voxel_size=5 * mm,
+        parts=[vs.Part(shape=vs.Box(size=(30 * mm, 10 * mm, 10 * mm)), material=RUBBER)],
+        clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+        loads=[vs.Gravity()],
+        probes={"tip": vs.Probe(x=(30 * mm, 30 * mm))},
+        solver=vs.Solver(**solver),
+    )
+
+
+@pytest.fixture(scope="module")
+def bars():
+    return vs.error_bars(vs.simulate(beam()))
+
+
+@pytest.mark.parametrize("order", [0.5, 1.0, 2.0, 4.0])
+def test_regular_sizes_hold_every_order_from_a_half_on(order):
+    values = [1.0 + 0.3 * size**order for size in (2.0, 1.0)]
+    found = discretization_error([2.0, 1.0], values, regular=True)
+    assert abs(found.limit - 1.0) <= found.error * (1.0 + 1e-12)
+    assert found.basis == "regular sizes"
+
+
+def test_regular_sizes_do_not_hold_what_hardly_converges():
+    values = [1.0 + 0.3 * size**0.3 for size in (2.0, 1.0)]
+    found = discretization_error([2.0, 1.0], values, regular=True)
+    assert abs(found.limit - 1.0) > found.error
+
+
+def test_a_small_body_gets_finer_voxels(bars):
+    assert bars.voxel_sizes == (5 * mm, 2.5 * mm)
+    assert bars.voxels == (24, 192)
+    assert bars.regular and bars.missing == ""
+
+
+def test_the_bar_of_a_beam_holds_what_three_sizes_come_to(bars):
+    sizes = (5 * mm, 2.5 * mm, 1.25 * mm)
+    runs = [vs.simulate(beam().replace(voxel_size=size)) for size in sizes]
+    values = [float(run.probes["tip"][2]) for run in runs]
+    truth = discretization_error(sizes, values).limit
+    bar = bars.probes["tip"][2]
+    assert bar.value == values[0]
+    assert abs(bar.estimate - truth) <= bar.error
+    assert bar.error < abs(bar.value - truth) * 2.0
+
+
+def test_what_symmetry_makes_zero_has_no_error(bars):
+    sideways = bars.probes["tip"][1]
+    assert (sideways.estimate, sideways.error) == (0.0, 0.0)
+
+
+def test_peaks_have_no_bar_and_percentiles_have_one():
+    design = beam().replace(
+        objectives={"peak": vs.Objective(minimize="max_stretch")},
+        constraints={"most": vs.Constraint(metric="max_stretch", percentile=90, max=2.0)},
+    )
+    found = vs.error_bars(vs.simulate(design))
+    assert "peak" not in found.metrics and "max_stress" not in found.metrics
+    assert found.metrics["most"].error > 0.0
+
+
+def test_coarser_voxels_are_taken_where_they_are_asked_for():
+    found = vs.error_bars(vs.simulate(beam(error="coarser")))
+    assert found.voxel_sizes == (10 * mm, 5 * mm)
+    assert not found.regular  # one voxel through the body
+    assert "wide" in found.sentence
+
+
+def test_an_accuracy_takes_as_many_sizes_as_it_takes():
+    found = vs.error_bars(vs.simulate(beam(accuracy="1.5 %")))
+    assert len(found.voxel_sizes) > 2
+    moved = [found.probes["tip"][axis] for axis in (0, 2)]
+    size = math.hypot(*(bar.estimate for bar in moved))
+    assert math.hypot(*(bar.error for bar in moved)) <= 0.015 * size
+
+
+def test_an_accuracy_that_is_out_of_reach_says_so(monkeypatch):
+    monkeypatch.setattr("voxsoft.comparison.bars.ACCURATE_UP_TO", 200)
+    found = vs.error_bars(vs.simulate(beam(accuracy="0.01 %")))
+    assert found.voxel_sizes == (5 * mm, 2.5 * mm)
+    assert "not reached" in found.missing and "1,536 voxels" in found.missing
+
+
+@pytest.mark.parametrize(
+    ("design", "reason"),
+    [
+        (beam(error="off"), '"off"'),
+        (beam(end_time="1 ms"), "motion over time"),
+        (
+            beam().replace(
+                parts=[vs.Part(shape=beam().parts[0].shape, material="ecoflex-00-30-lattice")]
+            ),
+            "lattice",
+        ),
+    ],
+    ids=["off", "over time", "lattice"],
+)
+def test_without_bars_the_reason_stands_there(design, reason):
+    found = vs.error_bars(vs.simulate(design))
+    assert not found.voxel_sizes and reason in found.sentence and "Try:" in found.sentence
+
+
+def test_another_body_on_coarser_voxels_gives_no_bar(monkeypatch):
+    monkeypatch.setattr("voxsoft.comparison.bars.FINER_UP_TO", 0)
+    odd = beam().replace(
+        parts=[vs.Part(shape=vs.Box(size=(35 * mm, 10 * mm, 10 * mm)), material=RUBBER)],
+        probes={"tip": vs.Probe(z=(10 * mm, 10 * mm))},
+    )
+    found = vs.error_bars(vs.simulate(odd))
+    assert "another body" in found.missing and 'error = "finer"' in found.hint
+
+
+def test_the_error_changes_no_result():
+    off, on = (vs.simulate(beam(error=error)).positions for error in ("off", "finer"))
+    assert np.array_equal(off, on)
+
+
+def test_the_summary_of_a_run_holds_its_bars(tmp_path):
+    outcome = run_job(RunSpec(design=beam()), tmp_path)
+    kept = json.loads((tmp_path / "summary.json").read_text())["error_bars"]
+    assert outcome.summary["error_bars"]["voxels"] == kept["voxels"] == [24, 192]
+    tip = kept["probes"]["tip"]["z"]
+    assert tip["value"] == outcome.found.probes["tip"][2] and tip["error"] > 0.0
+
+
+def test_stopping_before_the_bars_keeps_the_result(tmp_path):
+    def stop(event):
+        if getattr(event, "stage", "").startswith("error bars"):
+            raise KeyboardInterrupt
+
+    outcome = run_job(RunSpec(design=beam()), tmp_path, stop)
+    assert outcome.found.status == "ok"
+    assert "stopped" in json.loads((tmp_path / "summary.json").read_text())["error_bars"]["missing"]
+
+
+@pytest.mark.parametrize(
+    ("bar", "words"),
+    [
+        (ErrorBar(0.0, -0.01304, 0.00052, "length"), "-13.04 ± 0.52 mm"),
+        (ErrorBar(0.0, 0.5, 0.02, "angle"), "28.6 ± 1.1 deg"),
+        (ErrorBar(0.0, 0.010, 0.0, "mass"), "10.000 ± 0.000 g"),
+        (ErrorBar(0.0, 0.0, 0.0, "length"), "0 ± 0"),
+        (ErrorBar(0.0, 1.5, 0.25, "number"), "1.50 ± 0.25"),
+    ],
+)
+def test_a_bar_in_words(bar, words):
+    assert str(bar) == words
