@@ -27,7 +27,7 @@ from voxsoft.units import kPa, mm
 #: Bodies of each kind.
 EACH = 8
 #: Voxels that the finest of a truth may have.
-MOST = 40_000
+MOST = 25_000
 HEAD = (
     "kind",
     "number",
@@ -280,8 +280,8 @@ def bar_of(bars: ErrorBars, result: Result, axis: int | None) -> tuple[float, fl
     return found.estimate, found.error
 
 
-def truth_of(each: Case, first: Result) -> tuple[float, float]:
-    """The number on ever smaller voxels, and the last change that this was seen by."""
+def truth_of(each: Case, first: Result) -> tuple[float, float] | None:
+    """The number on ever smaller voxels, and the last change; None where these do not solve."""
     values, sizes = [], []
     for part in (2, 4, 6, 8):
         if part**3 * len(first.mesh.tets) / 5 > MOST and len(values) > 1:
@@ -292,6 +292,8 @@ def truth_of(each: Case, first: Result) -> tuple[float, float]:
             break
         values.append(number_of(result, each.axis))
         sizes.append(1.0 / part)
+    if len(values) < 2:
+        return None
     found = discretization_error(sizes[-3:], values[-3:])
     return found.limit, abs(values[-1] - values[-2])
 
@@ -313,7 +315,11 @@ def main() -> None:
                     continue
                 value = number_of(result, each.axis)
                 estimate, error = bar_of(bars, result, each.axis)
-                truth, change = truth_of(each, result)
+                found = truth_of(each, result)
+                if found is None:
+                    print(kind, number, "has no truth", flush=True)
+                    continue
+                truth, change = found
                 inside = abs(truth - estimate) <= error + 0.2 * change
                 held += inside
                 row = (kind, number, bars.voxels[0], value, estimate, error, truth, change)

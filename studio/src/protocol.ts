@@ -868,31 +868,36 @@ export interface StatEvent {
   grabs: GrabState[];
 }
 
-/** A probe and how far it moved, m. */
+/** A probe and how far it moved, m; `estimate` is that with its error bars in words. */
 export interface MovedProbe {
   name: string;
   displacement: Triple;
+  estimate: string;
 }
 
-/** A metric of the body as it stands, SI; `kind` tells its unit. */
+/** A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar. */
 export interface MetricValue {
   name: string;
   value: number | null;
   kind: string;
+  estimate: string;
 }
 
-/** A chamber: volumes unloaded and now in m³, pressure in Pa. */
+/** A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar. */
 export interface Chamber {
   name: string;
   rest_volume: number;
   volume: number;
   pressure: number;
+  estimate: string;
 }
 
 /**
  * The numbers of the state that `frame` shows, and what is doubtful about it.
  *
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
+ * `error_bars` says where error bars come from, or why there are none; told a second time once
+ * they are known.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -907,6 +912,7 @@ export interface EquilibriumEvent {
   chambers: Chamber[];
   largest_strain: number;
   warnings: Finding[];
+  error_bars: string;
 }
 
 /** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
+from voxsoft.comparison import ErrorBars, error_bars
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
@@ -23,6 +24,8 @@ class Measurement(threading.Thread):
         Called with what the page gets; not at all where the state cannot be measured.
     topology, frame
         Which body it is of, and the frame that shows it.
+    is_shown
+        Whether that frame still is: error bars of what is gone are not looked for.
     """
 
     def __init__(
@@ -31,22 +34,44 @@ class Measurement(threading.Thread):
         report: Callable[[events.Equilibrium], None],
         topology: int,
         frame: int,
+        is_shown: Callable[[], bool],
     ) -> None:
         super().__init__(name="studio-equilibrium", daemon=True)
         self._result, self._report = result, report
         self._topology, self._frame = topology, frame
+        self._is_shown = is_shown
 
     def run(self) -> None:
-        """Measure."""
+        """Measure, and then look for the error bars."""
         try:
-            found = equilibrium_of(self._result(), self._topology, self._frame)
-        except VoxSoftError:
+            result = self._result()
+            found = equilibrium_of(result, self._topology, self._frame)
+            self._report(found)
+            if result.design.solver.error != "off":
+                bars = error_bars(result, progress=self._go_on)
+                self._report(equilibrium_of(result, self._topology, self._frame, bars))
+        except (VoxSoftError, _Gone):
             return
-        self._report(found)
+
+    def _go_on(self, _: int, __: float, ___: float) -> None:
+        if not self._is_shown():
+            raise _Gone
 
 
-def equilibrium_of(result: Result, topology: int, frame: int) -> events.Equilibrium:
-    """Say all numbers of a result."""
+class _Gone(Exception):
+    """The state that was measured is not shown any more."""
+
+
+def equilibrium_of(
+    result: Result, topology: int, frame: int, bars: ErrorBars | None = None
+) -> events.Equilibrium:
+    """Say all numbers of a result, with their error bars once they are known."""
+    if bars is not None:
+        said = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
+    else:
+        off = result.design.solver.error == "off"
+        said = "" if off else "Error bars: being looked for on other voxels."
+    bars = bars or ErrorBars.none("", "")
     summary = result.summary()
     cavities = zip(summary["cavities"], range(len(summary["cavities"])), strict=True)
     return events.Equilibrium(
@@ -57,21 +82,27 @@ def equilibrium_of(result: Result, topology: int, frame: int) -> events.Equilibr
         residual=format_percent(result.residual),
         seconds=result.seconds,
         probes=[
-            events.MovedProbe(name=name, displacement=(float(x), float(y), float(z)))
+            events.MovedProbe(
+                name=name,
+                displacement=(float(x), float(y), float(z)),
+                estimate=", ".join(map(str, bars.probes.get(name, ()))),
+            )
             for name, (x, y, z) in result.probes.items()
         ],
-        metrics=_metrics(result),
+        metrics=_metrics(result, bars),
         chambers=[
             events.Chamber(
                 name=cavity.get("name") or f"cavity {index}",
                 rest_volume=float(cavity["rest_volume"]),
                 volume=float(cavity["volume"]),
                 pressure=float(cavity["pressure"]),
+                estimate=str(bars.volumes[index]) if bars.volumes else "",
             )
             for cavity, index in cavities
         ],
         largest_strain=result.metric("max_stretch") - 1.0,
         warnings=[finding_of(warning) for warning in result.warnings],
+        error_bars=said,
     )
 
 
@@ -86,13 +117,18 @@ def finding_of(diagnostic: Diagnostic) -> events.Finding:
     )
 
 
-def _metrics(result: Result) -> list[events.MetricValue]:
+def _metrics(result: Result, bars: ErrorBars) -> list[events.MetricValue]:
     """The design's own first; chambers and stretch are told beside them."""
     own: dict[str, Target] = {**result.design.objectives, **result.design.constraints}
     kinds = {name: METRICS[target.metric].kind for name, target in own.items()}
     free = ("max_displacement", "reaction", "elastic_energy")
     kinds |= {name: METRICS[name].kind for name in free if name not in kinds}
     return [
-        events.MetricValue(name=name, value=float(result.metrics[name]), kind=kind)
+        events.MetricValue(
+            name=name,
+            value=float(result.metrics[name]),
+            kind=kind,
+            estimate=str(bars.metrics[name]) if name in bars.metrics else "",
+        )
         for name, kind in kinds.items()
     ]

@@ -379,33 +379,38 @@ class Stat(Event):
 
 
 class MovedProbe(Entry):
-    """A probe and how far it moved, m."""
+    """A probe and how far it moved, m; `estimate` is that with its error bars in words."""
 
     name: str
     displacement: Triple
+    estimate: str = ""
 
 
 class MetricValue(Entry):
-    """A metric of the body as it stands, SI; `kind` tells its unit."""
+    """A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar."""
 
     name: str
     value: float | None
     kind: str
+    estimate: str = ""
 
 
 class Chamber(Entry):
-    """A chamber: volumes unloaded and now in m³, pressure in Pa."""
+    """A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar."""
 
     name: str
     rest_volume: float
     volume: float
     pressure: float
+    estimate: str = ""
 
 
 class Equilibrium(Event):
     """The numbers of the state that `frame` shows, and what is doubtful about it.
 
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
+    `error_bars` says where error bars come from, or why there are none; told a second time once
+    they are known.
     """
 
     topology: int
@@ -419,6 +424,7 @@ class Equilibrium(Event):
     chambers: list[Chamber]
     largest_strain: float
     warnings: list[Finding]
+    error_bars: str = ""
 
 
 class ObjectPose(Entry):

@@ -200,7 +200,13 @@ class Stage:
         def report(equilibrium: events.Equilibrium) -> None:
             self._later(lambda: self._measured(equilibrium))
 
-        Measurement(shown.measured, report, body.topology, playback.frame).start()
+        topology, frame = body.topology, playback.frame
+
+        def is_shown() -> bool:
+            now = playback.body
+            return now is not None and (now.topology, playback.frame) == (topology, frame)
+
+        Measurement(shown.measured, report, topology, frame, is_shown).start()
 
     def _measured(self, equilibrium: events.Equilibrium) -> None:
         body = self.playback.body

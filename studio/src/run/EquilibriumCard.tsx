@@ -21,24 +21,32 @@ export function useEquilibrium(): EquilibriumEvent | null {
 export function EquilibriumCard() {
   const found = useEquilibrium();
   if (!found) return null;
-  const facts: [string, string][] = [
-    ...found.probes.map((probe): [string, string] => [`Probe ${probe.name}`, moved(probe)]),
-    ...found.metrics.map(({ name, value, kind }): [string, string] => [
+  const facts: [string, string, string][] = [
+    ...found.probes.map((probe): [string, string, string] => [
+      `Probe ${probe.name}`,
+      moved(probe),
+      probe.estimate && `(${probe.estimate})`,
+    ]),
+    ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => [
       name.replaceAll("_", " "),
       formatKind(value === null ? null : cleaned(value, siUnit(kind)), kind),
+      estimate,
     ]),
-    ["Largest strain", `${formatNumber(100 * found.largest_strain, 3)} %`],
-    ["Out of balance", `${found.residual} of the load`],
+    ["Largest strain", `${formatNumber(100 * found.largest_strain, 3)} %`, ""],
+    ["Out of balance", `${found.residual} of the load`, ""],
   ];
   return (
     <Section title="Result">
       <div data-testid="equilibrium">
         <Findings findings={found.warnings} />
         <dl className="facts">
-          {facts.map(([name, value]) => (
+          {facts.map(([name, value, estimate]) => (
             <div key={name}>
               <dt>{name}</dt>
-              <dd>{value}</dd>
+              <dd>
+                {value}
+                <Estimate words={estimate} />
+              </dd>
             </div>
           ))}
           {found.chambers.map((chamber) => (
@@ -49,12 +57,27 @@ export function EquilibriumCard() {
                 <span className="muted">
                   (unloaded {formatQuantity(chamber.rest_volume, "m^3")})
                 </span>
+                <Estimate words={chamber.estimate} />
               </dd>
             </div>
           ))}
         </dl>
+        {found.error_bars && (
+          <p className="muted" data-testid="error-bars">
+            {found.error_bars}
+          </p>
+        )}
       </div>
     </Section>
+  );
+}
+
+/** What a number comes to on ever smaller voxels, with its error, on a line of its own. */
+function Estimate({ words }: { words: string }) {
+  return words === "" ? null : (
+    <span className="estimate" title="On ever smaller voxels, with its discretization error">
+      {words}
+    </span>
   );
 }
 
