@@ -103,7 +103,8 @@ pub(crate) struct Equilibrium<'a> {
 
 /// Iterations with strains carried along: most steps take less than ten.
 pub(crate) const MIXED_ITERATIONS: u32 = 25;
-/// Such iterations without the residual halving, after which they count as lost.
+/// Such iterations without the residual halving, after which they count as lost, unless it just has halved: what hardly can
+/// be compressed has a residual on the way that is thousands of times the load.
 pub(crate) const PATIENCE: u32 = 8;
 /// Iterations with contact without one that halves the residual, once it was that near, after which a line search goes on from
 /// there: near the answer, samples that press and let go in turn lead full steps around in a circle.
@@ -294,6 +295,7 @@ impl<'a> Equilibrium<'a> {
         let mut strains: Option<Strains<'_>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
+        let mut previous = f64::INFINITY;
         let farthest = match self.problem.contact() {
             Some(_) => FARTHEST_WITH_CONTACT,
             None => FARTHEST,
@@ -325,9 +327,10 @@ impl<'a> Equilibrium<'a> {
                     ..found
                 });
             }
-            if since_lowest > PATIENCE {
+            if since_lowest > PATIENCE && relative > 0.5 * previous {
                 return Err(Failure::Lost);
             }
+            previous = relative;
             self.iterations += 1;
             self.system.assemble(
                 self.problem,
