@@ -26,7 +26,7 @@ from voxsoft.metrics import METRICS
 from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.choice import kind_of
 from voxsoft.simulation.touching import has_contact
-from voxsoft.units import format_quantity, si_value
+from voxsoft.units import KINDS, format_quantity, si_value
 
 #: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
 FINER_UP_TO: Final = 20_000
@@ -78,20 +78,54 @@ class ErrorBar:
         >>> str(ErrorBar(-0.0123, -0.01304, 0.00052, "length"))
         '-13.04 ± 0.52 mm'
         """
-        largest = max(abs(self.estimate), self.error)
-        text = format_quantity(float(f"{largest:.4g}"), self.kind)
-        unit = "deg" if self.kind == "angle" else text.partition(" ")[2]
-        factor = si_value(f"1 {unit}", self.kind, "unit") if unit else 1.0
-        digits = _most_digits(largest / factor)
+        unit, factor = _unit_of([self])
+        if self.estimate == self.error == 0.0:
+            return "0"
+        return f"{self.in_unit(factor)} {unit}".rstrip()
+
+    def in_unit(self, factor: float) -> str:
+        """Both numbers in a unit: two digits of the error, and five of the estimate at most."""
+        if self.estimate == self.error == 0.0:
+            return "0"
+        largest = max(abs(self.estimate), self.error) / factor
+        digits = 4 - math.floor(math.log10(largest)) if largest > 0.0 else 0
         if self.error > 0.0:
             digits = min(digits, 1 - math.floor(math.log10(self.error / factor)))
         digits = max(digits, 0)
         shown = [round(each / factor, digits) + 0.0 for each in (self.estimate, self.error)]
-        return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f} {unit}".rstrip()
+        return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f}"
 
     def summary(self) -> dict[str, float]:
         """Plain data in SI units."""
         return {"value": self.value, "estimate": self.estimate, "error": self.error}
+
+
+def vector_in_words(components: Sequence[ErrorBar]) -> str:
+    """Write the components of a vector with their errors, in one unit.
+
+    Examples
+    --------
+    >>> x = ErrorBar(0.0, 0.0, 0.0, "length")
+    >>> z = ErrorBar(-0.0123, -0.01304, 0.00052, "length")
+    >>> vector_in_words([x, x, z])
+    '(0, 0, -13.04 ± 0.52) mm'
+    """
+    unit, factor = _unit_of(components)
+    return f"({', '.join(bar.in_unit(factor) for bar in components)}) {unit}".rstrip()
+
+
+def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
+    """A unit that suits the largest of some numbers, and its factor."""
+    kind = bars[0].kind
+    largest = max(max(abs(bar.estimate), bar.error) for bar in bars)
+    units = KINDS[kind].units
+    if not units:
+        return "", 1.0
+    unit = "deg" if kind == "angle" else format_quantity(largest, kind).partition(" ")[2]
+    factors = {each: si_value(f"1 {each}", kind, "unit") for each in {*units, unit} - {""}}
+    if unit == "" or largest < 0.1 * factors[unit]:
+        unit = min(factors, key=lambda each: factors[each])
+    return unit, factors[unit]
 
 
 @dataclass(frozen=True)
@@ -377,11 +411,6 @@ class _Search:
             hint,
             self._seconds,
         )
-
-
-def _most_digits(size: float) -> int:
-    """Digits after the point that a number of some size is shown with at most."""
-    return 4 - math.floor(math.log10(size)) if size > 0.0 else 0
 
 
 _Asked = Mapping[str, Objective | Constraint]

@@ -27,8 +27,9 @@ error is as large as the first at the coarsest, that holds three cases of four, 
 Where both sizes hold the same body, and at least two voxels through each wall, two sizes are
 *regular*: their error falls with an order of 0.5 or more, known or not. With the change
 ``d = v₂ - v₁`` the limit then is between ``v₂``, for a very high order, and ``v₂ + d/(r^0.5 - 1)``.
-A quarter of the change is added on the near side, for values that have passed their limit already
-(Roache's 1.25 for what was seen). The middle of that range is the limit, half its width the error.
+Two sizes cannot tell a value that nears its limit from one that has passed it, as terms of the
+error cancel: the change itself is added on the near side. The middle of that range is the limit,
+half its width the error.
 """
 
 from __future__ import annotations
@@ -54,8 +55,8 @@ NO_ORDER: Final = 1.1 * HIGHEST_ORDER
 SEEN: Final = 2.0
 ASSUMED: Final = 3.0
 SWINGING: Final = 1.25
-#: The part of a change that a regular value may have gone past its limit.
-PASSED: Final = 0.25
+#: How far a regular value may have passed its limit, in changes.
+PASSED: Final = 1.0
 
 #: How an estimate came about.
 Basis = Literal["three sizes", "two sizes", "regular sizes", "oscillating"]
@@ -124,7 +125,7 @@ def discretization_error(
     3.0
     >>> bar = discretization_error([2.0, 1.0], [1 + 2, 1 + 1], regular=True)
     >>> f"{bar.limit:.2f} +- {bar.error:.2f}"
-    '0.92 +- 1.33'
+    '1.29 +- 1.71'
     """
     sizes, values = tuple(map(float, sizes)), tuple(map(float, values))
     if len(sizes) < 2 or len(values) != len(sizes):

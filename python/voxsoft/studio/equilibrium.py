@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from voxsoft.comparison import ErrorBars, error_bars
+from voxsoft.comparison.bars import ErrorBars, error_bars, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
@@ -85,7 +85,7 @@ def equilibrium_of(
             events.MovedProbe(
                 name=name,
                 displacement=(float(x), float(y), float(z)),
-                estimate=", ".join(map(str, bars.probes.get(name, ()))),
+                estimate=vector_in_words(bars.probes[name]) if name in bars.probes else "",
             )
             for name, (x, y, z) in result.probes.items()
         ],

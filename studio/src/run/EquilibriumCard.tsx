@@ -25,7 +25,7 @@ export function EquilibriumCard() {
     ...found.probes.map((probe): [string, string, string] => [
       `Probe ${probe.name}`,
       moved(probe),
-      probe.estimate && `(${probe.estimate})`,
+      probe.estimate,
     ]),
     ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => [
       name.replaceAll("_", " "),

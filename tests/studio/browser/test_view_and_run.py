@@ -336,6 +336,19 @@ def test_an_equilibrium_has_numbers_and_is_kept_as_it_is(tab):
     assert tab.errors == []
 
 
+def test_an_equilibrium_of_rubber_gets_error_bars(own_server, open_tab):
+    own_server.stop()
+    own_server.source.write_text(own_server.source.read_text().replace("-lattice", ""))
+    own_server.start()
+    tab = open_tab(own_server.address)
+    tab.find("rest").click()
+    card = tab.find("equilibrium")
+    card.get_by_text("Error bars from voxels of 5 mm and 2.5 mm").wait_for()
+    assert "±" in card.locator(".estimate").first.inner_text()
+    tab.shot("error-bars")
+    assert tab.errors == []
+
+
 def test_solving_can_be_canceled(own_server, open_tab):
     # Rubber of 16,384 voxels takes minutes: a press comes in time, however busy the machine is.
     text = own_server.source.read_text().replace('voxel_size = "5 mm"', 'voxel_size = "0.625 mm"')
