@@ -87,6 +87,13 @@ def test_coarser_voxels_are_taken_where_they_are_asked_for():
     assert "wide" in found.sentence
 
 
+def test_a_wall_of_one_voxel_may_hide_a_quarter():
+    found = vs.error_bars(vs.simulate(beam(error="coarser")))
+    tip = found.probes["tip"][2]
+    assert tip.error >= 0.25 * abs(tip.value)
+    assert found.metrics["mass"].error < 1e-9 * found.metrics["mass"].value
+
+
 def test_an_accuracy_takes_as_many_sizes_as_it_takes():
     found = vs.error_bars(vs.simulate(beam(accuracy="1.5 %")))
     assert len(found.voxel_sizes) > 2
