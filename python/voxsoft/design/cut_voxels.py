@@ -71,7 +71,7 @@ class CutVoxels:
         The material of each, counted in C order, (n,), in volumes of a cell. It may exceed 1:
         a cell less full gives its material to the voxels at its faces.
     moments
-        Where the material of each voxel is, (n, 6): see :attr:`voxsoft.Mesh.moments`. What a
+        Where the material of each voxel is, (n, 9): see :attr:`voxsoft.Mesh.moments`. What a
         neighbor gave lies outside the voxel, and counts there.
     voids
         For each cavity the voxels (their numbers, and parts of the tetrahedra of
@@ -273,7 +273,8 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, .
     fractions = held[:, 0]
     center = held[:, 1:4] / fractions[:, None]
     variance = held[:, 4:7] / fractions[:, None] - center**2
-    moments = np.hstack([center, np.sqrt(3.0 * variance)])
+    products = held[:, 7:] / fractions[:, None]
+    moments = np.hstack([center, np.sqrt(3.0 * variance), products])
 
     if len(t.torn):
         torn, normals, _ = filled_parts(design, t.places[t.torn], t.size)
