@@ -49,7 +49,7 @@ if TYPE_CHECKING:
         voxels,
     )
     from voxsoft.calibration import Experiment, Measurement, calibrate
-    from voxsoft.comparison import compare
+    from voxsoft.comparison import compare, error_bars
     from voxsoft.design import (
         Chamber,
         Clamp,
@@ -118,7 +118,7 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "voxsoft.calibration": ("Experiment", "Measurement", "calibrate"),
-    "voxsoft.comparison": ("compare",),
+    "voxsoft.comparison": ("compare", "error_bars"),
     "voxsoft.design": (
         "Chamber",
         "Clamp",

@@ -129,6 +129,14 @@ pub struct BrickResponse {
     pub forces: [Vec3; CORNERS],
 }
 
+/// Strain and pressure of a voxel as unknowns of their own ([`crate::mixed`]).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Carried {
+    strain: BrickStrain,
+    /// The pressure that is carried is that of the strain at this shift.
+    pressure: Pressure,
+}
+
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
 pub type BrickMatrix = [[f64; 24]; 24];
 
@@ -300,19 +308,19 @@ impl Brick {
         self.spread_stress(&state, &stress, material)
     }
 
-    /// The forces of the stress that `strain` predicts for `positions`:
-    /// `Φ'(ê) + Φ''(ê)(e − ê)`; see [`crate::mixed`].
+    /// The forces of the stress that is predicted for `positions`:
+    /// `Φ'(ê) + Φ''(ê, p̂)(e − ê)`; see [`crate::mixed`].
     pub fn predicted_forces(
         &self,
         material: &HyperelasticMaterial,
-        strain: &BrickStrain,
+        carried: &Carried,
         positions: &[Vec3],
     ) -> [Vec3; CORNERS] {
         let state = Rotated::of(&self.modes(positions), self.filling);
-        let other = state.with_strain(strain);
-        let (now, then) = (state.strain().row(), strain.row());
+        let other = state.with_strain(&carried.strain);
+        let (now, then) = (state.strain().row(), carried.strain.row());
         let change = times(
-            &other.hessian(material, 1.0, Pressure::of(material), 1.0),
+            &other.hessian(material, 1.0, carried.pressure, 1.0),
             &std::array::from_fn(|k| now[k] - then[k]),
         );
         let stress = other.gradient(material).plus(&change);
@@ -361,15 +369,17 @@ impl Brick {
     /// changes `S` by `B − ΩS`, `p̂ₘ` by `bₘ − Ωp̂ₘ`. The gradients `T − [y]×` and `sₘ` change by
     /// `Ω(T − [y]×) + dT − [dy]×` and `Ωsₘ + dsₘ`, with `G dy = axial(dN − dNᵀ) − dG y`.
     ///
-    /// With a `strain` of the caller's, stress and moduli are those of that strain, and only the frame
+    /// With strain and pressure that are `carried`, stress and moduli are those of these, and only the frame
     /// is that of `positions`; see [`crate::mixed`].
     pub fn stiffness(
         &self,
         material: &HyperelasticMaterial,
         positions: &[Vec3],
-        strain: Option<&BrickStrain>,
+        carried: Option<&Carried>,
     ) -> BrickMatrix {
-        let within = Within::elastic(material);
+        let mut within = Within::elastic(material);
+        carried.inspect(|state| within.pressure = state.pressure);
+        let strain = carried.map(|state| &state.strain);
         self.stiffness_within(material, positions, strain, &within, Tangent::Exact)
     }
 
@@ -460,9 +470,33 @@ impl Brick {
         self.expand(&rotated, &state.rotation, material.young() / 9.0)
     }
 
-    /// The strain at `positions`, and how it changes along `moves` to first order.
-    pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> BrickStrain {
+    /// Strain and pressure after a step `moves` from `positions`, to first order from what was carried `before` (by default
+    /// what is there).
+    pub fn carry(
+        &self,
+        material: &HyperelasticMaterial,
+        before: Option<&Carried>,
+        positions: &[Vec3],
+        moves: &[Vec3],
+    ) -> Carried {
         let state = Rotated::of(&self.modes(positions), self.filling);
+        let strain = self.predict_strain(&state, moves);
+        let from = before.map_or_else(|| state.strain(), |carried| carried.strain);
+        let volume = |strain: &BrickStrain| state.with_strain(strain).volume_slope(material);
+        let ((start, slope), (end, _)) = (volume(&from), volume(&strain));
+        let (new, old) = (strain.row(), from.row());
+        let along: f64 = (0..SHAPE).map(|k| slope[k] * (new[k] - old[k])).sum();
+        Carried {
+            strain,
+            pressure: Pressure {
+                shift: start + along - end,
+                ..Pressure::of(material)
+            },
+        }
+    }
+
+    /// The strain of a state, and how it changes along `moves` to first order.
+    fn predict_strain(&self, state: &Rotated, moves: &[Vec3]) -> BrickStrain {
         let stretch = to_matrix(&state.stretch);
         let direction = self.modes(moves);
         let b: Mat3 = std::array::from_fn(|i| {

@@ -252,6 +252,12 @@ impl Rotated {
         self.mean(thinning, second, |at| determinant_response(at, second))
     }
 
+    /// The mean change of volume and its gradient by the generalized coordinates.
+    pub fn volume_slope(&self, material: &HyperelasticMaterial) -> (f64, [f64; SHAPE]) {
+        let volume = self.volume(material.thinning(), false);
+        (volume.value, volume.gradient)
+    }
+
     /// The mean over the six points of a function of the stretch there.
     fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
         let mut mean = Shaped::zero();

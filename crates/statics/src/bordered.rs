@@ -491,7 +491,10 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
                 return Ok(seen);
             }
             let body = self.equilibrium.problem.body();
-            strains = Some(Strains::predict(body, &at.positions, &moves));
+            strains = Some(match strains.take() {
+                Some(strains) => strains.carry(body, &at.positions, &moves),
+                None => Strains::predict(body, &at.positions, &moves),
+            });
             at.shift(&moves, 1.0);
             at.factor += step.change;
             self.place_clamps(&mut at);

@@ -359,7 +359,10 @@ impl<'a> Equilibrium<'a> {
                     return Err(Failure::Turned(turn));
                 }
             }
-            strains = Some(Strains::predict(body, positions, &moves));
+            strains = Some(match strains.take() {
+                Some(strains) => strains.carry(body, positions, &moves),
+                None => Strains::predict(body, positions, &moves),
+            });
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);
             }

@@ -13,10 +13,15 @@ from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from voxsoft.comparison import ErrorBar, ErrorBars
     from voxsoft.simulation import Diagnostic, Result
 
 
 _METHODS = "auto, statics, relaxation, dynamics or xpbd; default: as the design says, else auto."
+
+_ERRORS = "Voxels for error bars: auto, finer, coarser or off; default: as the design says."
 
 
 def run(
@@ -27,6 +32,11 @@ def run(
         typer.Option("--out", "-o", help="Run folder; default: runs/NAME-HASH."),
     ] = None,
     solver: Annotated[str | None, typer.Option("--solver", help=_METHODS)] = None,
+    error: Annotated[str | None, typer.Option("--error", help=_ERRORS)] = None,
+    accuracy: Annotated[
+        str | None,
+        typer.Option("--accuracy", help='The error to leave, such as "2 %": smaller voxels.'),
+    ] = None,
     figure: Annotated[
         bool,
         typer.Option(
@@ -46,10 +56,11 @@ def run(
     from voxsoft.jobs import DesignSource, RunSpec, run_job
 
     with errors_in_words(json=json):
+        settings = {"method": solver, "error": error, "accuracy": accuracy}
         loaded = files.load(design, assignments=sets or [])
         spec = RunSpec(
             design=DesignSource.of_file(design, sets or []),
-            solver={} if solver is None else {"method": solver},
+            solver={name: value for name, value in settings.items() if value is not None},
             figure=figure,
         )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
@@ -58,12 +69,12 @@ def run(
         if json:
             print_json(outcome.summary)
         else:
-            _show(outcome.found, folder)
+            _show(outcome.found, outcome.error_bars, folder)
     if outcome.found.status != "ok":
         raise typer.Exit(NOT_AT_REST)
 
 
-def _show(result: Result, folder: Path) -> None:
+def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     from voxsoft.design.chamber import name_of_cavity
     from voxsoft.metrics import METRICS
 
@@ -71,22 +82,20 @@ def _show(result: Result, folder: Path) -> None:
     color = "red" if result.status != "ok" or spoiled else "yellow" if result.warnings else "green"
     say(f"[{color}]{result.status}[/{color}]: {plain(result.message)}")
     if result.probes:
-        rows = (
-            [name, *(f"{round(component * 1e3, 3) + 0.0:.3f}" for component in moved)]
-            for name, moved in result.probes.items()
-        )
-        show_table("Displacement of probes (mm)", ["probe", "x", "y", "z"], rows)
+        show_table("Displacement of probes", ["probe", "x", "y", "z"], _probe_rows(result, bars))
     for index, (now, cavity) in enumerate(
         zip(result.cavity_volumes, result.mesh.cavities, strict=True)
     ):
         before = quantity(float(cavity.volume), "volume")
         name = plain(name_of_cavity(result.mesh, index))
-        say(f"{name}: {before} grew to {quantity(now, 'volume')}")
+        bar = bars.volumes[index] if bars and bars.volumes else None
+        say(f"{name}: {before} grew to {quantity(now, 'volume')}{_with(bar)}")
     design = result.design
     metrics = {name: objective.metric for name, objective in design.objectives.items()}
     metrics |= {name: constraint.metric for name, constraint in design.constraints.items()}
     for name, metric in metrics.items():
-        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}")
+        bar = bars.metrics.get(name) if bars else None
+        say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}{_with(bar)}")
     for contact in result.contacts:
         say(plain(contact.sentence))
     say(_stress_line(result))
@@ -95,7 +104,28 @@ def _show(result: Result, folder: Path) -> None:
         shade = "red" if found.severity == "error" else "yellow"
         say(f"[{shade}]{found.severity}[/{shade}]: {plain(str(found))}{_place(found)}")
     say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s")
+    if bars is not None:
+        say(_source(bars, asked=design.solver.error != "off"))
     say(f"wrote {plain(str(folder))}")
+
+
+def _probe_rows(result: Result, bars: ErrorBars | None) -> Iterator[list[str]]:
+    """Where each probe went on these voxels, and below it where the error bars have it."""
+    for name, moved in result.probes.items():
+        yield [name, *(f"{round(component * 1e3, 3) + 0.0:.3f} mm" for component in moved)]
+        if bars is not None and name in bars.probes:
+            yield ["  estimate", *map(str, bars.probes[name])]
+
+
+def _with(bar: ErrorBar | None) -> str:
+    return "" if bar is None else f", estimate {bar}"
+
+
+def _source(bars: ErrorBars, *, asked: bool) -> str:
+    """Where error bars come from; in yellow where they are missing though they were wanted."""
+    sentence = plain(bars.sentence)
+    doubtful = asked and (bars.missing or not bars.regular)
+    return f"[yellow]{sentence}[/yellow]" if doubtful else f"{sentence} ({bars.seconds:.1f} s)"
 
 
 def _stress_line(result: Result) -> str:

@@ -9,27 +9,34 @@ from voxsoft._lazy import lazy_names
 if TYPE_CHECKING:
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
+    from voxsoft.comparison.error_bars import ErrorBar, ErrorBars, error_bars
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
 
 __all__ = [
     "Comparison",
     "Confirmation",
+    "ErrorBar",
+    "ErrorBars",
     "Estimate",
     "Run",
     "compare",
     "confirm",
     "discretization_error",
+    "error_bars",
 ]
 
 # Loaded when first used: a job knows what a comparison is asked without its solvers.
 _HOMES = {
     "Comparison": "voxsoft.comparison.comparison",
     "Confirmation": "voxsoft.comparison.confirmation",
+    "ErrorBar": "voxsoft.comparison.error_bars",
+    "ErrorBars": "voxsoft.comparison.error_bars",
     "Estimate": "voxsoft.comparison.richardson",
     "Run": "voxsoft.comparison.comparison",
     "compare": "voxsoft.comparison.run",
     "confirm": "voxsoft.comparison.confirmation",
     "discretization_error": "voxsoft.comparison.richardson",
+    "error_bars": "voxsoft.comparison.error_bars",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 from pydantic import Discriminator, Field, Tag
 
 from voxsoft.records import Record
-from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
+from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime, Proportion
 
 
 def _named_or_rate(value: object) -> str:
@@ -21,6 +21,9 @@ Damping = Annotated[
 ]
 Ratio = Annotated[float, Field(gt=0)]
 Share = Annotated[float, Field(gt=0, le=1)]
+
+#: Settings that ask how large the error is, and change no result.
+OF_THE_ERROR: Final = frozenset({"error", "accuracy"})
 Tolerance = Annotated[float, Field(gt=0, lt=1)]
 
 
@@ -77,6 +80,14 @@ class Solver(Record):
     first_step
         Load and arc-length control only: the first step of the path, as a part of the full load;
         default 1, or an arc of 0.2.
+    error
+        How a run finds its discretization error: on ``"finer"`` voxels, half as large; on
+        ``"coarser"`` ones, twice as large; by ``"auto"`` (default), finer ones for small bodies and
+        coarser ones for others, where they are still the same body; or not at all, ``"off"``.
+        It changes no result.
+    accuracy
+        The error that a run may leave, as a part of each probe's displacement and of each
+        objective and constraint, ``"2 %"``: it goes to voxels as small as that takes.
 
     Examples
     --------
@@ -98,6 +109,8 @@ class Solver(Record):
     steps: Count | None = None
     volume_ratio: Ratio | None = None
     first_step: Share | None = None
+    error: Literal["auto", "coarser", "finer", "off"] = "auto"
+    accuracy: Proportion | None = None
 
     @property
     def is_timed(self) -> bool:

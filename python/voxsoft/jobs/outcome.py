@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
-    from voxsoft.comparison import Confirmation
+    from voxsoft.comparison import Confirmation, ErrorBars
 
 
 class Summarized(Protocol):
@@ -39,6 +39,8 @@ class JobOutcome(Generic[Found]):
         Trials that a study held before.
     confirmed
         The best designs of a study, solved again, if that was asked.
+    error_bars
+        Those of a run, or why there are none.
     """
 
     folder: Path
@@ -47,9 +49,12 @@ class JobOutcome(Generic[Found]):
     written: tuple[Path, ...] = ()
     earlier: int = 0
     confirmed: Confirmation | None = None
+    error_bars: ErrorBars | None = None
 
     @property
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units: the ``--json`` of its verb."""
         more = {} if self.confirmed is None else {"confirmed": self.confirmed.summary()}
+        if self.error_bars is not None:
+            more["error_bars"] = self.error_bars.summary()
         return self.found.summary() | more | {"folder": str(self.folder)}

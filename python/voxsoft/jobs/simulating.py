@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from voxsoft import files, simulation
+from voxsoft.comparison.error_bars import ErrorBars, error_bars
 from voxsoft.files.figures import save_figure, save_thumbnail
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
@@ -15,7 +16,7 @@ from voxsoft.jobs.nearness import Nearness
 from voxsoft.jobs.outcome import JobOutcome
 from voxsoft.jobs.spec import RunSpec
 from voxsoft.simulation import Result
-from voxsoft.units import format_percent
+from voxsoft.units import format_percent, format_quantity
 
 #: Seconds between two words on how far a run is.
 _REPORT_EVERY: Final = 0.25
@@ -24,10 +25,12 @@ _REPORT_EVERY: Final = 0.25
 def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[Result]:
     """Simulate the design of a spec and write its run folder."""
     design = spec.design.read()
+    settings: dict[str, Any] = dict(spec.solver)
+    if settings:
+        design = design.replace(solver=design.solver.replace(**settings))
     notify(Progress(0, 100, "percent", "meshing"))
     nearness = Nearness(design.solver)
-    settings: dict[str, Any] = dict(spec.solver)
-    result = simulation.simulate(design, progress=_reporting(nearness, notify), **settings)
+    result = simulation.simulate(design, progress=_reporting(nearness, notify))
     write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
     files.write_run(result, folder)
     save_thumbnail(result, folder)
@@ -37,9 +40,30 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
         save_figure(plot_body(result), folder / "body.png")
         if result.contacts:
             save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
+    bars = _error_bars(result, notify)
+    files.write_run(result, folder, more={"error_bars": bars.summary()})
     notify(Progress(100, 100, "percent"))
     sentence = f"{result.message[:1].upper()}{result.message[1:]}."
-    return JobOutcome(folder, result, sentence)
+    return JobOutcome(folder, result, sentence, error_bars=bars)
+
+
+def _error_bars(result: Result, notify: Listener) -> ErrorBars:
+    """The error bars of a run that is kept already; Ctrl-C leaves them out."""
+    stage = ""
+
+    def announce(size: float, voxels: int, seconds: float) -> None:
+        nonlocal stage
+        length = format_quantity(float(f"{size:.4g}"), "length")
+        stage = f"error bars: {voxels:,} voxels of {length}, about {seconds:.2g} s"
+        notify(Progress(99, 100, "percent", stage))
+
+    def report(_: int, __: float, ___: float) -> None:
+        notify(Progress(99, 100, "percent", stage))
+
+    try:
+        return error_bars(result, progress=report, announce=announce)
+    except KeyboardInterrupt:
+        return ErrorBars.none("they were stopped before they were found", "run it again")
 
 
 def _reporting(nearness: Nearness, notify: Listener) -> Callable[[int, float, float], None]:

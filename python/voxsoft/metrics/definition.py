@@ -160,6 +160,9 @@ class Metric:
     needs, takes
         Keys of the target without which it has no place, and those that it can do without. Others
         are refused.
+    is_peak
+        Whether it is the largest or smallest of all voxels unless the target has a percentile. At
+        a sharp corner such a number grows as voxels get smaller, without a limit.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
 
@@ -176,6 +179,7 @@ class Metric:
     slope: Callable[[SlopeState, Target], Floats] | None
     needs: frozenset[Option] = frozenset()
     takes: frozenset[Option] = frozenset()
+    is_peak: bool = False
     home: str = ""
 
     def refusals(self, target: Target) -> Iterator[ErrorDetail]:

@@ -12,5 +12,5 @@ def _stress(state: State, target: Target) -> float:
 
 
 MAX_STRESS: Final = Metric(
-    "max_stress", "pressure", _stress, slope=None, takes=frozenset({"percentile"})
+    "max_stress", "pressure", _stress, slope=None, takes=frozenset({"percentile"}), is_peak=True
 )

@@ -22,6 +22,13 @@ def _volume_ratio(state: State, _: Target) -> float:
 
 
 MAX_STRETCH: Final = Metric(
-    "max_stretch", "number", _stretch, _stretch_slope, takes=frozenset({"percentile"})
+    "max_stretch",
+    "number",
+    _stretch,
+    _stretch_slope,
+    takes=frozenset({"percentile"}),
+    is_peak=True,
 )
-MIN_VOLUME_RATIO: Final = Metric("min_volume_ratio", "number", _volume_ratio, slope=None)
+MIN_VOLUME_RATIO: Final = Metric(
+    "min_volume_ratio", "number", _volume_ratio, slope=None, is_peak=True
+)

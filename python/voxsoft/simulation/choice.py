@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from voxsoft.design import Design, Solver
+from voxsoft.design.solver import OF_THE_ERROR
 from voxsoft.errors import ErrorDetail, SimulationError
 from voxsoft.materials import Hyperelastic, Rigid
 from voxsoft.simulation.dynamics import Dynamics, DynamicsToEnd, DynamicsToRest
@@ -38,7 +39,7 @@ METHODS: Final[tuple[type[Method], ...]] = (
 Kinds = frozenset[type[Method]]
 
 #: Of the mesh, or of the choice itself.
-_OF_ALL: Final = frozenset({"method", "refine"})
+_OF_ALL: Final = frozenset({"method", "refine"}) | OF_THE_ERROR
 _CONTROLS: Final[Mapping[str, type[Statics]]] = {
     "load": LoadControl,
     "arc-length": ArcLengthControl,
@@ -230,8 +231,9 @@ def check_solver(
 
 
 def given_settings(solver: Solver) -> dict[str, object]:
-    """Return the settings that are not as they are by default."""
-    values = {name: getattr(solver, name) for name in type(solver).model_fields}
+    """Return the settings of the solution that are not as they are by default."""
+    names = type(solver).model_fields.keys() - OF_THE_ERROR
+    values = {name: getattr(solver, name) for name in type(solver).model_fields if name in names}
     plain = Solver()
     return {name: value for name, value in values.items() if value != getattr(plain, name)}
 

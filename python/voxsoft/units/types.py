@@ -260,6 +260,7 @@ Rate = Annotated[float, UnitOf("rate")]
 NonNegativeRate = Annotated[float, UnitOf("rate", non_negative=True)]
 Angle = Annotated[float, UnitOf("angle")]
 Stiffness = Annotated[float, UnitOf("stiffness")]
+Proportion = Annotated[float, UnitOf("number", positive=True)]
 Energy = Annotated[float, UnitOf("energy")]
 Dimensionless = Annotated[float, UnitOf("number")]
 

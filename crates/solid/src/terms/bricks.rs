@@ -1,7 +1,7 @@
 use super::{Strain, Term};
 use crate::assembly::Visitor;
 use crate::batches::in_order;
-use crate::brick::{Brick, BrickStrain, Tangent, Within};
+use crate::brick::{Brick, Carried, Tangent, Within};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::vector::Vec3;
 
@@ -113,36 +113,44 @@ impl Term for Bricks {
     }
 
     fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
-        let strain = |brick: &Brick| brick.predict_strain(positions, moves);
+        let carry = |brick: &Brick| brick.carry(self.material_of(brick), None, positions, moves);
         Some(Box::new(Predicted {
             block: self,
-            strains: self.bricks.iter().map(strain).collect(),
+            states: self.bricks.iter().map(carry).collect(),
         }))
     }
 }
 
-/// Predicted strains.
+/// Predicted strains and pressures.
 struct Predicted<'a> {
     block: &'a Bricks,
-    strains: Vec<BrickStrain>,
+    states: Vec<Carried>,
 }
 
 impl Strain for Predicted<'_> {
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let Self { block, strains } = self;
+        let Self { block, states } = self;
         block.each(
             FORCE_BATCH,
-            |i, brick| brick.predicted_forces(block.material_of(brick), &strains[i], positions),
+            |i, brick| brick.predicted_forces(block.material_of(brick), &states[i], positions),
             |_, brick, corners| brick.add_to(&corners, forces),
         );
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let Self { block, strains } = self;
+        let Self { block, states } = self;
         block.each(
             STIFFNESS_BATCH,
-            |i, brick| brick.stiffness(block.material_of(brick), positions, Some(&strains[i])),
+            |i, brick| brick.stiffness(block.material_of(brick), positions, Some(&states[i])),
             |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
         );
+    }
+
+    fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
+        for (brick, state) in self.block.bricks.iter().zip(&mut self.states) {
+            let material = self.block.material_of(brick);
+            *state = brick.carry(material, Some(state), positions, moves);
+        }
+        true
     }
 }

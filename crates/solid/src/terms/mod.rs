@@ -123,4 +123,10 @@ pub trait Strain {
 
     /// Hands over the tangent at `positions` with the stress of these strains.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+
+    /// Goes on by a step `moves` from `positions`; `false` where what [`Term::predict`] says there is all that there is
+    /// to know.
+    fn carry(&mut self, _positions: &[Vec3], _moves: &[Vec3]) -> bool {
+        false
+    }
 }

@@ -1,0 +1,414 @@
+"""Error bars: how far the numbers of a run are from those of ever smaller voxels.
+
+The run is made again on voxels of another size, and each number that both give is extrapolated
+(:mod:`voxsoft.comparison.richardson`). Voxels half as large tell more and cost about twelve times
+the run; voxels twice as large cost a tenth of it, and tell something only while they still are
+the same body. So small bodies get finer voxels and large ones coarser.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.comparison.richardson import Estimate, discretization_error
+from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design.discretize import voxels_of
+from voxsoft.errors import VoxSoftError
+from voxsoft.materials import Lattice
+from voxsoft.metrics import METRICS
+from voxsoft.simulation import Result, simulate
+from voxsoft.simulation.choice import kind_of
+from voxsoft.simulation.touching import has_contact
+from voxsoft.units import format_quantity, si_value
+
+#: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
+FINER_UP_TO: Final = 20_000
+#: The same with contact, whose steps take ten times as long.
+FINER_UP_TO_WITH_CONTACT: Final = 2_000
+#: Voxels that an accuracy may take.
+ACCURATE_UP_TO: Final = 400_000
+#: Two sizes hold the same body if volumes are the same to this part: those of cut voxels follow
+#: the shape to second order, and a wall that is off by more counts in the third power.
+SAME_VOLUME: Final = 0.01
+#: Voxels through a wall from which on errors are regular; see `richardson`.
+REGULAR_WALL: Final = 2
+#: The part of a vector below which components are rounding.
+ROUNDING: Final = 1e-9
+#: How the time of a run grows as voxels get half as large (:mod:`voxsoft.simulation.cost`).
+TIMES_AS_LONG: Final = 12.0
+
+#: Called before each further run with the edge of its voxels in m, how many there are about, and
+#: about how many seconds it takes.
+Announce = Callable[[float, int, float], None]
+
+
+@dataclass(frozen=True)
+class ErrorBar:
+    """One number with its error.
+
+    Attributes
+    ----------
+    value
+        On the voxels of the design, in SI units.
+    estimate
+        What it comes to on ever smaller voxels.
+    error
+        How far that may be off, to either side.
+    kind
+        A key of :data:`voxsoft.units.KINDS`.
+    """
+
+    value: float
+    estimate: float
+    error: float
+    kind: str
+
+    def __str__(self) -> str:
+        """The estimate with its error, in a unit that suits both.
+
+        Examples
+        --------
+        >>> str(ErrorBar(-0.0123, -0.01304, 0.00052, "length"))
+        '-13.04 ± 0.52 mm'
+        """
+        largest = max(abs(self.estimate), self.error)
+        text = format_quantity(float(f"{largest:.4g}"), self.kind)
+        unit = text.partition(" ")[2]
+        factor = si_value(f"1 {unit}", self.kind, "unit") if unit else 1.0
+        digits = _most_digits(largest / factor)
+        if self.error > 0.0:
+            digits = min(digits, 1 - math.floor(math.log10(self.error / factor)))
+        digits = max(digits, 0)
+        shown = [round(each / factor, digits) + 0.0 for each in (self.estimate, self.error)]
+        return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f} {unit}".rstrip()
+
+    def summary(self) -> dict[str, float]:
+        """Plain data in SI units."""
+        return {"value": self.value, "estimate": self.estimate, "error": self.error}
+
+
+@dataclass(frozen=True)
+class ErrorBars:
+    """The discretization errors of a run.
+
+    Attributes
+    ----------
+    probes
+        Of the components of each probe's displacement.
+    metrics
+        Of each metric; without those that grow without a limit at sharp corners.
+    volumes
+        Of the volume of each cavity, in the order of the mesh's cavities.
+    voxel_sizes
+        In m, falling; empty if there are no error bars.
+    voxels
+        How many there are of each size.
+    regular
+        Whether all sizes hold the same body with two voxels or more through each wall; if not,
+        the bars are wide, and may be too small where walls are single voxels.
+    missing
+        Why there are no error bars, or why an accuracy was not reached; empty otherwise.
+    hint
+        What to do about that.
+    seconds
+        That the further runs took.
+    """
+
+    probes: Mapping[str, tuple[ErrorBar, ErrorBar, ErrorBar]]
+    metrics: Mapping[str, ErrorBar]
+    volumes: tuple[ErrorBar, ...]
+    voxel_sizes: tuple[float, ...] = ()
+    voxels: tuple[int, ...] = ()
+    regular: bool = False
+    missing: str = ""
+    hint: str = ""
+    seconds: float = 0.0
+
+    @classmethod
+    def none(cls, missing: str, hint: str) -> ErrorBars:
+        """No error bars, and why."""
+        return cls({}, {}, (), missing=missing, hint=hint)
+
+    @property
+    def sentence(self) -> str:
+        """Where the error bars come from, or why there are none."""
+        if not self.voxel_sizes:
+            return f"no error bars: {self.missing}. Try: {self.hint}"
+        lengths = [format_quantity(float(f"{size:.4g}"), "length") for size in self.voxel_sizes]
+        words = f"error bars from voxels of {', '.join(lengths[:-1])} and {lengths[-1]}"
+        if not self.regular:
+            words += ", which are not the same body or have walls of one voxel: the bars are wide"
+        return f"{words}; {self.missing}. Try: {self.hint}" if self.missing else words
+
+    def summary(self) -> dict[str, Any]:
+        """Everything as plain data in SI units (``"error_bars"`` in the ``--json`` of ``run``)."""
+        return {
+            "probes": {
+                name: {axis: bar.summary() for axis, bar in zip("xyz", bars, strict=True)}
+                for name, bars in self.probes.items()
+            },
+            "metrics": {name: bar.summary() for name, bar in self.metrics.items()},
+            "cavities": [bar.summary() for bar in self.volumes],
+            "voxel_sizes": list(self.voxel_sizes),
+            "voxels": list(self.voxels),
+            "regular": self.regular,
+            "missing": self.missing,
+            "hint": self.hint,
+            "seconds": self.seconds,
+        }
+
+
+def error_bars(
+    result: Result,
+    *,
+    progress: Callable[[int, float, float], None] | None = None,
+    announce: Announce | None = None,
+) -> ErrorBars:
+    """Estimate the discretization errors of a run by further runs on other voxels.
+
+    Parameters
+    ----------
+    result
+        The run. The design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+    progress
+        As for :func:`voxsoft.simulate`.
+    announce
+        Called before each further run with what it will cost.
+
+    Returns
+    -------
+    ErrorBars
+        None, with the reason, where the numbers say nothing of their error: without an
+        equilibrium, in motion over time, with several bodies, for lattices unless `error` or
+        `accuracy` asks for them, or where voxels of no other size can be solved.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> beam = families.beam(length="40 mm").with_values("parts.0.material=ecoflex-00-30")
+    >>> result = vs.simulate(beam)
+    >>> bars = error_bars(result)
+    >>> bars.voxel_sizes
+    (0.005, 0.0025)
+    >>> bar = bars.metrics["max_displacement"]
+    >>> bar.value < bar.estimate and bar.error < 0.2 * bar.estimate
+    True
+    """
+    refusal = _refusal(result)
+    if refusal is not None:
+        return ErrorBars.none(*refusal)
+    search = _Search(result, progress, announce)
+    accuracy = result.design.solver.accuracy
+    return search.pair() if accuracy is None else search.until(accuracy)
+
+
+def _refusal(result: Result) -> tuple[str, str] | None:
+    """Why numbers of a run say nothing of their error, and what to do, if so."""
+    design = result.design
+    if design.solver.error == "off":
+        return 'the solver\'s error is "off"', 'write error = "auto"'
+    if result.status != "ok":
+        return "the run did not come to rest", "mend that first"
+    if not kind_of(design, design.solver).to_rest:
+        return "motion over time has none", "compare runs on several voxel sizes"
+    if result.mesh.bodies:
+        return "several bodies have none yet", "compare runs on several voxel sizes"
+    if result.mesh.voxel_size is None:
+        return "the mesh is not made of voxels", "compare several meshes"
+    lattice = any(isinstance(design.material_of(part), Lattice) for part in design.parts)
+    if lattice and design.solver.error == "auto" and design.solver.accuracy is None:
+        what = "the constants of a lattice are fitted on voxels of one size, and hold its error"
+        return what, 'take rubber, or write error = "finer" to see how the size changes it'
+    return None
+
+
+@dataclass
+class _Run:
+    """A run and what tells whether another one holds the same body."""
+
+    result: Result
+    size: float
+
+    @cached_property
+    def voxels(self) -> int:
+        return len(self.result.mesh.tets) // 5
+
+    @cached_property
+    def wall(self) -> int:
+        """Voxels through the thinnest wall."""
+        design = self.result.design.replace(voxel_size=self.size)
+        cells = voxels_of(design)
+        found = [wall.thickness for wall in cells.cavity_walls]
+        if not found and (thinnest := cells.wall_thickness.thinnest) is not None:
+            found = [thinnest.thickness]
+        return min(found, default=1) * design.solver.refine
+
+    def is_like(self, other: _Run) -> bool:
+        """Whether both hold the same body, as far as volumes and extents can tell."""
+        a, b = self.result, other.result
+        if len(a.mesh.cavities) != len(b.mesh.cavities):
+            return False
+        volumes = [(a.metric("volume"), b.metric("volume"))]
+        for mine, theirs in zip(a.mesh.cavities, b.mesh.cavities, strict=True):
+            volumes.append((float(mine.volume), float(theirs.volume)))
+        if a.design.fill == "binary":
+            mine, theirs = np.ptp(a.mesh.vertices, axis=0), np.ptp(b.mesh.vertices, axis=0)
+            if not np.allclose(mine, theirs, rtol=0.0, atol=1e-6 * self.size):
+                return False
+        return all(math.isclose(v, w, rel_tol=SAME_VOLUME) for v, w in volumes)
+
+
+class _Search:
+    """The further runs of one result."""
+
+    def __init__(
+        self,
+        result: Result,
+        progress: Callable[[int, float, float], None] | None,
+        announce: Announce | None,
+    ) -> None:
+        self.own = _Run(result, result.design.voxel_size)
+        self._progress, self._announce = progress, announce
+        self._seconds = 0.0
+
+    def pair(self) -> ErrorBars:
+        """From one other size."""
+        design = self.own.result.design
+        asked = design.solver.error
+        limit = FINER_UP_TO_WITH_CONTACT if has_contact(design) else FINER_UP_TO
+        small = 8 * self.own.voxels <= limit
+        reasons = []
+        if asked == "coarser" or (asked == "auto" and not small):
+            other = self._solved(2.0 * self.own.size)
+            if isinstance(other, str):
+                reasons.append(f"on voxels twice as large {other}")
+            elif asked == "coarser" or other.is_like(self.own):
+                return self._bars([other, self.own])
+            else:
+                reasons.append("voxels twice as large are another body")
+        if asked == "finer" or (asked == "auto" and small):
+            other = self._solved(0.5 * self.own.size)
+            if not isinstance(other, str):
+                return self._bars([self.own, other])
+            reasons.append(f"on voxels half as large {other}")
+        hint = "compare several voxel sizes"
+        if asked != "finer" and not small:
+            about = TIMES_AS_LONG * self.own.result.seconds
+            hint = f'error = "finer", which takes about {about:.2g} s'
+        return ErrorBars.none("; ".join(reasons), hint)
+
+    def until(self, accuracy: float) -> ErrorBars:
+        """From ever smaller voxels, until all errors are within the accuracy."""
+        runs = [self.own]
+        while True:
+            if 8 * runs[-1].voxels > ACCURATE_UP_TO:
+                other: _Run | str = f"there would be about {8 * runs[-1].voxels:,} voxels"
+            else:
+                other = self._solved(0.5 * runs[-1].size)
+            if isinstance(other, str):
+                what = f"the accuracy was not reached: on voxels half as large {other}"
+                hint = "ask for less, or begin with other voxels"
+                if len(runs) == 1:
+                    return ErrorBars.none(what, hint)
+                return self._bars(runs, what, hint)
+            runs.append(other)
+            bars = self._bars(runs)
+            if _largest_error(bars, self.own.result.design) <= accuracy:
+                return bars
+
+    def _solved(self, size: float) -> _Run | str:
+        """The run on other voxels, or what went wrong."""
+        design = self.own.result.design
+        finer = (self.own.size / size) ** 3
+        if self._announce is not None:
+            seconds = self.own.result.seconds * TIMES_AS_LONG ** (math.log2(finer) / 3.0)
+            self._announce(size, round(finer * self.own.voxels), seconds)
+        other = design.with_values(f"voxel_size={size * 1e3!r} mm")
+        try:
+            result = simulate(other, progress=self._progress)
+        except VoxSoftError as error:
+            return str(error).partition("\n")[0]
+        self._seconds += result.seconds
+        return _Run(result, size) if result.status == "ok" else result.message
+
+    def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
+        """The bars of runs on falling sizes, of which one is that of the design."""
+        last = runs[-2:]
+        regular = last[0].is_like(last[1]) and last[0].wall >= REGULAR_WALL
+        sizes = [run.size for run in runs]
+        own = runs.index(self.own)
+
+        def bar(values: Sequence[float], kind: str) -> ErrorBar:
+            found: Estimate = discretization_error(sizes[-3:], values[-3:], regular=regular)
+            return ErrorBar(values[own], found.limit, found.error, kind)
+
+        def bars(values: Sequence[NDArray[np.float64]]) -> tuple[ErrorBar, ErrorBar, ErrorBar]:
+            # What is left of components that symmetry makes zero is rounding.
+            rounding = ROUNDING * float(np.abs(values).max())
+            kept = [np.where(np.abs(v) > rounding, v, 0.0) for v in values]
+            x, y, z = (bar([float(v[axis]) for v in kept], "length") for axis in range(3))
+            return x, y, z
+
+        results = [run.result for run in runs]
+        first = results[own]
+        asked = _asked(first.design)
+        names = [name for name in first.metrics if not _is_peak(name, asked)]
+        volumes = [result.cavity_volumes for result in results]
+        same = len({len(each) for each in volumes}) == 1
+        return ErrorBars(
+            {name: bars([result.probes[name] for result in results]) for name in first.probes},
+            {
+                name: bar([result.metrics[name] for result in results], _kind(name, asked))
+                for name in names
+            },
+            tuple(bar(each, "volume") for each in zip(*volumes, strict=True)) if same else (),
+            tuple(sizes),
+            tuple(run.voxels for run in runs),
+            regular,
+            missing,
+            hint,
+            self._seconds,
+        )
+
+
+def _most_digits(size: float) -> int:
+    """Digits after the point that a number of some size is shown with at most."""
+    return 4 - math.floor(math.log10(size)) if size > 0.0 else 0
+
+
+_Asked = Mapping[str, Objective | Constraint]
+
+
+def _asked(design: Design) -> _Asked:
+    return {**design.objectives, **design.constraints}
+
+
+def _kind(name: str, asked: _Asked) -> str:
+    return METRICS[asked[name].metric if name in asked else name].kind
+
+
+def _is_peak(name: str, asked: _Asked) -> bool:
+    target = asked.get(name)
+    metric = METRICS[name if target is None else target.metric]
+    return metric.is_peak and (target is None or target.percentile is None)
+
+
+def _largest_error(bars: ErrorBars, design: Design) -> float:
+    """The largest error of a probe or of what is asked for, as a part of its size."""
+    asked = [bars.metrics[name] for name in _asked(design) if name in bars.metrics]
+    pairs = [(abs(bar.estimate), bar.error) for bar in asked]
+    for components in bars.probes.values():
+        size = math.hypot(*(bar.estimate for bar in components))
+        pairs.append((size, math.hypot(*(bar.error for bar in components))))
+    if not pairs:
+        moved = bars.metrics["max_displacement"]
+        pairs = [(abs(moved.estimate), moved.error)]
+    return max(error / size if size > 0.0 else 0.0 for size, error in pairs)
