@@ -26,9 +26,9 @@ from voxsoft.shapes.fractions import SUBCELLS
 from voxsoft.voxels import Voxels
 
 #: A cell less full than this gives its material to its neighbors: a sliver would bound the load
-#: and the conditioning by its own strength. It lies between a quarter and a half, which halved
+#: and the conditioning by its own strength. It lies between a fifth and a quarter, which round
 #: measures give and which should not stand at an edge.
-LEAST_FILLED = 0.3
+LEAST_FILLED = 0.22
 
 #: A void belongs to the nearest empty region no more cells away than this.
 _REACH = 2
