@@ -59,15 +59,15 @@ def test_the_sag_changes_smoothly_as_a_surface_crosses_a_voxel():
     thicknesses = np.linspace(10, 15, 26) * mm
     sags = np.array([sag(strip(t)) for t in thicknesses])
     ratios = sags / [timoshenko(t) for t in thicknesses]
-    # Where the voxels of the upper layer begin to count (30 % full) the strip jumps a little: by
-    # less than the discretization's own error of 2 %.
-    assert np.abs(np.diff(ratios)).max() < 0.015
+    # Where the voxels of the upper layer begin to count (22 % full) the strip jumps a little, by
+    # 0.5 %: less than the discretization's own error of 2 %.
+    assert np.abs(np.diff(ratios)).max() < 0.01
     assert (np.diff(sags) < 0.0).all()
 
 
 def test_the_place_of_the_lattice_does_not_matter():
     sags = [sag(strip(7.5 * mm, low * mm)) for low in (0.0, 1.25, 2.5, 3.0, 3.75)]
-    assert max(sags) / min(sags) < 1.03  # the clamp's share again: 2 % of the sag
+    assert max(sags) / min(sags) < 1.01  # measured 0.3 %; the clamp's share is 2 % of the sag
 
 
 def hollow_sphere(voxel, fill="fraction"):
@@ -101,9 +101,9 @@ def test_a_hollow_sphere_grows_as_lame_says(voxel):
     for fill in ("binary", "fraction"):
         result = vs.simulate(hollow_sphere(voxel * mm, fill), method="statics")
         grown[fill] = abs(result.metric("cavity_volume_change") / lame_growth() - 1)
-    # One and a half voxels across the wall, and two. Measured: -0.9 and -0.1 %, against +33 and
+    # One and a half voxels across the wall, and two. Measured: -1.5 and -0.7 %, against +33 and
     # +18 % of binary voxels.
-    assert grown["fraction"] < 0.015
+    assert grown["fraction"] < 0.02
     assert grown["fraction"] < 0.3 * grown["binary"]
 
 
@@ -118,20 +118,16 @@ def rubber(poisson):
     return NeoHookean(young=YOUNG, poisson=poisson, density=DENSITY)
 
 
-# Measured at 2.5 mm: -0.6 and -1.2 % at small stretch, -2.1 % at large; at 1.25 mm: +0.4 to +0.8 %.
-# Triangles that load nodes 2 : 1 in a checkerboard gave +5 to +14 and +5 to +9 %.
-@pytest.mark.parametrize(("voxel", "error"), [(2.5, 0.022), (1.25, 0.01)])
-@pytest.mark.parametrize(
-    ("poisson", "stretch"),
-    # The last takes two to three minutes with the smaller voxels.
-    [(0.3, 1.1), (0.49, 1.1), (0.3, 1.4), pytest.param(0.49, 1.4, marks=pytest.mark.slow)],
-)
-def test_a_thick_sphere_of_rubber_swells_as_it_should(voxel, error, poisson, stretch):
+# Measured with 2.5 mm: -0.8 and -1.5 % at small stretch, -2.9 and -3.4 % at large, where growth
+# answers to pressure four times as strongly; with 1.25 mm: -0.2 and -0.3, -0.7 and -0.8 %, order
+# 2.1 to 2.2. Triangles that load nodes 2 : 1 in a checkerboard gave +5 to +14 and +5 to +9 %.
+@pytest.mark.parametrize(("poisson", "stretch"), [(0.3, 1.1), (0.49, 1.1), (0.3, 1.4), (0.49, 1.4)])
+def test_a_thick_sphere_of_rubber_swells_as_it_should(poisson, stretch):
     inner, outer = 10 * mm, 20 * mm
     pressure = inner_pressure(YOUNG, poisson, stretch, inner, outer, sphere=True)
     design = vs.Design(
         name="sphere",
-        voxel_size=voxel * mm,
+        voxel_size=2.5 * mm,
         fill="fraction",
         parts=[
             {
@@ -143,14 +139,19 @@ def test_a_thick_sphere_of_rubber_swells_as_it_should(voxel, error, poisson, str
         loads=[vs.Pressure(value=pressure)],
     )
     volume = 4 / 3 * np.pi * inner**3
-    assert abs(swelling(design, volume, stretch, 3)) < error
+    coarse = swelling(design, volume, stretch, 3)
+    fine = swelling(design.replace(voxel_size=1.25 * mm), volume, stretch, 3)
+    assert abs(coarse) < (0.02 if stretch < 1.2 else 0.04)
+    assert abs(fine) < 0.01
+    assert np.log2(coarse / fine) > 1.8
 
 
-# Measured: -0.5 to +0.6 %. Triangles of unlike shares gave +2.6 to +5.3 %.
-@pytest.mark.parametrize("voxel", [2.0, 1.0])
+# Measured: -0.5 to -1.4 % with 2 mm, -0.2 to -0.4 % with 1 mm, a third. Triangles of unlike shares
+# gave +2.6 to +5.3 %.
+@pytest.mark.parametrize(("voxel", "error"), [(2.0, 0.018), (1.0, 0.006)])
 @pytest.mark.parametrize("poisson", [0.3, 0.49])
 @pytest.mark.parametrize("stretch", [1.1, 1.4])
-def test_a_thick_tube_in_plane_strain_swells_as_it_should(voxel, poisson, stretch):
+def test_a_thick_tube_in_plane_strain_swells_as_it_should(voxel, error, poisson, stretch):
     inner, outer, size = 8 * mm, 16 * mm, voxel * mm
     height = 2 * size
     pressure = inner_pressure(YOUNG, poisson, stretch, inner, outer, sphere=False)
@@ -178,14 +179,15 @@ def test_a_thick_tube_in_plane_strain_swells_as_it_should(voxel, poisson, stretc
         loads=[vs.Pressure(value=pressure)],
     )
     volume = np.pi * inner**2 * height
-    assert abs(swelling(design, volume, stretch, 2)) < 0.01
+    assert abs(swelling(design, volume, stretch, 2)) < error
 
 
-# Measured: -1.0 and -13 % of the shrinking, corners 1.1 and 1.8 p h/E off. Uneven shares and rooms
-# that move as whole voxels gave -14 and -197 %, 2.7 and 1.1 p h/E.
-@pytest.mark.parametrize(("poisson", "error", "off"), [(0.3, 0.02, 1.3), (0.49, 0.2, 2.0)])
-def test_the_same_pressure_inside_and_outside_shrinks_a_body_nearly_uniformly(poisson, error, off):
-    pressure, size = 100.0, 2.5 * mm
+# Without the mean gradient over the material the cavity was 1 and 13 % off, corners 1.1 and
+# 1.8 p h/E.
+@pytest.mark.parametrize("pressure", [1e-4 * YOUNG, 0.1 * YOUNG])
+@pytest.mark.parametrize("poisson", [0.3, 0.49])
+def test_the_same_pressure_inside_and_outside_shrinks_a_body_uniformly(poisson, pressure):
+    size = 2.5 * mm
     outside = [
         vs.Traction(value=pressure, region={axis: (side, side)})
         for axis in "xyz"
@@ -205,9 +207,15 @@ def test_the_same_pressure_inside_and_outside_shrinks_a_body_nearly_uniformly(po
         loads=[vs.Pressure(value=pressure), *outside],
     )
     result = vs.simulate(design, method="statics")
-    strain = -pressure * (1 - 2 * poisson) / YOUNG
-    away = np.abs(result.displacements - strain * result.mesh.vertices).max()
-    assert away < off * pressure * size / YOUNG
+    assert result.status == "ok", result.message
+    bulk = YOUNG / (3 * (1 - 2 * poisson))
+    volume_ratio = 1 - pressure / bulk
+    exact = volume_ratio ** (1 / 3) * result.mesh.vertices
+    # Exact where material and room make whole voxels. Their second moments are approximate in small
+    # cubes that are cut: measured are 1e-3 p h/E, 7e-4 p, and 2e-7 of what the cavity shrinks by.
+    assert np.abs(result.positions - exact).max() < 3e-3 * pressure * size / YOUNG
+    uniform = -pressure * np.array([1, 1, 1, 0, 0, 0])
+    assert np.abs(result.fields.stress - uniform).max() < 2e-3 * pressure
     (cavity,) = result.mesh.cavities
-    shrunk = cavity.volume_at(result.positions) / cavity.volume - 1
-    assert shrunk == pytest.approx(3 * strain, rel=error)
+    shrunk = 1 - cavity.volume_at(result.positions) / cavity.volume
+    assert shrunk == pytest.approx(pressure / bulk, rel=1e-5)

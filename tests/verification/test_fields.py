@@ -93,12 +93,13 @@ def test_simple_shear_of_rubber():
 def test_hoop_stress_of_a_thick_sphere():
     """Lamé: σθ = p a³/(b³ - a³) (1 + b³/(2 r³)), σr = p a³/(b³ - a³) (1 - b³/r³).
 
-    Cut voxels, four across the wall. In a voxel that the surface cuts the stress is that of the
-    middle of the cube, so those within one of the surface are left out. Elsewhere the mean over a
-    voxel of a stress like 1/r³ differs from that of its middle by (h/r)²/2, 1 to 2 %, and the
-    steps of the surface leave as much in the strain. The mean pressure of nearly incompressible
-    voxels swings by a seventh from one to the next (see the docs), so hoop stress is asked of
-    their mean only, and the difference of hoop and radial stress, free of it, of single voxels.
+    Cut voxels, four across the wall. In a voxel that the surface cuts the stress is that of its
+    material, which has another center, so those within one of the surface are left out. Elsewhere
+    the mean over a voxel of a stress like 1/r³ differs from that of its middle by (h/r)²/2, 1 to
+    2 %, and the steps of the surface leave as much in the strain. The mean pressure of nearly
+    incompressible voxels swings by a seventh from one to the next (see the docs), so hoop stress
+    is asked of their mean only, and the difference of hoop and radial stress, free of it, of
+    single voxels.
     """
     inner, outer, pressure = 10e-3, 20e-3, 200.0
     design = Design.from_document(

@@ -286,7 +286,7 @@ impl PyProblemParts {
     }
 
     /// The filled part of each block, and where in it the material is: center and spread along the
-    /// axes in halves of an edge.
+    /// axes, and the means of the products of two coordinates, in halves of an edge.
     #[pyo3(signature = (fractions, moments=None))]
     fn fractions(
         &mut self,
@@ -294,10 +294,11 @@ impl PyProblemParts {
         moments: Option<PyReadonlyArray2<'_, f64>>,
     ) -> PyResult<()> {
         self.block_fraction = fractions.as_array().to_vec();
-        let rows: Vec<[f64; 6]> = moments.map_or(Ok(Vec::new()), |m| rows("moments", &m))?;
-        let filling = |[x, y, z, a, b, c]: [f64; 6]| Filling {
+        let rows: Vec<[f64; 9]> = moments.map_or(Ok(Vec::new()), |m| rows("moments", &m))?;
+        let filling = |[x, y, z, a, b, c, yz, zx, xy]: [f64; 9]| Filling {
             shift: [x, y, z],
             spread: [a, b, c],
+            products: [yz, zx, xy],
         };
         self.block_filling = rows.into_iter().map(filling).collect();
         Ok(())

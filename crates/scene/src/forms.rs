@@ -47,8 +47,8 @@ struct Mesh {
     tet_part: Vec<u8>,
     tet_block: Vec<u32>,
     block_fraction: Vec<f64>,
-    /// Shift and spread of each block.
-    block_filling: Vec<[Vec3; 2]>,
+    /// Shift, spread and products of each block.
+    block_filling: Vec<[Vec3; 3]>,
     /// Vertices, then Young's modulus, Poisson's ratio, thickness and density.
     membranes: Vec<([u32; 3], [f64; 4])>,
     attachments: Vec<Attachment>,
@@ -226,7 +226,7 @@ impl TryFrom<Settings> for Dynamics {
 
 impl From<&solid::Mesh> for Mesh {
     fn from(mesh: &solid::Mesh) -> Self {
-        let filling = |f: &solid::Filling| [f.shift, f.spread];
+        let filling = |f: &solid::Filling| [f.shift, f.spread, f.products];
         let membrane = |one: &solid::Membrane| {
             let m = one.material();
             (one.vertices(), [m.young, m.poisson, m.thickness, m.density])
@@ -265,7 +265,11 @@ impl TryFrom<Mesh> for solid::Mesh {
             Ok(solid::Membrane::new(vertices, corners, material)?)
         };
         let membranes: Result<_, SceneError> = form.membranes.into_iter().map(membrane).collect();
-        let filling = |[shift, spread]: [Vec3; 2]| solid::Filling { shift, spread };
+        let filling = |[shift, spread, products]: [Vec3; 3]| solid::Filling {
+            shift,
+            spread,
+            products,
+        };
         Ok(Self {
             membranes: membranes?,
             attachments: form.attachments,

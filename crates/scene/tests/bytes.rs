@@ -84,6 +84,7 @@ fn full() -> Scene {
             Filling {
                 shift: [0.1, 0.0, 0.0],
                 spread: [0.9; 3],
+                products: [0.0, 0.02, -0.03],
             },
         ],
         membranes: vec![Membrane::new(triangles[0], corners, fabric).unwrap()],
@@ -221,7 +222,7 @@ fn what_is_cut_off_or_too_long_is_reported() {
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
     // A list that says to be longer than all there is is refused once the bytes are used up.
-    let endless = b"VXSC\x04\0\0\0\xff\xff\xff\xff\x0fab";
+    let endless = b"VXSC\x05\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }

@@ -6,7 +6,7 @@
 //!
 //! The map of a cube of side `h` is `x(ξ) = x₀ + h/2 (f₁ξ + f₂η + f₃ζ + p₁ηζ + p₂ζξ + p₃ξη + p₄ξηζ)` with
 //! `fₖ, pₖ = Σ ±xₐ/(4h)`, the sign being that of the monomial at node `a`. The columns `fₖ` are the mean
-//! deformation gradient `F₀ = R S`; the `p` are the hourglass modes, rotated back: `p̂ = Rᵀp`.
+//! deformation gradient `F₀ = R S` of a full voxel; the `p` are the hourglass modes, rotated back: `p̂ = Rᵀp`.
 //!
 //! # Assumed stretch
 //!
@@ -26,9 +26,14 @@
 //!
 //! `Φ = U(J) + ⅙ Σ W(S ± Ĥ) + ⅙ K Σ ((1−2ν)/(1−ν))² (H₁₁ + H₂₂)² + E/18 |p₄|² + fibers(S)`
 //!
-//! A voxel that the surface cuts knows the center `c` and the spread `σ` of its material along each axis
-//! ([`Filling`]): `S` becomes the stretch at that center, `S + Σ c Ĥ`, and `Ĥ` becomes `σ Ĥ`, which
-//! integrates the energy over the material to second order. Fibers keep the mean stretch.
+//! A voxel that the surface cuts knows where its material is ([`Filling`]). `F₀` is the mean gradient over the material,
+//! of the motion as it is, with its shears:
+//!
+//! `F₀ e₁ = f₁ + p₂⟨ζ⟩ + p₃⟨η⟩ + p₄⟨ηζ⟩`, and so on around,
+//!
+//! as the mean strain decides whether a uniform stress is in equilibrium with an oblique surface. `Ĥ` is
+//! the deviation from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates
+//! the energy to second order.
 //!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
@@ -158,6 +163,7 @@ impl Brick {
         self.fraction * self.side.powi(3)
     }
 
+    /// The columns of the mean gradient over the material, and the hourglass modes.
     fn modes(&self, positions: &[Vec3]) -> Modes {
         let x = self.vertices.map(|v| positions[v as usize]);
         let factor = 1.0 / (4.0 * self.side);
@@ -174,10 +180,14 @@ impl Brick {
         };
         let [along_x, along_y, along_xy, _] = split(s);
         let [along_zx, along_yz, along_xyz, along_z] = split(d);
-        [
+        let mut modes = [
             along_x, along_y, along_z, along_yz, along_zx, along_xy, along_xyz,
         ]
-        .map(|mode| scale(factor, mode))
+        .map(|mode| scale(factor, mode));
+        if self.filling != Filling::FULL {
+            self.filling.average(&mut modes);
+        }
+        modes
     }
 
     /// The elastic energy in J.
@@ -185,7 +195,7 @@ impl Brick {
         self.volume() * Rotated::of(&self.modes(positions), self.filling).energy(material)
     }
 
-    /// The mean deformation gradient.
+    /// The mean deformation gradient over the material.
     pub fn deformation(&self, positions: &[Vec3]) -> Mat3 {
         let modes = self.modes(positions);
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
@@ -195,7 +205,9 @@ impl Brick {
     pub(crate) fn gradients(&self) -> [(u32, Vec3); CORNERS] {
         let factor = 1.0 / (4.0 * self.side);
         std::array::from_fn(|corner| {
-            let gradient = std::array::from_fn(|axis| factor * SIGNS[axis][corner]);
+            let mut modes: Modes = SIGNS.map(|signs| [signs[corner], 0.0, 0.0]);
+            self.filling.average(&mut modes);
+            let gradient = std::array::from_fn(|axis| factor * modes[axis][0]);
             (self.vertices[corner], gradient)
         })
     }
@@ -236,7 +248,8 @@ impl Brick {
     /// The elastic forces on the corners in N, minus the gradient of [`Brick::energy`].
     ///
     /// With `T = ∂Φ/∂S`, `sₘ = ∂Φ/∂p̂ₘ` and `N = T S + Σ sₘ ⊗ p̂ₘ`, the gradient by `F₀` is
-    /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`.
+    /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`; in a cut voxel the `pₘ` have a part in `F₀`
+    /// as well.
     pub fn forces(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> [Vec3; CORNERS] {
         let state = Rotated::of(&self.modes(positions), self.filling);
         let stress = state.gradient(material);
@@ -334,6 +347,12 @@ impl Brick {
             modes[3 + k] = apply(&state.rotation, gradient.hourglass[k]);
         }
         modes[6] = scale(material.young() / 9.0, state.bilinear);
+        if self.filling != Filling::FULL {
+            self.filling.distribute(|to, part, from| {
+                let slope = modes[from];
+                axpy(&mut modes[to], part, slope);
+            });
+        }
         let factor = self.volume() / (4.0 * self.side);
         std::array::from_fn(|corner| {
             let mut force = [0.0; 3];
@@ -509,6 +528,18 @@ impl Brick {
             }
         }
         blocks[6][6] = scaled_identity(bilinear);
+        if self.filling != Filling::FULL {
+            self.filling.distribute(|to, part, from| {
+                for column in 0..7 {
+                    blocks[to][column] = plus(&blocks[to][column], part, &blocks[from][column]);
+                }
+            });
+            self.filling.distribute(|to, part, from| {
+                for row in &mut blocks {
+                    row[to] = plus(&row[to], part, &row[from]);
+                }
+            });
+        }
         let mut half = [[[[0.0; 3]; 3]; CORNERS]; 7];
         for a in 0..7 {
             for corner in 0..CORNERS {

@@ -9,7 +9,7 @@ use crate::hyperelastic::symmetric::{
 };
 use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
 use crate::matrix::{Mat3, apply_transposed, polar};
-use crate::vector::Vec3;
+use crate::vector::{Vec3, axpy};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
@@ -19,7 +19,7 @@ const AXES: [(usize, usize, usize); 3] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
 /// The axes of an off-diagonal place of a [`Sym`] are the two that differ from it.
 const OFF: usize = 3;
 
-/// The columns of `F₀` and the four hourglass vectors.
+/// The columns of the mean gradient and the four hourglass vectors.
 pub(crate) type Modes = [Vec3; 7];
 
 /// The generalized coordinates that the energy depends on: `S` (Mandel) and `p̂₁ … p̂₃`.
@@ -28,10 +28,12 @@ pub(crate) const SHAPE: usize = 15;
 /// Where in a voxel its material is, along each axis, in units of half an edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filling {
-    /// The center of the material; 0 is that of the voxel.
+    /// The center of the material, the means of ξ, η, ζ over it; 0 is that of the voxel.
     pub shift: Vec3,
     /// √3 times the standard deviation of the material from its center; 1 for a full voxel.
     pub spread: Vec3,
+    /// The means of ηζ, ζξ, ξη over the material.
+    pub products: Vec3,
 }
 
 impl Filling {
@@ -39,7 +41,36 @@ impl Filling {
     pub const FULL: Self = Self {
         shift: [0.0; 3],
         spread: [1.0; 3],
+        products: [0.0; 3],
     };
+
+    /// Makes the mean gradient over the voxel that over the material.
+    ///
+    /// The gradient of the trilinear motion is `∂x/∂ξ = f₁ + p₂ζ + p₃η + p₄ηζ`, and so on around.
+    pub(crate) fn average(&self, modes: &mut Modes) {
+        for (n, i, j) in AXES {
+            let parts = [
+                (3 + i, self.shift[j]),
+                (3 + j, self.shift[i]),
+                (6, self.products[n]),
+            ];
+            for (mode, part) in parts {
+                let vector = modes[mode];
+                axpy(&mut modes[n], part, vector);
+            }
+        }
+    }
+
+    /// The transpose of [`Filling::average`]: makes slopes by the averaged modes those by the modes themselves.
+    ///
+    /// `add(to, part, from)` adds `part` times the slope `from` to the slope `to`.
+    pub(crate) fn distribute(&self, mut add: impl FnMut(usize, f64, usize)) {
+        for (n, i, j) in AXES {
+            add(3 + i, self.shift[j], n);
+            add(3 + j, self.shift[i], n);
+            add(6, self.products[n], n);
+        }
+    }
 }
 
 /// Where the energy of one voxel comes from, at one state.
@@ -133,7 +164,7 @@ impl BrickStress {
             *t += factor * o;
         }
         for m in 0..3 {
-            crate::vector::axpy(&mut self.hourglass[m], factor, other.hourglass[m]);
+            axpy(&mut self.hourglass[m], factor, other.hourglass[m]);
         }
         self
     }
@@ -202,32 +233,21 @@ impl Rotated {
 
     /// The stretches at the six points over which the energy is the mean.
     pub fn points(&self, thinning: f64) -> [Sym; 6] {
-        let Filling { shift, spread } = self.filling;
-        let variations = AXES.map(|axes| self.variation(axes, thinning).h);
-        let mut center = self.stretch;
-        for (shift, h) in shift.iter().zip(&variations) {
-            for k in 0..6 {
-                center[k] += shift * h[k];
-            }
-        }
-        std::array::from_fn(|point| {
-            let m = point / 2;
-            let reach = if point % 2 == 0 {
-                spread[m]
-            } else {
-                -spread[m]
-            };
-            std::array::from_fn(|k| center[k] + reach * variations[m][k])
-        })
+        let ends = |n: usize| {
+            let h = self.variation(AXES[n], thinning).h;
+            self.ends(&h, self.filling.spread[n])
+        };
+        let [[a, b], [c, d], [e, f]] = [ends(0), ends(1), ends(2)];
+        [a, b, c, d, e, f]
     }
 
-    /// The two face centers of an axis.
+    /// The two points of an axis: the face centers of a full voxel.
     #[inline(always)]
-    fn ends(&self, h: &Sym) -> [Sym; 2] {
-        [1.0, -1.0].map(|sign| std::array::from_fn(|k| self.stretch[k] + sign * h[k]))
+    fn ends(&self, h: &Sym, reach: f64) -> [Sym; 2] {
+        [reach, -reach].map(|reach| std::array::from_fn(|k| self.stretch[k] + reach * h[k]))
     }
 
-    /// The mean change of volume over the six face centers, with derivatives where `second` asks.
+    /// The mean change of volume over the six points, with derivatives where `second` asks.
     fn volume(&self, thinning: f64, second: bool) -> Shaped {
         self.mean(thinning, second, |at| determinant_response(at, second))
     }
@@ -238,20 +258,18 @@ impl Rotated {
         (volume.value, volume.gradient)
     }
 
-    /// The mean over the six face centers of a function of the stretch there.
+    /// The mean over the six points of a function of the stretch there.
     fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
-        if self.filling != Filling::FULL {
-            return self.cut_mean(thinning, second, function);
-        }
         let mut mean = Shaped::zero();
         for axes in AXES {
             let variation = self.variation(axes, thinning);
-            let [high, low] = self.ends(&variation.h).map(|at| function(&at));
+            let reach = self.filling.spread[axes.0];
+            let [high, low] = self.ends(&variation.h, reach).map(|at| function(&at));
             mean.value += (high.value + low.value) / 6.0;
             let mut moment = [0.0; 6];
             for k in 0..6 {
                 mean.gradient[k] += (high.stress[k] + low.stress[k]) / 6.0;
-                moment[k] = (high.stress[k] - low.stress[k]) / 6.0;
+                moment[k] = reach * (high.stress[k] - low.stress[k]) / 6.0;
             }
             let slopes = variation.slopes(axes, thinning);
             for (place, direction) in &slopes {
@@ -272,71 +290,14 @@ impl Rotated {
                             twice[k] +=
                                 (high.tangent[k][l] + low.tangent[k][l]) / 6.0 * direction[l];
                         }
-                        mean.hessian[k][*place] += mixed;
-                        mean.hessian[*place][k] += mixed;
+                        mean.hessian[k][*place] += reach * mixed;
+                        mean.hessian[*place][k] += reach * mixed;
                     }
                     for (other, across) in &slopes {
-                        mean.hessian[*other][*place] += dot6(across, &twice);
+                        mean.hessian[*other][*place] += reach * reach * dot6(across, &twice);
                     }
                 }
                 variation.add_curvature(axes, thinning, moment[axes.0], &mut mean.hessian);
-            }
-        }
-        mean
-    }
-
-    /// The same of a voxel that is partly filled: over `S + Σ cₘ Ĥₘ ± σₙ Ĥₙ`.
-    fn cut_mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
-        let Filling { shift, spread } = self.filling;
-        let variations = AXES.map(|axes| self.variation(axes, thinning));
-        let slopes: [_; 3] = std::array::from_fn(|m| variations[m].slopes(AXES[m], thinning));
-        let mut center = self.stretch;
-        // How the stretch at the center of the material moves with each coordinate.
-        let mut moves = [[0.0; 6]; SHAPE];
-        for k in 0..6 {
-            moves[k][k] = 1.0;
-        }
-        for m in 0..3 {
-            for k in 0..6 {
-                center[k] += shift[m] * variations[m].h[k];
-                for (place, direction) in &slopes[m] {
-                    moves[*place][k] += shift[m] * direction[k];
-                }
-            }
-        }
-        let mut mean = Shaped::zero();
-        let (mut force, mut moments) = ([0.0; 6], [[0.0; 6]; 3]);
-        for m in 0..3 {
-            for sign in [spread[m], -spread[m]] {
-                let at = std::array::from_fn(|k| center[k] + sign * variations[m].h[k]);
-                let response = function(&at);
-                mean.value += response.value / 6.0;
-                let mut moves = moves;
-                for k in 0..6 {
-                    force[k] += response.stress[k] / 6.0;
-                    moments[m][k] += sign * response.stress[k] / 6.0;
-                    for (place, direction) in &slopes[m] {
-                        moves[*place][k] += sign * direction[k];
-                    }
-                }
-                for row in 0..SHAPE {
-                    mean.gradient[row] += dot6(&moves[row], &response.stress) / 6.0;
-                }
-                if second {
-                    for row in 0..SHAPE {
-                        let along: Sym =
-                            std::array::from_fn(|k| dot6(&response.tangent[k], &moves[row]) / 6.0);
-                        for column in 0..SHAPE {
-                            mean.hessian[row][column] += dot6(&along, &moves[column]);
-                        }
-                    }
-                }
-            }
-        }
-        if second {
-            for m in 0..3 {
-                let moment = moments[m][m] + shift[m] * force[m];
-                variations[m].add_curvature(AXES[m], thinning, moment, &mut mean.hessian);
             }
         }
         mean

@@ -24,6 +24,7 @@ fn cut() -> Filling {
     Filling {
         shift: [0.4, -0.7, 1.1],
         spread: [0.6, 0.3, 1.2],
+        products: [-0.7, 0.5, -0.2],
     }
 }
 
@@ -88,8 +89,31 @@ proptest! {
     }
 
     #[test]
-    fn rigid_motion_costs_nothing(turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
-        let (brick, rest) = cube();
+    fn a_cut_voxel_has_the_mean_gradient_over_its_material(positions in moved(), points in prop::collection::vec(prop::array::uniform3(-1.5..1.5f64), 1..5)) {
+        let mean = |value: &dyn Fn(&Vec3) -> f64| points.iter().map(value).sum::<f64>() / points.len() as f64;
+        let filling = Filling {
+            shift: std::array::from_fn(|k| mean(&|p| p[k])),
+            products: [mean(&|p| p[1] * p[2]), mean(&|p| p[2] * p[0]), mean(&|p| p[0] * p[1])],
+            ..cut()
+        };
+        let found = Brick { filling, ..cube().0 }.deformation(&positions);
+        // The slopes of the trilinear functions of the corners, ∂N/∂X = ±(1 ± η)(1 ± ζ)/(4h).
+        for column in 0..3 {
+            for row in 0..3 {
+                let expected = mean(&|point| (0..8).map(|c| {
+                    let sign: Vec3 = [c >> 2 & 1, c >> 1 & 1, c & 1].map(|bit| 2.0 * f64::from(bit) - 1.0);
+                    let factor = |k: usize| if k == column { sign[k] } else { 1.0 + sign[k] * point[k] };
+                    positions[c as usize][row] * factor(0) * factor(1) * factor(2) / (4.0 * SIDE)
+                }).sum());
+                prop_assert!((found[row][column] - expected).abs() < 1e-13, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn rigid_motion_costs_nothing(is_cut in any::<bool>(), turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
+        let (full, rest) = cube();
+        let brick = Brick { filling: if is_cut { cut() } else { full.filling }, ..full };
         let (rotation, _) = polar(&turn);
         let turned: Vec<Vec3> = rest.iter().map(|x| add(apply(&rotation, *x), shift)).collect();
         for material in materials() {

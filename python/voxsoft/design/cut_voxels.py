@@ -26,9 +26,9 @@ from voxsoft.shapes.fractions import SUBCELLS
 from voxsoft.voxels import Voxels
 
 #: A cell less full than this gives its material to its neighbors: a sliver would bound the load
-#: and the conditioning by its own strength. It lies between a quarter and a half, which halved
+#: and the conditioning by its own strength. It lies between a fifth and a quarter, which round
 #: measures give and which should not stand at an edge.
-LEAST_FILLED = 0.3
+LEAST_FILLED = 0.22
 
 #: A void belongs to the nearest empty region no more cells away than this.
 _REACH = 2
@@ -71,7 +71,7 @@ class CutVoxels:
         The material of each, counted in C order, (n,), in volumes of a cell. It may exceed 1:
         a cell less full gives its material to the voxels at its faces.
     moments
-        Where the material of each voxel is, (n, 6): see :attr:`voxsoft.Mesh.moments`. What a
+        Where the material of each voxel is, (n, 9): see :attr:`voxsoft.Mesh.moments`. What a
         neighbor gave lies outside the voxel, and counts there.
     voids
         For each cavity the voxels (their numbers, and parts of the tetrahedra of
@@ -273,7 +273,8 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, .
     fractions = held[:, 0]
     center = held[:, 1:4] / fractions[:, None]
     variance = held[:, 4:7] / fractions[:, None] - center**2
-    moments = np.hstack([center, np.sqrt(3.0 * variance)])
+    products = held[:, 7:] / fractions[:, None]
+    moments = np.hstack([center, np.sqrt(3.0 * variance), products])
 
     if len(t.torn):
         torn, normals, _ = filled_parts(design, t.places[t.torn], t.size)

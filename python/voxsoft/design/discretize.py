@@ -22,7 +22,7 @@ def voxels_of(design: Design) -> Voxels:
     """Fill a grid with the parts of a design; the first part wins where parts overlap.
 
     With ``fill = "binary"`` a cell is of the part that holds its center; with ``"fraction"`` it
-    counts if it is 30 % full, and is of the part with the largest share of it.
+    counts if it is 22 % full, and is of the part with the largest share of it.
 
     Parameters
     ----------

@@ -93,5 +93,5 @@ def _fractions(mesh: Mesh) -> Floats:
 
 
 def _moments(mesh: Mesh) -> Floats:
-    full = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
+    full = [0.0] * 3 + [1.0] * 3 + [0.0] * 3
     return np.tile(full, (len(mesh.tets) // 5, 1)) if mesh.moments is None else mesh.moments
