@@ -30,6 +30,9 @@
 //! ([`Filling`]): `S` becomes the stretch at that center, `S + Σ c Ĥ`, and `Ĥ` becomes `σ Ĥ`, which
 //! integrates the energy over the material to second order. Fibers keep the mean stretch.
 //!
+//! Where faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
+//! [`crate::warping`].
+//!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
 
@@ -42,6 +45,7 @@ use crate::matrix::{
     solve_spd, transpose,
 };
 use crate::vector::{Vec3, add, axpy, scale, sub};
+pub use crate::warping::{Faces, Warping};
 
 /// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 const CORNERS: usize = 8;
@@ -70,6 +74,8 @@ pub struct Brick {
     pub fraction: f64,
     /// Where in the cube the material is.
     pub filling: Filling,
+    /// How its free faces warp.
+    pub warping: Warping,
 }
 
 /// Which tangent.
@@ -172,9 +178,13 @@ impl Brick {
         .map(|mode| scale(factor, mode))
     }
 
+    fn rotated(&self, positions: &[Vec3]) -> Rotated {
+        Rotated::of(&self.modes(positions), self.filling, self.warping)
+    }
+
     /// The elastic energy in J.
     pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
-        self.volume() * Rotated::of(&self.modes(positions), self.filling).energy(material)
+        self.volume() * self.rotated(positions).energy(material)
     }
 
     /// The mean deformation gradient.
@@ -198,7 +208,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> f64 {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         state
             .points(material.thinning())
             .iter()
@@ -211,7 +221,7 @@ impl Brick {
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
         let mut modes = self.modes(positions);
         modes[3..].fill([0.0; 3]);
-        let state = Rotated::of(&modes, Filling::FULL);
+        let state = Rotated::of(&modes, Filling::FULL, self.warping);
         let stress = to_matrix(&state.gradient(material).stress);
         let stretch = to_matrix(&state.stretch);
         let couple = multiply(&stress, &stretch);
@@ -230,7 +240,7 @@ impl Brick {
     /// With `T = ∂Φ/∂S`, `sₘ = ∂Φ/∂p̂ₘ` and `N = T S + Σ sₘ ⊗ p̂ₘ`, the gradient by `F₀` is
     /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`.
     pub fn forces(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let stress = state.gradient(material);
         self.spread_stress(&state, &stress, material)
     }
@@ -242,7 +252,7 @@ impl Brick {
         positions: &[Vec3],
         within: &Within,
     ) -> BrickResponse {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let parts = state.response(material, within.pressure);
         let work = within.stress.along(&state.stretch, &state.hourglass);
         BrickResponse {
@@ -260,7 +270,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> BrickStress {
-        Rotated::of(&self.modes(positions), self.filling).deviatoric(material)
+        self.rotated(positions).deviatoric(material)
     }
 
     /// Adds forces on the corners to those on all vertices.
@@ -279,7 +289,7 @@ impl Brick {
         positions: &[Vec3],
         viscous: impl FnOnce(&BrickStress) -> BrickStress,
     ) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let deviatoric = state.deviatoric(material);
         let stress = state
             .gradient(material)
@@ -295,7 +305,7 @@ impl Brick {
         strain: &BrickStrain,
         positions: &[Vec3],
     ) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let other = state.with_strain(strain);
         let (now, then) = (state.strain().row(), strain.row());
         let change = times(
@@ -363,7 +373,7 @@ impl Brick {
         within: &Within,
         tangent: Tangent,
     ) -> BrickMatrix {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
@@ -443,7 +453,7 @@ impl Brick {
 
     /// The strain at `positions`, and how it changes along `moves` to first order.
     pub fn predict_strain(&self, positions: &[Vec3], moves: &[Vec3]) -> BrickStrain {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let stretch = to_matrix(&state.stretch);
         let direction = self.modes(moves);
         let b: Mat3 = std::array::from_fn(|i| {
