@@ -3,7 +3,7 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Body, Brick, Clamp, Faces, Fiber, Filling, HyperelasticMaterial, Material, Membrane,
-    MembraneMaterial, Mesh, Problem, Warping,
+    MembraneMaterial, Mesh, Model, Problem, Warping,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -101,6 +101,72 @@ fn the_shear_that_is_left_is_that_of_the_derivation() {
         // Terms of fourth order in the shear are 1e-6 of those of second order, rounding is 1e-15/1e-6.
         let found = 1.0 - left(with(free, &[]), 2);
         assert!((found - part).abs() < 1e-5, "{free:?} {found} {part}");
+    }
+}
+
+/// The second derivative of the energy by the shear `S_xy` at the stretch `(along, across, across)`, halved.
+fn shear_stiffness(brick: &Brick, material: &HyperelasticMaterial, along: f64, across: f64) -> f64 {
+    let rest: Vec<Vec3> = body(&boxed([1; 3])).rest().to_vec();
+    let energy = |shear: f64| {
+        let place = |x: &Vec3| {
+            [
+                along * x[0] + shear * x[1],
+                shear * x[0] + across * x[1],
+                across * x[2],
+            ]
+        };
+        brick.energy(material, &rest.iter().map(place).collect::<Vec<_>>())
+    };
+    let step = 1e-3;
+    (energy(step) + energy(-step) - 2.0 * energy(0.0)) / (2.0 * step * step)
+}
+
+#[test]
+fn at_a_free_face_the_same_part_of_the_shear_stiffness_is_left_at_any_stretch() {
+    let gent = Model::Gent {
+        shear: 1.0,
+        limit: 30.0,
+    };
+    let still = body(&boxed([1; 3])).bricks()[0];
+    let still = Brick {
+        warping: Warping::NONE,
+        ..still
+    };
+    let warping = Brick {
+        warping: with(&[(1, 0)], &[]),
+        ..still
+    };
+    for material in [
+        rubber(),
+        HyperelasticMaterial::new(gent, 100.0, 1.0).unwrap(),
+    ] {
+        for along in [0.4, 0.7, 1.5, 2.5, 4.0_f64] {
+            // The width at which the sides are free of stress has the least energy.
+            let energy = |across: f64| {
+                let place = |x: &Vec3| [along * x[0], across * x[1], across * x[2]];
+                let rest: Vec<Vec3> = body(&boxed([1; 3])).rest().to_vec();
+                still.energy(&material, &rest.iter().map(place).collect::<Vec<_>>())
+            };
+            let (mut low, mut high) = (0.3 / along.sqrt(), 2.0 / along.sqrt());
+            for _ in 0..200 {
+                let thirds = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+                if energy(thirds[0]) < energy(thirds[1]) {
+                    high = thirds[1];
+                } else {
+                    low = thirds[0];
+                }
+            }
+            let [whole, left] =
+                [&still, &warping].map(|brick| shear_stiffness(brick, &material, along, low));
+            assert!(whole > 0.0);
+            // The least energy tells the width to 1e-8; terms of fourth order in the shear are 1e-6, times the limit
+            // of the rubber and the bulk modulus 1e-4.
+            assert!(
+                (left / whole - 21.0 / 26.0).abs() < 1e-3,
+                "{along}: {}",
+                left / whole
+            );
+        }
     }
 }
 
