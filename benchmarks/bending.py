@@ -1,10 +1,11 @@
-"""Strips, a plate and a block of the voxels that are solved: bending, and where they are stable.
+"""Strips, a plate, bars and a block of the voxels that are solved: bending, torsion, stability.
 
 ``python benchmarks/bending.py [--json]``. The cases are those by which the element was chosen
 (`research/elements.py`, docs/method/elements.md), here with the element of the package: strips
 100 mm long and 10 mm thick against Timoshenko's beam, a clamped plate of 200 x 200 x 5 mm against
 Kirchhoff's, and a block with sliding ends that is squeezed and drawn until it is not stable. No
-corner is singular in the strips: their roots are planes of symmetry.
+corner is singular in the strips: their roots are planes of symmetry. Square bars are twisted by
+ends that turn in their planes and are free to warp, against Saint-Venant's torsion.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ import voxsoft as vs
 from voxsoft.units import kPa, mm
 
 YOUNG = 60 * kPa
+#: Saint-Venant's J of a square bar, over the fourth power of its side.
+SQUARE = 0.1405770
 #: Kirchhoff's deflection of the middle of a clamped square plate, over p a⁴/D.
 PLATE = 0.00126532
 
@@ -83,6 +86,37 @@ def plate() -> float:
     return float(solved(design).probes["middle"][2]) / -expected - 1
 
 
+def torsion(across: int) -> float:
+    """Error of the torque of a square bar of so many voxels across."""
+    size, layers, twist = 1 * mm, 4, 1e-4
+    length, middle = layers * size, across * size / 2
+
+    def turned(y: float, z: float) -> vs.Clamp:
+        """One vertex of the far end."""
+        way = layers * twist * (np.array([y, z]) - middle)
+        motion = vs.Motion(displacement=(0, -float(way[1]), float(way[0])))
+        place = vs.Region(x=(length, length), y=(y, y), z=(z, z))
+        return vs.Clamp(region=place, axes="yz", motion=motion)
+
+    lines = [number * size for number in range(across + 1)]
+    design = vs.Design(
+        name="bar",
+        voxel_size=size,
+        parts=[vs.Part(shape=vs.Box(size=(length, 2 * middle, 2 * middle)), material=rubber())],
+        clamps=[
+            held("x", x=(0, 0), y=(0, 0), z=(0, 0)),
+            held("yz", x=(0, 0)),
+            *(turned(y, z) for y in lines for z in lines),
+        ],
+    )
+    result = solved(design)
+    far = result.mesh.vertices[:, 0] > length - size / 2
+    arms = result.positions[far] - np.array([0, middle, middle])
+    torque = float(np.cross(arms, result.reactions[far])[:, 0].sum())
+    expected = rubber().shear * SQUARE * (2 * middle) ** 4 * twist / size
+    return torque / expected - 1
+
+
 def stable_to(stretches: tuple[float, ...]) -> float:
     """The last stretch at which a block of 4 × 4 × 4 voxels with sliding ends is stable."""
     side, last = 20 * mm, 1.0
@@ -118,7 +152,10 @@ def main() -> None:
     report.add("strip, ν = 0.4999, 2 across", 100 * error, "%", 1 + error)
     error = plate()
     report.add("plate, 1 across", 100 * error, "%", 1 + error)
-    down = tuple(np.arange(0.95, 0.44, -0.05).tolist())
+    for across in (1, 2, 3, 4, 8):
+        error = torsion(across)
+        report.add(f"torsion, {across} across", 100 * error, "%", 1 + error)
+    down = tuple(np.arange(0.96, 0.43, -0.02).tolist())
     report.add("squeezed, stable to", stable_to(down), "")
     report.add("drawn, stable to", stable_to(tuple(np.arange(1.25, 4.01, 0.25).tolist())), "")
     report.show()

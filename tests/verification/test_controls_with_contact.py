@@ -17,6 +17,8 @@ from voxsoft.units import kPa, mm
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49)
 CLEARANCE = 1e-4  # voxels
 PRESSURE = 15 * kPa
+#: Where the limit of the balloon, 9.2 kPa, is far enough below: steps of its path go by the load.
+PAST = 13 * kPa
 #: What a clearance makes of the forces: contact gives way by a tenth of a voxel or more under them.
 STIFF = 10 * CLEARANCE
 
@@ -75,7 +77,7 @@ def fork(pressure, bodies=False, friction=0.0, **settings):
 
 
 CASES = {
-    "a wall": (2.0, lambda pressure, friction, **how: balloon(1 * mm, friction, pressure, **how)),
+    "a wall": (1.8, lambda pressure, friction, **how: balloon(1 * mm, friction, pressure, **how)),
     "itself": (3.0, lambda pressure, friction, **how: fork(pressure, False, friction, **how)),
     "another body": (3.0, lambda pressure, friction, **how: fork(pressure, True, friction, **how)),
 }
@@ -110,7 +112,7 @@ def test_a_volume_has_the_pressure_under_which_load_control_finds_it(case, frict
 
 @pytest.fixture(scope="module")
 def past_the_limit():
-    return simulate(balloon(7 * mm, 0.0, control="arc-length", steps=9))
+    return simulate(balloon(7 * mm, 0.0, PAST, control="arc-length", steps=6))
 
 
 def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_limit):
@@ -123,7 +125,7 @@ def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_li
     (cavity,) = by_arc.mesh.cavities
     growth = by_arc.metric("cavity_volume_change") / cavity.volume
     ratio = {"control": "volume", "volume_ratio": 1.0 + growth}
-    by_volume = simulate(balloon(7 * mm, 0.0, **ratio))
+    by_volume = simulate(balloon(7 * mm, 0.0, PAST, **ratio))
     assert by_volume.status == "ok", by_volume.message
     assert by_volume.load_factor == pytest.approx(by_arc.load_factor, rel=1e-5)
     # As near as the clearance, and what a soft state makes of it.
@@ -134,7 +136,7 @@ def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_li
     assert by_volume.limit_factor == pytest.approx(by_arc.limit_factor, rel=1e-3)
     assert by_volume.load_factor < by_volume.limit_factor < 1.0
     # At its pressure load control finds the state before the limit, where the wall is hardly met.
-    by_load = simulate(balloon(7 * mm, 0.0, PRESSURE * by_volume.load_factor))
+    by_load = simulate(balloon(7 * mm, 0.0, PAST * by_volume.load_factor))
     assert by_load.status == "ok"
     assert by_load.stable is True
     assert by_load.metric("cavity_volume_change") < 0.5 * growth * cavity.volume

@@ -21,7 +21,8 @@ use crate::matrix::Mat3;
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::vector::{Vec3, cross, dot, norm, sub};
 use crate::{
-    Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError, cube,
+    Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError,
+    Warping, cube, free_faces,
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
@@ -172,6 +173,7 @@ impl Body {
                         side,
                         fraction,
                         filling: filling_of(mesh, block),
+                        warping: Warping::NONE,
                     };
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
@@ -210,7 +212,7 @@ impl Body {
                 strain_forces[vertex as usize] += young(brick) * brick.volume() / brick.side;
             }
         }
-        Ok(Self {
+        let mut body = Self {
             unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
             unit_strain_energy: (edge_energy + brick_energy) / 2.0,
             size: size_of(mesh),
@@ -229,7 +231,19 @@ impl Body {
             chunk_edges,
             chunk_tets,
             colors: order.colors,
-        })
+        };
+        body.warp_unless(&vec![[false; 3]; mesh.vertices.len()]);
+        Ok(body)
+    }
+
+    /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex.
+    pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]]) {
+        let Bricks { bricks, materials } = &self.bricks;
+        let membranes = &self.membranes.0;
+        let each = free_faces::warpings(bricks, materials, &self.voxels, membranes, held);
+        for (brick, warping) in self.bricks.bricks.iter_mut().zip(each) {
+            brick.warping = warping;
+        }
     }
 
     /// Positions at rest in m.

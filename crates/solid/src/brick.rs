@@ -35,6 +35,9 @@
 //! the deviation from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates
 //! the energy to second order.
 //!
+//! Where faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
+//! [`crate::warping`].
+//!
 //! It depends on `RᵀF₀` and `Rᵀp` only, so rigid motion costs nothing. Gradient and Hessian include the
 //! derivatives of `R`, see [`Brick::stiffness`].
 
@@ -47,6 +50,7 @@ use crate::matrix::{
     solve_spd, transpose,
 };
 use crate::vector::{Vec3, add, axpy, scale, sub};
+pub use crate::warping::{Faces, Warping};
 
 /// Corner `c` of a cube lies at `(c >> 2 & 1, c >> 1 & 1, c & 1)`.
 const CORNERS: usize = 8;
@@ -75,6 +79,8 @@ pub struct Brick {
     pub fraction: f64,
     /// Where in the cube the material is.
     pub filling: Filling,
+    /// How its free faces warp.
+    pub warping: Warping,
 }
 
 /// Which tangent.
@@ -190,9 +196,13 @@ impl Brick {
         modes
     }
 
+    fn rotated(&self, positions: &[Vec3]) -> Rotated {
+        Rotated::of(&self.modes(positions), self.filling, self.warping)
+    }
+
     /// The elastic energy in J.
     pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
-        self.volume() * Rotated::of(&self.modes(positions), self.filling).energy(material)
+        self.volume() * self.rotated(positions).energy(material)
     }
 
     /// The mean deformation gradient over the material.
@@ -218,7 +228,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> f64 {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         state
             .points(material.thinning())
             .iter()
@@ -231,7 +241,7 @@ impl Brick {
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
         let mut modes = self.modes(positions);
         modes[3..].fill([0.0; 3]);
-        let state = Rotated::of(&modes, Filling::FULL);
+        let state = Rotated::of(&modes, Filling::FULL, self.warping);
         let stress = to_matrix(&state.gradient(material).stress);
         let stretch = to_matrix(&state.stretch);
         let couple = multiply(&stress, &stretch);
@@ -251,7 +261,7 @@ impl Brick {
     /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`; in a cut voxel the `pₘ` have a part in `F₀`
     /// as well.
     pub fn forces(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let stress = state.gradient(material);
         self.spread_stress(&state, &stress, material)
     }
@@ -263,7 +273,7 @@ impl Brick {
         positions: &[Vec3],
         within: &Within,
     ) -> BrickResponse {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let parts = state.response(material, within.pressure);
         let work = within.stress.along(&state.stretch, &state.hourglass);
         BrickResponse {
@@ -281,7 +291,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> BrickStress {
-        Rotated::of(&self.modes(positions), self.filling).deviatoric(material)
+        self.rotated(positions).deviatoric(material)
     }
 
     /// Adds forces on the corners to those on all vertices.
@@ -300,7 +310,7 @@ impl Brick {
         positions: &[Vec3],
         viscous: impl FnOnce(&BrickStress) -> BrickStress,
     ) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let deviatoric = state.deviatoric(material);
         let stress = state
             .gradient(material)
@@ -316,7 +326,7 @@ impl Brick {
         carried: &Carried,
         positions: &[Vec3],
     ) -> [Vec3; CORNERS] {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let other = state.with_strain(&carried.strain);
         let (now, then) = (state.strain().row(), carried.strain.row());
         let change = times(
@@ -392,7 +402,7 @@ impl Brick {
         within: &Within,
         tangent: Tangent,
     ) -> BrickMatrix {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
@@ -479,7 +489,7 @@ impl Brick {
         positions: &[Vec3],
         moves: &[Vec3],
     ) -> Carried {
-        let state = Rotated::of(&self.modes(positions), self.filling);
+        let state = self.rotated(positions);
         let strain = self.predict_strain(&state, moves);
         let from = before.map_or_else(|| state.strain(), |carried| carried.strain);
         let volume = |strain: &BrickStrain| state.with_strain(strain).volume_slope(material);

@@ -10,14 +10,15 @@ use crate::hyperelastic::symmetric::{
 use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
 use crate::matrix::{Mat3, apply_transposed, polar};
 use crate::vector::{Vec3, axpy};
+use crate::warping::Warping;
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
 /// The three axes `n` with the other two.
-const AXES: [(usize, usize, usize); 3] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
+pub(crate) const AXES: [(usize, usize, usize); 3] = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
 
 /// The axes of an off-diagonal place of a [`Sym`] are the two that differ from it.
-const OFF: usize = 3;
+pub(crate) const OFF: usize = 3;
 
 /// The columns of the mean gradient and the four hourglass vectors.
 pub(crate) type Modes = [Vec3; 7];
@@ -76,6 +77,7 @@ impl Filling {
 /// Where the energy of one voxel comes from, at one state.
 pub(crate) struct Rotated {
     pub filling: Filling,
+    pub warping: Warping,
     pub rotation: Mat3,
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
@@ -193,6 +195,7 @@ impl Rotated {
     pub fn with_strain(&self, strain: &BrickStrain) -> Self {
         Self {
             filling: self.filling,
+            warping: self.warping,
             rotation: self.rotation,
             stretch: strain.stretch,
             hourglass: strain.hourglass,
@@ -200,11 +203,12 @@ impl Rotated {
         }
     }
 
-    pub fn of(modes: &Modes, filling: Filling) -> Self {
+    pub fn of(modes: &Modes, filling: Filling, warping: Warping) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);
         Self {
             filling,
+            warping,
             stretch: to_sym(&stretch),
             hourglass: std::array::from_fn(|m| apply_transposed(&rotation, modes[3 + m])),
             bilinear: modes[6],
@@ -259,7 +263,12 @@ impl Rotated {
     }
 
     /// The mean over the six points of a function of the stretch there.
-    fn mean(&self, thinning: f64, second: bool, function: impl Fn(&Sym) -> Response) -> Shaped {
+    pub(crate) fn mean(
+        &self,
+        thinning: f64,
+        second: bool,
+        function: impl Fn(&Sym) -> Response,
+    ) -> Shaped {
         let mut mean = Shaped::zero();
         for axes in AXES {
             let variation = self.variation(axes, thinning);
@@ -309,7 +318,7 @@ impl Rotated {
         let mut value = 0.5 * material.bulk() * change * change
             + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>()
             + self
-                .mean(thinning, false, |at| stress_only(material, at))
+                .warped_mean(thinning, false, |at| stress_only(material, at))
                 .value;
         for fiber in material.fibers() {
             value += fiber::energy(fiber, &self.stretch);
@@ -326,7 +335,7 @@ impl Rotated {
     pub fn response(&self, material: &HyperelasticMaterial, pressure: Pressure) -> Parted {
         let thinning = material.thinning();
         let bulk = material.bulk();
-        let mean = self.mean(thinning, false, |at| stress_only(material, at));
+        let mean = self.warped_mean(thinning, false, |at| stress_only(material, at));
         let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
         for fiber in material.fibers() {
@@ -364,7 +373,7 @@ impl Rotated {
     /// The part of the gradient that does not come from the mean change of volume.
     pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
         let thinning = material.thinning();
-        let mean = self.mean(thinning, false, |at| stress_only(material, at));
+        let mean = self.warped_mean(thinning, false, |at| stress_only(material, at));
         let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
         for fiber in material.fibers() {
             fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
@@ -394,7 +403,7 @@ impl Rotated {
         let bulk = material.bulk();
         let volume = self.volume(thinning, true);
         let mut hessian = self
-            .mean(thinning, true, |at| isochoric(material.model(), at))
+            .warped_mean(thinning, true, |at| isochoric(material.model(), at))
             .hessian;
         for (k, row) in hessian.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {
@@ -439,10 +448,10 @@ fn dot6(a: &Sym, b: &Sym) -> f64 {
 }
 
 /// A function of all generalized coordinates.
-struct Shaped {
-    value: f64,
-    gradient: [f64; SHAPE],
-    hessian: [[f64; SHAPE]; SHAPE],
+pub(crate) struct Shaped {
+    pub value: f64,
+    pub gradient: [f64; SHAPE],
+    pub hessian: [[f64; SHAPE]; SHAPE],
 }
 
 impl Shaped {

@@ -9,7 +9,7 @@ const LEAST_STRETCH: f64 = 0.2;
 
 /// A positive stand-in for a stretch along an axis, with derivatives: `x` itself, and a parabola that
 /// joins it below [`LEAST_STRETCH`].
-fn positive(x: f64) -> [f64; 3] {
+pub(crate) fn positive(x: f64) -> [f64; 3] {
     if x >= LEAST_STRETCH {
         [x, 1.0, 0.0]
     } else {

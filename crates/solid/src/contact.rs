@@ -25,6 +25,9 @@ pub trait Contact: Term {
     /// default that is asked for, at most 1.
     fn correct(&self, positions: &[Vec3], negligible: f64, precision: f64) -> bool;
 
+    /// Hands over the vertices by which surfaces are bonded: faces between them do not warp freely.
+    fn visit_bonded(&self, _visit: &mut dyn FnMut(u32)) {}
+
     /// A length by which things are near each other, in m: the size of a voxel.
     fn length(&self) -> f64;
 

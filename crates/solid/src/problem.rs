@@ -21,7 +21,7 @@ pub struct Problem {
 impl Problem {
     /// Joins the parts after checking every index and number.
     pub fn new(
-        body: Body,
+        mut body: Body,
         clamps: Vec<Clamp>,
         loads: Vec<Load>,
         floor: Option<Floor>,
@@ -39,6 +39,7 @@ impl Problem {
         for load in &loads {
             load.kind.check(count)?;
         }
+        body.warp_unless(&held);
         let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
             body,
@@ -55,10 +56,12 @@ impl Problem {
     /// The same with surfaces that touch. They act on the body as what is attached to it does.
     pub fn with_contact(self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
         let term = Arc::clone(&contact) as Arc<dyn Term>;
-        Ok(Self {
-            contact: Some(contact),
-            ..self.with_term(term)?
-        })
+        let mut problem = self.with_term(term)?;
+        let mut joined = problem.held.clone();
+        contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
+        problem.body.warp_unless(&joined);
+        problem.contact = Some(contact);
+        Ok(problem)
     }
 
     /// The same with another term on its body.

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use voxsoft_solid::matrix::{apply, polar};
 use voxsoft_solid::vector::{Vec3, add};
-use voxsoft_solid::{Brick, Fiber, Filling, HyperelasticMaterial, Model};
+use voxsoft_solid::{Brick, Faces, Fiber, Filling, HyperelasticMaterial, Model, Warping};
 
 const SIDE: f64 = 0.5;
 
@@ -15,6 +15,7 @@ fn cube() -> (Brick, Vec<Vec3>) {
         side: SIDE,
         fraction: 0.7,
         filling: Filling::FULL,
+        warping: Warping::NONE,
     };
     (brick, (0..8).map(corner).collect())
 }
@@ -26,6 +27,11 @@ fn cut() -> Filling {
         spread: [0.6, 0.3, 1.2],
         products: [-0.7, 0.5, -0.2],
     }
+}
+
+/// Any faces free, and any of them held.
+fn warping() -> impl Strategy<Value = Warping> {
+    any::<[[[bool; 2]; 3]; 2]>().prop_map(|[free, stiff]| Warping::of(&Faces { free, stiff }))
 }
 
 fn materials() -> Vec<HyperelasticMaterial> {
@@ -62,9 +68,9 @@ fn forces(brick: &Brick, material: &HyperelasticMaterial, positions: &[Vec3]) ->
 proptest! {
     // Central differences with h = 1e-6 (a strain of 2e-6) err by about h² × 1e3 + 1e-16/h.
     #[test]
-    fn forces_and_stiffness_are_derivatives(is_cut in any::<bool>(), positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
+    fn forces_and_stiffness_are_derivatives(is_cut in any::<bool>(), warping in warping(), positions in moved(), direction in prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 8)) {
         let filling = if is_cut { cut() } else { Filling::FULL };
-        let brick = Brick { filling, ..cube().0 };
+        let brick = Brick { filling, warping, ..cube().0 };
         let step = 1e-6;
         let at = |t: f64| -> Vec<Vec3> {
             positions.iter().zip(&direction).map(|(x, d)| std::array::from_fn(|i| x[i] + t * d[i])).collect()
@@ -111,9 +117,9 @@ proptest! {
     }
 
     #[test]
-    fn rigid_motion_costs_nothing(is_cut in any::<bool>(), turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
+    fn rigid_motion_costs_nothing(is_cut in any::<bool>(), warping in warping(), turn in prop::array::uniform3(prop::array::uniform3(-1.0..1.0f64)), shift in prop::array::uniform3(-9.0..9.0f64)) {
         let (full, rest) = cube();
-        let brick = Brick { filling: if is_cut { cut() } else { full.filling }, ..full };
+        let brick = Brick { filling: if is_cut { cut() } else { full.filling }, warping: if is_cut { full.warping } else { warping }, ..full };
         let (rotation, _) = polar(&turn);
         let turned: Vec<Vec3> = rest.iter().map(|x| add(apply(&rotation, *x), shift)).collect();
         for material in materials() {
@@ -124,8 +130,8 @@ proptest! {
     }
 
     #[test]
-    fn pushes_back_when_inside_out(positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
-        let (brick, _) = cube();
+    fn pushes_back_when_inside_out(warping in warping(), positions in prop::collection::vec(prop::array::uniform3(-0.5..1.0f64), 8)) {
+        let brick = Brick { warping, ..cube().0 };
         for material in materials() {
             prop_assert!(brick.energy(&material, &positions).is_finite());
             prop_assert!(forces(&brick, &material, &positions).iter().flatten().all(|f| f.is_finite()));
@@ -137,7 +143,14 @@ proptest! {
 #[test]
 fn six_motions_cost_nothing_and_no_more() {
     let (brick, rest) = cube();
-    for material in materials() {
+    let all_free = Faces {
+        free: [[true; 2]; 3],
+        ..Faces::default()
+    };
+    let each = [Warping::NONE, Warping::of(&all_free)]
+        .map(|w| materials().into_iter().map(move |m| (m, w)));
+    for (material, warping) in each.into_iter().flatten() {
+        let brick = Brick { warping, ..brick };
         let values = eigenvalues(&brick.stiffness(&material, &rest, None));
         assert!(values[5].abs() < 1e-13, "{values:?}");
         // The softest true mode: 1/20 of E h would be a near mechanism.

@@ -14,7 +14,9 @@ use voxsoft_solid::balance::balance;
 use voxsoft_solid::conformance::check_term;
 use voxsoft_solid::matrix::IDENTITY;
 use voxsoft_solid::vector::{Vec3, norm, scale, sub};
-use voxsoft_solid::{Body, Clamp, Contact, Load, Mesh, Problem, Progress, Springs, Status};
+use voxsoft_solid::{
+    Body, Brick, Clamp, Contact, Load, Mesh, Problem, Progress, Springs, Status, Warping,
+};
 use voxsoft_statics::{Answer, Settings, solve};
 
 const GRAVITY: f64 = 9.81;
@@ -95,6 +97,27 @@ fn two_blocks(gap: f64) -> (Mesh, Vec<[u32; 8]>, Vec<[u32; 8]>) {
     let body = Body::new(&mesh, &[rubber()]).unwrap();
     let (low, high) = body.voxels().iter().partition(|v| v[0] < upper);
     (mesh, low, high)
+}
+
+#[test]
+fn bonded_faces_do_not_warp() {
+    let (mesh, low, high) = two_blocks(0.0);
+    let surfaces = vec![Surface::of_voxels(&low, 2), Surface::of_voxels(&high, 2)];
+    let first = side(1, &surfaces[1], Solid::Voxels(&high));
+    let second = side(0, &surfaces[0], Solid::Voxels(&low));
+    let bond = Bond::new(first, second, 2e-3, f64::INFINITY, &mesh.vertices).unwrap();
+    let (problem, _) = bonded(&mesh, vec![], vec![], (surfaces, bond), NONE);
+    let apart = Body::new(&mesh, &[rubber()]).unwrap();
+    // Voxels in the middle of the bonded faces have no other face without a neighbor.
+    for corner in [[4e-3; 3], [3e-3, 3e-3, 8e-3]] {
+        let middle = |body: &Body| {
+            let lowest = |brick: &&Brick| body.rest()[brick.vertices[0] as usize];
+            let is_there = |brick: &&Brick| norm(sub(lowest(brick), corner)) < 1e-6;
+            *body.bricks().iter().find(is_there).unwrap()
+        };
+        assert_eq!(middle(problem.body()).warping, Warping::NONE);
+        assert_ne!(middle(&apart).warping, Warping::NONE);
+    }
 }
 
 #[test]

@@ -10,8 +10,7 @@ from voxsoft.design import Design
 from voxsoft.fields import Fields
 from voxsoft.materials import Rigid
 from voxsoft.mesh import Mesh
-from voxsoft.simulation.materials import core_materials, solid_materials
-from voxsoft.simulation.setup import core_problem
+from voxsoft.simulation.setup import Setup
 
 
 def fields_of(
@@ -41,7 +40,9 @@ def fields_of(
     True
     """
     if problem is None:
-        materials = core_materials(design, solid_materials(design))
-        problem = core_problem(mesh, materials, _core.ProblemParts())
+        # Clamps, layers and bonds decide which faces warp freely, and so what their stress is.
+        setup = Setup(design, mesh)
+        bonds = setup.touching is not None and setup.touching.bonds
+        problem = setup.problem if bonds else setup.problem_alone
     rigid = [isinstance(design.material_of(part), Rigid) for part in design.parts]
     return Fields.of(_core.Fields(problem), mesh, positions, rigid)

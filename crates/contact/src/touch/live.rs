@@ -215,6 +215,10 @@ impl LiveTouch {
 }
 
 impl Contact for LiveTouch {
+    fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
+        self.touch.visit_bonded(visit);
+    }
+
     fn start(&self, positions: &[Vec3]) {
         self.set_penalty(PENALTY);
         self.touch.start(positions);

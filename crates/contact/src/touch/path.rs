@@ -23,6 +23,14 @@ const MANY: usize = 100;
 const LONGEST_EXTRAPOLATION: f64 = 2.0;
 
 impl Contact for Touch {
+    fn visit_bonded(&self, visit: &mut dyn FnMut(u32)) {
+        for (_, tie) in self.ties() {
+            for side in [&tie.first, &tie.second] {
+                side.vertices.iter().for_each(|&vertex| visit(vertex));
+            }
+        }
+    }
+
     fn start(&self, positions: &[Vec3]) {
         let points = self.points_at(positions);
         let nothing = vec![Memory::default(); self.samples.len()];

@@ -1,0 +1,129 @@
+//! Which faces of hyperelastic voxels are free to warp ([`crate::warping`]).
+//!
+//! Free is a face that no other voxel has, no membrane lies on, and no clamp holds on any axis (held along its normal, it is a
+//! plane of symmetry with material behind). As warping moves the faces across its way too, those must not be held in full,
+//! and what is behind must be of the same material. Voxels that are cut have their surface elsewhere, and fibers
+//! keep a face from warping as the rubber around them would: both stay as they are.
+
+use std::collections::HashSet;
+
+use crate::hyperelastic::HyperelasticMaterial;
+use crate::warping::{Faces, Warping};
+use crate::{Brick, Filling, Membrane};
+
+/// How far the fraction and the places of the material may be from those of a full voxel: a voxel at the edge of a box
+/// whose faces are on the lattice loses 1/3072 where its fill is measured.
+const FULL_SLACK: f64 = 4e-4;
+
+/// What is behind a face.
+#[derive(Clone, Copy, PartialEq)]
+enum Behind {
+    Nothing,
+    Same,
+    Other,
+}
+
+/// How the faces of each voxel warp. `voxels` are all cubes of the body, `held` the axes that clamps hold of each vertex.
+pub(crate) fn warpings(
+    bricks: &[Brick],
+    materials: &[HyperelasticMaterial],
+    voxels: &[[u32; 8]],
+    membranes: &[Membrane],
+    held: &[[bool; 3]],
+) -> Vec<Warping> {
+    let behind = neighbors(bricks, voxels, held.len());
+    let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
+    let each = |(brick, behind): (&Brick, &[[Behind; 2]; 3])| {
+        let fibers = !materials[brick.material as usize].fibers().is_empty();
+        if fibers || !is_full(brick) {
+            return Warping::NONE;
+        }
+        let mut faces = Faces::default();
+        for axis in 0..3 {
+            for side in 0..2 {
+                let corners = face(brick.vertices, axis, side);
+                let axes = corners.map(|v| held[v as usize]);
+                let all = |axis: usize| axes.iter().all(|held| held[axis]);
+                let held = [0, 1, 2].map(all);
+                let what = behind[axis][side];
+                faces.free[axis][side] = what == Behind::Nothing
+                    && !held.contains(&true)
+                    && !is_covered(corners, &layers);
+                faces.stiff[axis][side] = what == Behind::Other || !held.contains(&false);
+            }
+        }
+        Warping::of(&faces)
+    };
+    bricks.iter().zip(&behind).map(each).collect()
+}
+
+/// What is behind each face. A cube is found by its lowest corner, which no other has.
+fn neighbors(bricks: &[Brick], voxels: &[[u32; 8]], vertices: usize) -> Vec<[[Behind; 2]; 3]> {
+    const NONE: u32 = u32::MAX;
+    let mut cube_at = vec![NONE; vertices];
+    for (index, voxel) in voxels.iter().enumerate() {
+        cube_at[voxel[0] as usize] = index as u32;
+    }
+    let mut brick_of = vec![NONE; voxels.len()];
+    for (index, brick) in bricks.iter().enumerate() {
+        brick_of[cube_at[brick.vertices[0] as usize] as usize] = index as u32;
+    }
+    let mut behind = vec![[[Behind::Nothing; 2]; 3]; bricks.len()];
+    for (cube, voxel) in voxels.iter().enumerate() {
+        for axis in 0..3 {
+            let next = cube_at[voxel[corner_beyond(axis)] as usize];
+            if next == NONE || face(*voxel, axis, 1) != face(voxels[next as usize], axis, 0) {
+                continue;
+            }
+            let [low, high] = [brick_of[cube], brick_of[next as usize]];
+            let same = low != NONE
+                && high != NONE
+                && bricks[low as usize].material == bricks[high as usize].material;
+            let what = if same { Behind::Same } else { Behind::Other };
+            for (brick, side) in [(low, 1), (high, 0)] {
+                if brick != NONE {
+                    behind[brick as usize][axis][side] = what;
+                }
+            }
+        }
+    }
+    behind
+}
+
+/// The corner next to the lowest along an axis.
+fn corner_beyond(axis: usize) -> usize {
+    4 >> axis
+}
+
+/// The corners of a face, in the order of the cube's.
+fn face(vertices: [u32; 8], axis: usize, side: usize) -> [u32; 4] {
+    let (b, c) = (corner_beyond((axis + 1) % 3), corner_beyond((axis + 2) % 3));
+    let first = side * corner_beyond(axis);
+    [first, first + b, first + c, first + b + c].map(|corner| vertices[corner])
+}
+
+fn is_full(brick: &Brick) -> bool {
+    let near = |value: f64, full: f64| (value - full).abs() < FULL_SLACK;
+    let Filling {
+        shift,
+        spread,
+        products,
+    } = brick.filling;
+    near(brick.fraction, 1.0)
+        && [shift, products]
+            .as_flattened()
+            .iter()
+            .all(|&value| near(value, 0.0))
+        && spread.iter().all(|&value| near(value, 1.0))
+}
+
+fn is_covered(corners: [u32; 4], layers: &HashSet<[u32; 3]>) -> bool {
+    let [a, b, c, d] = corners;
+    let triangles = [[a, b, c], [a, b, d], [a, c, d], [b, c, d]];
+    !layers.is_empty() && triangles.iter().any(|t| layers.contains(&sorted(*t)))
+}
+
+fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
+    triangle.sort_unstable();
+    triangle
+}
