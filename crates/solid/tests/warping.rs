@@ -258,6 +258,7 @@ fn cut_voxels_and_fibers_do_not_warp() {
     let cut = Filling {
         shift: [0.0, 0.0, -0.2],
         spread: [1.0, 1.0, 0.8],
+        ..Filling::FULL
     };
     let mesh = bar();
     for (fraction, filling, warps) in [
