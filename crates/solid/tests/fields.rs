@@ -6,7 +6,8 @@ use voxsoft_solid::fields::{Field, Fields};
 use voxsoft_solid::matrix::{Mat3, apply, multiply};
 use voxsoft_solid::vector::{Vec3, rotate};
 use voxsoft_solid::{
-    Body, Filling, HyperelasticMaterial, LatticeMaterial, Material, Mesh, Model, State,
+    Body, Clamp, Filling, HyperelasticMaterial, LatticeMaterial, Material, Mesh, Model, Problem,
+    State,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -44,13 +45,17 @@ fn lattice() -> Body {
     )
 }
 
+/// Held all over: an even shear needs tractions that free faces do not have.
 fn rubber() -> Body {
     let model = Model::NeoHookean { c10: C10 };
-    body(
+    let body = body(
         HyperelasticMaterial::new(model, BULK, 1000.0)
             .unwrap()
             .into(),
-    )
+    );
+    let held = Clamp::fixed((0..body.rest().len() as u32).collect());
+    let problem = Problem::new(body, vec![held], vec![], None).unwrap();
+    problem.body().clone()
 }
 
 /// All values of a field where every vertex is moved by `F`, turned and carried off.
