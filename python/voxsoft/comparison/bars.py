@@ -256,7 +256,7 @@ def _refusal(result: Result) -> tuple[str, str] | None:
     if design.solver.error == "off":
         return 'the solver\'s error is "off"', 'write error = "auto"'
     if result.status != "ok":
-        return "the run did not come to rest", "mend that first"
+        return "the run did not come to rest", "solve that first"
     if not kind_of(design, design.solver).to_rest:
         return "motion over time has none", "compare runs on several voxel sizes"
     if result.mesh.bodies:

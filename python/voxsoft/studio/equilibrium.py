@@ -67,10 +67,10 @@ def equilibrium_of(
 ) -> events.Equilibrium:
     """Say all numbers of a result, with their error bars once they are known."""
     if bars is not None:
-        said = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
+        source = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
     else:
         off = result.design.solver.error == "off"
-        said = "" if off else "Error bars: being looked for on other voxels."
+        source = "" if off else "Error bars: being looked for on other voxels."
     bars = bars or ErrorBars.none("", "")
     summary = result.summary()
     cavities = zip(summary["cavities"], range(len(summary["cavities"])), strict=True)
@@ -102,7 +102,7 @@ def equilibrium_of(
         ],
         largest_strain=result.metric("max_stretch") - 1.0,
         warnings=[finding_of(warning) for warning in result.warnings],
-        error_bars=said,
+        error_bars=source,
     )
 
 
