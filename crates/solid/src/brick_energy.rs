@@ -318,7 +318,7 @@ impl Rotated {
         let mut value = 0.5 * material.bulk() * change * change
             + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>()
             + self
-                .warped_mean(thinning, false, |at| stress_only(material, at))
+                .warped_mean(thinning, None, |at| stress_only(material, at))
                 .value;
         for fiber in material.fibers() {
             value += fiber::energy(fiber, &self.stretch);
@@ -335,7 +335,7 @@ impl Rotated {
     pub fn response(&self, material: &HyperelasticMaterial, pressure: Pressure) -> Parted {
         let thinning = material.thinning();
         let bulk = material.bulk();
-        let mean = self.warped_mean(thinning, false, |at| stress_only(material, at));
+        let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
         let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
         for fiber in material.fibers() {
@@ -373,7 +373,7 @@ impl Rotated {
     /// The part of the gradient that does not come from the mean change of volume.
     pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
         let thinning = material.thinning();
-        let mean = self.warped_mean(thinning, false, |at| stress_only(material, at));
+        let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
         let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
         for fiber in material.fibers() {
             fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
@@ -403,7 +403,9 @@ impl Rotated {
         let bulk = material.bulk();
         let volume = self.volume(thinning, true);
         let mut hessian = self
-            .warped_mean(thinning, true, |at| isochoric(material.model(), at))
+            .warped_mean(thinning, Some(curvature), |at| {
+                isochoric(material.model(), at)
+            })
             .hessian;
         for (k, row) in hessian.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {

@@ -26,9 +26,10 @@
 //! In the mean such a motion is a simple shear along the face, `F (1 + a eₜ ⊗ eₙ)`, which keeps the volume and thins the
 //! voxel across the face. So the isochoric energy is that of a stretch with less shear and less thickness,
 //!
-//! `S̃ⱼₖ = √(1 − c) Sⱼₖ` ,   `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼₖ²/Sₖₖ` ,
+//! `S̃ⱼₖ = √(1 − c) Sⱼₖ` ,   `S̃ⱼⱼ = Sⱼⱼ − Σₖ cⱼ Sⱼⱼ Sⱼₖ²/(Sⱼⱼ Sₖₖ + Sⱼₖ²)` ,
 //!
-//! and the volume stays that of `S`. It has no unknowns, is bounded below as the material is, and to second order in a
+//! and the volume stays that of `S`. `S̃ⱼⱼ` keeps a part of `Sⱼⱼ` under any shear: with `Sⱼₖ²/Sₖₖ` alone, which is the same to
+//! second order, a voxel that an impact shears far has negative stretches and gains energy. It has no unknowns, is bounded below as the material is, and to second order in a
 //! shear takes the part `c` of `(τₖ − τⱼ)/(λₖ (λₖ − λⱼ))` per `Sⱼₖ²`, `τ` the Kirchhoff stresses: positive by the
 //! inequality of Baker and Ericksen, and the stiffness that is there where the face `j` is free, so that `1 − c` of it is
 //! left at any stretch. A pressure on the face shifts both `τ` alike and drops out. Without the thinning a bar drawn to
@@ -40,6 +41,8 @@
 use crate::brick_energy::{AXES, BrickStrain, OFF, Rotated, SHAPE, Shaped};
 use crate::brick_thickness::positive;
 use crate::hyperelastic::symmetric::{Response, Sym};
+
+const SQRT_2: f64 = std::f64::consts::SQRT_2;
 
 /// `c` of a plate: what Reissner's factor 5/6 leaves out.
 const PLATE: f64 = 1.0 / 6.0;
@@ -90,9 +93,8 @@ impl Warping {
         let mut relieved = *stretch;
         for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
             relieved[OFF + b] *= (1.0 - pair[0] - pair[1]).sqrt();
-            let square = stretch[OFF + b].powi(2) / 2.0;
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
-                relieved[n] -= part * square / positive(stretch[t])[0];
+                relieved[n] -= part * Thinning::of(stretch, OFF + b, n, t).value;
             }
         }
         relieved
@@ -106,11 +108,11 @@ impl Warping {
         }
         for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
             slopes[OFF + b][OFF + b] = (1.0 - pair[0] - pair[1]).sqrt();
-            let shear = stretch[OFF + b];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
-                let [along, slope, _] = positive(stretch[t]);
-                slopes[n][OFF + b] -= part * shear / along;
-                slopes[n][t] += part * shear * shear * slope / (2.0 * along * along);
+                let thinning = Thinning::of(stretch, OFF + b, n, t);
+                for (place, slope) in [OFF + b, n, t].into_iter().zip(thinning.gradient()) {
+                    slopes[n][place] -= part * slope;
+                }
             }
         }
         slopes
@@ -119,18 +121,73 @@ impl Warping {
     /// Adds the second derivatives of that stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
         for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
-            let shear = stretch[OFF + b];
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
-                let factor = -part * force[n];
-                let [along, slope, curvature] = positive(stretch[t]);
-                let by_t = -slope / (along * along);
-                let twice = (2.0 * slope * slope / along - curvature) / (along * along);
-                hessian[OFF + b][OFF + b] += factor / along;
-                hessian[OFF + b][t] += factor * shear * by_t;
-                hessian[t][OFF + b] += factor * shear * by_t;
-                hessian[t][t] += factor * shear * shear / 2.0 * twice;
+                let places = [OFF + b, n, t];
+                let curvature = Thinning::of(stretch, OFF + b, n, t).hessian();
+                for (row, values) in places.into_iter().zip(curvature) {
+                    for (column, value) in places.into_iter().zip(values) {
+                        hessian[row][column] -= part * force[n] * value;
+                    }
+                }
             }
         }
+    }
+}
+
+/// How much thinner a voxel gets across a free face that shears, `a s²/(a b + s²)` with the shear `s` and the stretches
+/// `a` across the face and `b` along it: `s²/b` for small shears, and less than `a` for any.
+struct Thinning {
+    value: f64,
+    shear: f64,
+    across: [f64; 3],
+    along: [f64; 3],
+    /// `a b + s²`.
+    size: f64,
+}
+
+impl Thinning {
+    /// From the places of the shear (Mandel) and of the stretches across and along.
+    fn of(stretch: &Sym, shear: usize, across: usize, along: usize) -> Self {
+        let shear = stretch[shear] / SQRT_2;
+        let (across, along) = (positive(stretch[across]), positive(stretch[along]));
+        let size = across[0] * along[0] + shear * shear;
+        Self {
+            value: across[0] * shear * shear / size,
+            shear,
+            across,
+            along,
+            size,
+        }
+    }
+
+    /// By the shear (Mandel) and the stretches across and along.
+    fn gradient(&self) -> [f64; 3] {
+        let (s, [a, to_a, _], [b, to_b, _]) = (self.shear, self.across, self.along);
+        let square = self.size * self.size;
+        [
+            SQRT_2 * a * a * b * s / square,
+            to_a * s.powi(4) / square,
+            -to_b * (a * s).powi(2) / square,
+        ]
+    }
+
+    /// The second derivatives by the same.
+    fn hessian(&self) -> [[f64; 3]; 3] {
+        let s = self.shear;
+        let ([a, to_a, turn_a], [b, to_b, turn_b]) = (self.across, self.along);
+        let (square, cube) = (self.size.powi(2), self.size.powi(3));
+        let by_s_s = a * a * b * (a * b - 3.0 * s * s) / cube;
+        let by_s_a = to_a * SQRT_2 * 2.0 * a * b * s.powi(3) / cube;
+        let by_s_b = -to_b * SQRT_2 * a * a * s * (a * b - s * s) / cube;
+        let by_a_a = turn_a * s.powi(4) / square - to_a * to_a * 2.0 * b * s.powi(4) / cube;
+        let by_a_b = -to_a * to_b * 2.0 * a * s.powi(4) / cube;
+        let by_b_b =
+            to_b * to_b * 2.0 * a.powi(3) * s * s / cube - turn_b * (a * s).powi(2) / square;
+        [
+            [by_s_s, by_s_a, by_s_b],
+            [by_s_a, by_a_a, by_a_b],
+            [by_s_b, by_a_b, by_b_b],
+        ]
     }
 }
 
@@ -142,26 +199,27 @@ fn condensed([j, k]: [u8; 2]) -> [f64; 2] {
 }
 
 impl Rotated {
-    /// [`Rotated::mean`] for the stretch that free faces leave.
+    /// [`Rotated::mean`] for the stretch that free faces leave, with derivatives where `second` says how often what the
+    /// stress adds to the second ones counts.
     pub(crate) fn warped_mean(
         &self,
         thinning: f64,
-        second: bool,
+        second: Option<f64>,
         function: impl Fn(&Sym) -> Response,
     ) -> Shaped {
         let warping = self.warping;
         if warping == Warping::NONE {
-            return self.mean(thinning, second, function);
+            return self.mean(thinning, second.is_some(), function);
         }
         let relieved = self.with_strain(&BrickStrain {
             stretch: warping.relieved(&self.stretch),
             hourglass: self.hourglass,
         });
-        let mut mean = relieved.mean(thinning, second, function);
+        let mut mean = relieved.mean(thinning, second.is_some(), function);
         let slopes = warping.slopes(&self.stretch);
         let force: Sym = std::array::from_fn(|k| mean.gradient[k]);
         mean.gradient[..6].copy_from_slice(&through(&slopes, &force));
-        if second {
+        if let Some(curvature) = second {
             for row in &mut mean.hessian {
                 let own: Sym = std::array::from_fn(|k| row[k]);
                 row[..6].copy_from_slice(&through(&slopes, &own));
@@ -174,6 +232,7 @@ impl Rotated {
                     mean.hessian[k][column] = values[k];
                 }
             }
+            let force = force.map(|f| curvature * f);
             warping.add_curvature(&self.stretch, &force, &mut mean.hessian);
         }
         mean
