@@ -62,7 +62,7 @@ def test_what_snaps_says_so():
 
 
 @pytest.mark.parametrize(
-    ("seed", "what"), [(5, "pass through each other"), (4, "is folded into itself")]
+    ("seed", "what"), [(5, "pass through each other"), (6, "is folded into itself")]
 )
 def test_what_passes_through_itself_says_so(seed, what):
     # Walls end in each other, or a crease is in itself, as both judges of `judged` find.

@@ -35,7 +35,7 @@ _OF_A_LATTICE: Final = 0.2
 #: Iterations of a load that hardly moves the body, those that large motions add, and those of one
 #: step of a path.
 _FEWEST: Final = 4.0
-_MORE: Final = 60.0
+_MORE: Final = 40.0
 _OF_A_STEP: Final = 6.0
 #: The same of a step over time with contact: a capsule that is held takes 3, fingers that close 15.
 _OF_A_STEP_IN_CONTACT: Final = 7.0
