@@ -128,7 +128,8 @@ def test_past_the_limit_against_a_wall_arc_and_volume_find_one_state(past_the_li
     by_volume = simulate(balloon(7 * mm, 0.0, PAST, **ratio))
     assert by_volume.status == "ok", by_volume.message
     assert by_volume.load_factor == pytest.approx(by_arc.load_factor, rel=1e-5)
-    # As near as the clearance, and what a soft state makes of it: past its limit the balloon moves by some of them.
+    # As near as the clearance, and what a soft state makes of it: past its limit the balloon
+    # moves by some of them.
     assert np.abs(by_volume.positions - by_arc.positions).max() < 10 * CLEARANCE * 5 * mm
     assert by_volume.contacts[0].force[2] == pytest.approx(contact.force[2], rel=1e-4)
     # Both pass the limit, which is the highest of the points on either path: below the true one by
@@ -157,7 +158,7 @@ def test_clamp_and_wall_carry_one_another(past_the_limit):
 
 def test_a_step_that_is_too_long_is_cut_and_forgotten():
     """All of the growth in one step is lost; cut ones lead to the state that short ones find."""
-    # At 12 times its volume one side of the balloon bulges, and which way it snaps depends on the way.
+    # At 12 times its volume one side bulges, and which way it snaps depends on the way there.
     how = {"control": "volume", "volume_ratio": 10.0}
     short = simulate(balloon(7 * mm, 0.0, **how, steps=30))
     long = simulate(balloon(7 * mm, 0.0, **how, steps=1))
