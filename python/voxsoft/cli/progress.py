@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 PLAIN_PERIOD: Final = 5.0
 
 #: What is counted on a bar that goes away when all is done.
-PASSING: Final = frozenset({"percent", "confirmations"})
+PASSING: Final = frozenset({"percent", "percent of a further run", "confirmations"})
 
 
 class ProgressBar:

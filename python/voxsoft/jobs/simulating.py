@@ -18,6 +18,8 @@ from voxsoft.jobs.spec import RunSpec
 from voxsoft.simulation import Result
 from voxsoft.units import format_percent, format_quantity
 
+#: What is counted while a further run for error bars is made.
+FURTHER: Final = "percent of a further run"
 #: Seconds between two words on how far a run is.
 _REPORT_EVERY: Final = 0.25
 
@@ -49,16 +51,17 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
 
 def _error_bars(result: Result, notify: Listener) -> ErrorBars:
     """The error bars of a run that is kept already; Ctrl-C leaves them out."""
-    stage = ""
+    nearness, stage = Nearness(result.design.solver), ""
 
     def announce(size: float, voxels: int, seconds: float) -> None:
-        nonlocal stage
+        nonlocal nearness, stage
         length = format_quantity(float(f"{size:.4g}"), "length")
+        nearness = Nearness(result.design.solver)
         stage = f"error bars: {voxels:,} voxels of {length}, about {seconds:.2g} s"
-        notify(Progress(99, 100, "percent", stage))
+        notify(Progress(0, 100, FURTHER, stage))
 
-    def report(_: int, __: float, ___: float) -> None:
-        notify(Progress(99, 100, "percent", stage))
+    def report(_: int, when: float, residual: float) -> None:
+        notify(Progress(min(99, int(100 * nearness.at(when, residual))), 100, FURTHER, stage))
 
     try:
         return error_bars(result, progress=report, announce=announce)
