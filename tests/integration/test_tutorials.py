@@ -32,6 +32,7 @@ LONG = {
     "compare.md",
     "dask.md",
     "design-and-study.md",
+    "error-bars.md",
     "export.md",
     "layers-and-fibers.md",
     "material-card.md",
@@ -40,7 +41,7 @@ LONG = {
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
 #: What a long command says of its progress when it has no terminal; a page leaves it out.
-PROGRESS = re.compile(r"^\w+: \d+/\d+, .*\n", re.MULTILINE)
+PROGRESS = re.compile(r"^[\w ]+: \d+/\d+, .*\n", re.MULTILINE)
 OUTPUT = doctest.OutputChecker()
 LOOSE = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
