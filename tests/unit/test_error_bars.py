@@ -142,6 +142,12 @@ def test_another_body_on_coarser_voxels_gives_no_bar(monkeypatch):
     assert 'error = "finer"' in found.hint
 
 
+def test_a_run_that_went_another_way_than_its_design_gets_no_bars():
+    found = vs.error_bars(vs.simulate(beam(), refine=2))
+    assert not found.voxel_sizes
+    assert "another way" in found.missing
+
+
 def test_the_error_changes_no_result():
     off, on = (vs.simulate(beam(error=error)).positions for error in ("off", "finer"))
     assert np.array_equal(off, on)

@@ -377,6 +377,11 @@ class _Search:
         except VoxSoftError as error:
             return str(error).partition("\n")[0]
         self._seconds += result.seconds
+        if _path(result) != _path(self.own.result):
+            return (
+                "the design's own solver goes another way than the run: its settings belong "
+                "in the design"
+            )
         return _Run(result, size) if result.status == "ok" else result.message
 
     def _bars(self, runs: Sequence[_Run], missing: str = "", hint: str = "") -> ErrorBars:
@@ -433,6 +438,13 @@ class _Search:
             hint,
             self._seconds,
         )
+
+
+def _path(result: Result) -> tuple[object, ...]:
+    """What of the solver's settings decides which state a run ends in, and on which voxels."""
+    used = result.solver
+    control = used["way"] if used["way"] in ("volume", "arc-length") else "load"
+    return control, used.get("volume_ratio"), used.get("refine")
 
 
 _Asked = Mapping[str, Objective | Constraint]
