@@ -228,11 +228,29 @@ class ProblemParts:
         pressure: float,
         history: _History = None,
         voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
+        closed: bool = False,
     ) -> None: ...
     def forces(
         self,
         vertices: NDArray[np.uint32],
         forces: NDArray[np.float64],
+        history: _History = None,
+    ) -> None: ...
+    def mirrored_membrane(
+        self,
+        images: tuple[NDArray[np.uint32], NDArray[np.float64]],
+        points: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        young: float,
+        poisson: float,
+        thickness: float,
+        density: float,
+    ) -> None: ...
+    def mirrored_pressure(
+        self,
+        images: tuple[NDArray[np.uint32], NDArray[np.float64]],
+        triangles: NDArray[np.uint32],
+        pressure: float,
         history: _History = None,
     ) -> None: ...
     def floor(self, z: float) -> None: ...

@@ -118,6 +118,9 @@ impl Body {
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
         }
+        for attachment in &mesh.attachments {
+            attachment.add_masses(&mut masses);
+        }
         for &(vertex, mass) in &mesh.point_masses {
             masses[vertex as usize] += mass;
         }

@@ -61,6 +61,7 @@ mod loads;
 mod material;
 pub mod matrix;
 mod membrane;
+mod mirrored;
 pub mod mixed;
 mod problem;
 mod rigid;
@@ -88,6 +89,7 @@ pub use loads::{
 };
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
+pub use mirrored::{Images, Mirrored};
 pub use problem::Problem;
 pub use rigid::Rigid;
 pub use solver::{Observer, Progress, Solution, Solver, Status};

@@ -21,6 +21,8 @@
 //!
 //! Directions come without angles, from arithmetic and roots alone, which every processor rounds alike.
 
+use serde::{Deserialize, Serialize};
+
 use crate::ProblemError;
 use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 
@@ -29,7 +31,7 @@ use crate::vector::{Vec3, axpy, cross, dot, norm, scale, sub};
 pub const SLACK: f64 = 1e-2;
 
 /// What a membrane is made of.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct MembraneMaterial {
     /// Young's modulus in Pa.
     pub young: f64,
@@ -42,7 +44,7 @@ pub struct MembraneMaterial {
 }
 
 /// A membrane triangle.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Membrane {
     vertices: [u32; 3],
     /// Gradients in the plane of rest of the three linear shape functions, 1/m.

@@ -19,6 +19,7 @@ from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
+from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
@@ -96,9 +97,12 @@ def simulate(
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
     started = time.perf_counter()
-    used, report = method.solve(setup, Watch(progress, record_interval, frames))
+    part = SectorSetup.part_of(setup)
+    solved = setup if part is None else part
+    used, report = method.solve(solved, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
-    return result_of(setup, used, report, time.perf_counter() - started)
+    result = result_of(solved, used, report, time.perf_counter() - started)
+    return result if part is None else part.unfolded(result)
 
 
 def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int) -> Result:
@@ -265,7 +269,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
             _, place, when = answer.breakdown
             if setup.touching is not None:
                 return _lost_contact(setup, answer)
-            point = ", ".join(f"{value * 1e3:.1f}" for value in place)
+            point = ", ".join(f"{value * 1e3:.1f}" for value in setup.origin + place)
             return (
                 f"diverged at ({point}) mm, after {when:.6g} "
                 f"{'s' if answer.substep else 'steps'} and {answer.back_offs} halvings of "

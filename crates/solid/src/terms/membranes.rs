@@ -1,10 +1,12 @@
+use serde::{Deserialize, Serialize};
+
 use super::{Strain, Term};
 use crate::assembly::{Visitor, add_product, add_row_sums};
 use crate::membrane::{Membrane, Plane};
 use crate::vector::Vec3;
 
 /// All membranes of a body.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Membranes(pub Vec<Membrane>);
 
 impl Membranes {

@@ -17,10 +17,10 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ProblemError;
 use crate::assembly::{Visitor, add_product, add_row_sums, check_indices};
 use crate::brick::Tangent;
 use crate::vector::Vec3;
+use crate::{Mirrored, ProblemError};
 
 pub use bricks::Bricks;
 pub(crate) use bricks::FORCE_BATCH;
@@ -104,6 +104,18 @@ pub trait Term: Debug + Send + Sync {
 pub enum Attachment {
     /// Springs between places, or to fixed points.
     Springs(Springs),
+    /// Membranes that cross planes of symmetry.
+    MirroredMembranes(Mirrored<Membranes>),
+}
+
+impl Attachment {
+    /// Adds its masses in kg to those of the vertices.
+    pub(crate) fn add_masses(&self, masses: &mut [f64]) {
+        match self {
+            Self::Springs(_) => {}
+            Self::MirroredMembranes(membranes) => membranes.add_masses(masses),
+        }
+    }
 }
 
 impl std::ops::Deref for Attachment {
@@ -112,6 +124,7 @@ impl std::ops::Deref for Attachment {
     fn deref(&self) -> &Self::Target {
         match self {
             Self::Springs(springs) => springs,
+            Self::MirroredMembranes(membranes) => membranes,
         }
     }
 }
