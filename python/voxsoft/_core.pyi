@@ -245,6 +245,7 @@ class ProblemParts:
         poisson: float,
         thickness: float,
         density: float,
+        share: float,
     ) -> None: ...
     def mirrored_pressure(
         self,

@@ -288,7 +288,7 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A membrane on triangles with corners that are mirror images, where these are at rest.
+    /// A part of a membrane on triangles with corners that are mirror images, with where these are at rest.
     #[expect(
         clippy::too_many_arguments,
         reason = "keyword arguments of one Python call"
@@ -302,6 +302,7 @@ impl PyProblemParts {
         poisson: f64,
         thickness: f64,
         density: f64,
+        share: f64,
     ) -> PyResult<()> {
         let points: Vec<Vec3> = rows("points", &points)?;
         let material = MembraneMaterial {
@@ -312,7 +313,8 @@ impl PyProblemParts {
         };
         let membrane = |triangle: [u32; 3]| {
             let corner = |v: u32| points.get(v as usize).copied().unwrap_or([f64::NAN; 3]);
-            Membrane::new(triangle, triangle.map(corner), material).map_err(to_python)
+            let whole = Membrane::new(triangle, triangle.map(corner), material);
+            whole.map(|m| m.with_share(share)).map_err(to_python)
         };
         let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
         let membranes = triangles.into_iter().map(membrane);

@@ -90,6 +90,12 @@ impl Mirrored<Membranes> {
             masses[vertex as usize] += mass;
         }
     }
+
+    /// Says how stiff what is around each vertex is, in N/m.
+    pub(crate) fn set_behind(&mut self, behind: &[f64]) {
+        let seen: Vec<f64> = self.images.of.iter().map(|&v| behind[v as usize]).collect();
+        self.elements.set_behind(&seen);
+    }
 }
 
 impl<T: Term> Term for Mirrored<T> {

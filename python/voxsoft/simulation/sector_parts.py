@@ -58,8 +58,8 @@ class SectorParts:
         if len(spanning):
             of, signs, corners = sector.images_of(spanning)
             points = sector.whole.vertices[np.unique(spanning)] - sector.origin
-            thin = {**sheet, "thickness": sheet["thickness"] / sector.count}
-            self.kept.mirrored_membrane((of, signs), points, corners, **thin)
+            share = 1.0 / sector.count
+            self.kept.mirrored_membrane((of, signs), points, corners, **sheet, share=share)
 
     def clamp(self, vertices: Indices, axes: list[bool], **motion: Any) -> None:  # noqa: ANN401 - as the core takes them
         """Take a clamp."""

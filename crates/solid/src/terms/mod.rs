@@ -116,6 +116,14 @@ impl Attachment {
             Self::MirroredMembranes(membranes) => membranes.add_masses(masses),
         }
     }
+
+    /// Says how stiff what is around each vertex is, in N/m.
+    pub(crate) fn set_behind(&mut self, behind: &[f64]) {
+        match self {
+            Self::Springs(_) => {}
+            Self::MirroredMembranes(membranes) => membranes.set_behind(behind),
+        }
+    }
 }
 
 impl std::ops::Deref for Attachment {
