@@ -10,9 +10,9 @@ use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Clamp, Contact, Filling, Floor, Gravity, History, Images, Load, LoadKind,
-    Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, Motion, PointForces, Pressure,
-    Problem, ProblemError, State, Term, elastic,
+    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Gravity, History, Images, Load,
+    LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, Motion, PointForces,
+    Pressure, Problem, ProblemError, State, Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -510,6 +510,22 @@ impl PyProblem {
         )
     }
 
+    /// The pressure (Pa, positive in tension) in each hyperelastic voxel, on the vertex at its lowest corner; not a number
+    /// on others.
+    fn pressures<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let positions = self.positions(&positions)?;
+        let bricks = self.problem.body().brick_term();
+        let mut found = vec![f64::NAN; self.own()];
+        for (brick, pressure) in bricks.bricks.iter().zip(bricks.pressures(&positions)) {
+            found[brick.vertices[0] as usize] = pressure;
+        }
+        Ok(PyArray1::from_vec(py, found))
+    }
+
     /// Elastic energy in J and forces in N at the given positions.
     fn elastic<'py>(
         &self,
@@ -674,6 +690,20 @@ impl PyProblem {
         self.touching
             .as_ref()
             .map_or(all, |touching| touching.first)
+    }
+
+    /// Pressures in the order of hyperelastic voxels, of those at their lowest corners.
+    pub(crate) fn brick_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+        let array = array.as_array();
+        let bricks = &self.problem.body().brick_term().bricks;
+        let pressure = |brick: &Brick| array.get(brick.vertices[0] as usize).copied();
+        let found: Option<Vec<f64>> = bricks.iter().map(pressure).collect();
+        match found {
+            Some(found) if found.iter().all(|p| p.is_finite()) => Ok(found),
+            _ => Err(PyValueError::new_err(
+                "pressures: a voxel has none at its lowest corner",
+            )),
+        }
     }
 
     pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {

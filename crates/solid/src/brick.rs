@@ -505,6 +505,25 @@ impl Brick {
         }
     }
 
+    /// The strain at `positions` with another pressure (Pa, positive in tension).
+    pub fn with_pressure(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        pressure: f64,
+    ) -> Carried {
+        let state = self.rotated(positions);
+        let own = Pressure::of(material);
+        let there = state.response(material, own).pressure;
+        Carried {
+            strain: state.strain(),
+            pressure: Pressure {
+                shift: (pressure - there) / own.stiffness,
+                ..own
+            },
+        }
+    }
+
     /// The strain of a state, and how it changes along `moves` to first order.
     fn predict_strain(&self, state: &Rotated, moves: &[Vec3]) -> BrickStrain {
         let stretch = to_matrix(&state.stretch);

@@ -22,6 +22,9 @@ use crate::assembly::Visitor;
 use crate::terms::{Strain, Term};
 use crate::vector::Vec3;
 
+/// The place of hyperelastic voxels among the terms of a body.
+const BRICKS: usize = 2;
+
 /// The strain of every element of a body.
 pub struct Strains<'a> {
     terms: Vec<Box<dyn Strain + 'a>>,
@@ -34,6 +37,18 @@ impl<'a> Strains<'a> {
         Self {
             terms: body.terms().map(predict).collect(),
         }
+    }
+
+    /// The strains at `positions` with other pressures in the hyperelastic voxels, in Pa, positive in tension: those of
+    /// larger voxels there, say.
+    pub fn with_pressures(body: &'a Body, positions: &[Vec3], pressures: &[f64]) -> Self {
+        let bricks = body.brick_term().with_pressures(positions, pressures);
+        let others = body.terms_but_bricks();
+        let as_they_are = others.map(|term| Box::new(AsItIs(term)) as Box<dyn Strain + 'a>);
+        // In the order of the body's terms, in which they are carried on.
+        let mut terms: Vec<_> = as_they_are.collect();
+        terms.insert(BRICKS, bricks);
+        Self { terms }
     }
 
     /// The same after a further step.

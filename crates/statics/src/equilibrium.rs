@@ -89,6 +89,8 @@ pub(crate) struct Equilibrium<'a> {
     /// How far the linear answer may turn a voxel from rest (rad), as long as only that is known of the
     /// body.
     pub largest_turn: Option<f64>,
+    /// Pressures in the hyperelastic voxels in Pa that the first iteration takes for those of its positions.
+    pub opening: Option<Vec<f64>>,
     /// What the forces of a body in motion count against as well.
     pub inertia: Option<&'a Inertia>,
     /// Forces in N that do not matter.
@@ -150,6 +152,7 @@ impl<'a> Equilibrium<'a> {
             iterations: 0,
             back_offs: 0,
             largest_turn: None,
+            opening: None,
             inertia: None,
             negligible: 0.0,
             precision: 1.0,
@@ -292,7 +295,8 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let body = self.problem.body();
-        let mut strains: Option<Strains<'_>> = None;
+        let opening = self.opening.take();
+        let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         let mut previous = f64::INFINITY;

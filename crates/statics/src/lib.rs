@@ -63,7 +63,7 @@ mod volume;
 pub use adjoint::{AdjointError, adjoint};
 pub use ensemble::{Ensemble, Settled, Variant};
 pub use implicit::{Implicit, ImplicitSettings};
-pub use path::solve;
+pub use path::{Start, solve};
 pub use sensitivity::{Varied, sensitivities};
 pub use settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 pub use transient::Transient;

@@ -91,11 +91,20 @@ pub(crate) struct Path<'a, 'b> {
     pub looking: bool,
 }
 
-/// Finds the equilibrium under the final values of all loads and motions, from `start` (positions in m)
-/// or from rest.
+/// Where the search for an equilibrium begins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Start {
+    /// Positions in m.
+    pub positions: Vec<Vec3>,
+    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Bricks`]; `None` for
+    /// those of the positions.
+    pub pressures: Option<Vec<f64>>,
+}
+
+/// Finds the equilibrium under the final values of all loads and motions, from a start or from rest.
 pub fn solve(
     problem: &Problem,
-    start: Option<&[Vec3]>,
+    start: Option<&Start>,
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Answer {
@@ -116,13 +125,13 @@ pub fn solve(
 /// Follows the path of a problem, in which dampers hold what is loose.
 fn follow(
     problem: &Problem,
-    start: Option<&[Vec3]>,
+    start: Option<&Start>,
     settings: &Settings,
     observer: &mut Observer<'_>,
     loose: Option<&Loose>,
 ) -> Answer {
     let rest = problem.body().rest();
-    let positions = start.unwrap_or(rest).to_vec();
+    let positions = start.map_or(rest, |start| &start.positions).to_vec();
     let solver = match settings.control {
         Control::Load => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
@@ -144,6 +153,7 @@ fn follow(
     let mut path = Path {
         equilibrium: Equilibrium {
             has_loose: loose.is_some(),
+            opening: start.and_then(|start| start.pressures.clone()),
             ..equilibrium
         },
         positions,

@@ -17,6 +17,7 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.method import Report, Watch
+from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.sector_setup import SectorSetup
@@ -34,6 +35,7 @@ def simulate(
     record_interval: float | str | None = None,
     frames: bool = False,
     progress: ProgressCallback | None = None,
+    coarser: Result | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> Result:
     """Simulate a design until it comes to rest, or to an end time.
@@ -59,6 +61,10 @@ def simulate(
     progress
         Called about ten times a second with (steps, time, residual); an exception it raises
         ends the run.
+    coarser
+        An equilibrium of the same design on voxels twice as large. Load control without contact
+        begins there, in a fraction of the iterations, where the voxels fill the large ones; other
+        ways begin at rest.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own: ``time_step``,
         ``substeps``, ``iterations``, ``damping``, ``tolerance``, ``max_time``, ``end_time`` ...
@@ -99,7 +105,11 @@ def simulate(
     started = time.perf_counter()
     part = SectorSetup.part_of(setup)
     solved = setup if part is None else part
-    used, report = method.solve(solved, Watch(progress, record_interval, frames))
+    if isinstance(method, LoadControl) and coarser is not None:
+        start = nested(coarser, solved)
+        used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
+    else:
+        used, report = method.solve(solved, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
     result = result_of(solved, used, report, time.perf_counter() - started)
     return result if part is None else part.unfolded(result)

@@ -65,6 +65,32 @@ impl Bricks {
         );
     }
 
+    /// The pressure in each voxel in Pa, positive in tension.
+    pub fn pressures(&self, positions: &[Vec3]) -> Vec<f64> {
+        let pressure = |brick: &Brick| {
+            let material = self.material_of(brick);
+            let within = Within::elastic(material);
+            brick.respond(material, positions, &within).pressure
+        };
+        self.bricks.iter().map(pressure).collect()
+    }
+
+    /// The strains at `positions` with other pressures in Pa, one for each voxel.
+    pub(crate) fn with_pressures<'a>(
+        &'a self,
+        positions: &[Vec3],
+        pressures: &[f64],
+    ) -> Box<dyn Strain + 'a> {
+        let pairs = self.bricks.iter().zip(pressures);
+        let state = |(brick, &pressure): (&Brick, &f64)| {
+            brick.with_pressure(self.material_of(brick), positions, pressure)
+        };
+        Box::new(Predicted {
+            block: self,
+            states: pairs.map(state).collect(),
+        })
+    }
+
     /// Works on voxels on all threads and takes the results in their order.
     fn each<U: Send>(
         &self,
