@@ -121,6 +121,17 @@ impl IterativeSystem {
                     let column = places[column_vertex as usize];
                     let place = matrix.place(row, column);
                     let block = &mut matrix.values[place];
+                    if fixed == [false; 3] && held[column_vertex as usize] == [false; 3] {
+                        for i in 0..3 {
+                            let first = (3 * a + i) * width + 3 * b;
+                            for (sum, k) in
+                                block[3 * i..].iter_mut().zip(&entries[first..first + 3])
+                            {
+                                *sum += k;
+                            }
+                        }
+                        continue;
+                    }
                     for i in (0..3).filter(|&i| !fixed[i]) {
                         for j in 0..3 {
                             let k = entries[(3 * a + i) * width + 3 * b + j];
@@ -218,7 +229,7 @@ impl IterativeSystem {
         let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
         let preconditioner = self.hierarchy.preconditioner(&self.matrix, &factor.factors);
         preconditioner.apply(&residual, &mut work);
-        let mut direction = work.answer().to_vec();
+        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
         let mut gain = inner(&residual, &direction);
         // The energy of the error, as the preconditioner sees it: residual forces would say little about
         // soft bending modes, which carry most of a slender body's displacement.
@@ -244,16 +255,16 @@ impl IterativeSystem {
             for_each(&mut answer, |row, x| axpy(x, step, direction[row]));
             for_each(&mut residual, |row, r| axpy(r, -step, image[row]));
             preconditioner.apply(&residual, &mut work);
-            let fresh = work.answer();
-            let next = inner(&residual, fresh);
+            let next = sum(count, |row| dot(residual[row], work.answer(row)));
             if next.abs() <= goal {
                 return (answer, End::Converged);
             }
             let keep = next / gain;
             gain = next;
             for_each(&mut direction, |row, d| {
+                let fresh = work.answer(row);
                 for axis in 0..3 {
-                    d[axis] = keep * d[axis] + fresh[row][axis];
+                    d[axis] = keep * d[axis] + fresh[axis];
                 }
             });
         }

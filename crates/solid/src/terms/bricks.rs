@@ -1,7 +1,8 @@
 use super::{Strain, Term};
 use crate::assembly::Visitor;
-use crate::batches::in_order;
-use crate::brick::{Brick, Carried, Tangent, Within};
+use crate::batches::{groups_in_order, in_order};
+use crate::brick::{Brick, BrickMatrix, Carried, Tangent, Within};
+use crate::brick_lanes::{TOGETHER, Together};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::vector::Vec3;
 
@@ -65,6 +66,79 @@ impl Bricks {
         );
     }
 
+    /// The voxels from `first` on, with what is carried of them.
+    fn together<'a>(
+        &'a self,
+        first: usize,
+        count: usize,
+        positions: &'a [Vec3],
+        carried: Option<&'a [Carried]>,
+    ) -> Together<'a> {
+        let range = first..first + count;
+        Together {
+            bricks: &self.bricks[range.clone()],
+            materials: &self.materials,
+            positions,
+            carried: carried.map(|states| &states[range]),
+        }
+    }
+
+    fn add_forces_of(&self, positions: &[Vec3], carried: Option<&[Carried]>, forces: &mut [Vec3]) {
+        groups_in_order(
+            self.bricks.len(),
+            FORCE_BATCH,
+            TOGETHER,
+            &[[0.0; 3]; 8],
+            |first, out| {
+                self.together(first, out.len(), positions, carried)
+                    .forces(out);
+            },
+            |i, corners| self.bricks[i].add_to(corners, forces),
+        );
+    }
+
+    fn visit_stiffness_of(
+        &self,
+        positions: &[Vec3],
+        carried: Option<&[Carried]>,
+        visit: Visitor<'_>,
+    ) {
+        let empty: BrickMatrix = [[0.0; 24]; 24];
+        groups_in_order(
+            self.bricks.len(),
+            STIFFNESS_BATCH,
+            TOGETHER,
+            &empty,
+            |first, out| {
+                self.together(first, out.len(), positions, carried)
+                    .stiffness(out);
+            },
+            |i, matrix| visit(&self.bricks[i].vertices, matrix.as_flattened()),
+        );
+    }
+
+    /// What is carried after a step `moves`, see [`Brick::carry`].
+    fn carry(
+        &self,
+        positions: &[Vec3],
+        before: Option<&[Carried]>,
+        moves: &[Vec3],
+    ) -> Vec<Carried> {
+        let mut states = Vec::with_capacity(self.bricks.len());
+        groups_in_order(
+            self.bricks.len(),
+            FORCE_BATCH,
+            TOGETHER,
+            &Carried::NOTHING,
+            |first, out| {
+                self.together(first, out.len(), positions, before)
+                    .carry(moves, out);
+            },
+            |_, state| states.push(*state),
+        );
+        states
+    }
+
     /// Works on voxels on all threads and takes the results in their order.
     fn each<U: Send>(
         &self,
@@ -97,26 +171,17 @@ impl Term for Bricks {
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.each(
-            FORCE_BATCH,
-            |_, brick| brick.forces(self.material_of(brick), positions),
-            |_, brick, corners| brick.add_to(&corners, forces),
-        );
+        self.add_forces_of(positions, None, forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        self.each(
-            STIFFNESS_BATCH,
-            |_, brick| brick.stiffness(self.material_of(brick), positions, None),
-            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
-        );
+        self.visit_stiffness_of(positions, None, visit);
     }
 
     fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
-        let carry = |brick: &Brick| brick.carry(self.material_of(brick), None, positions, moves);
         Some(Box::new(Predicted {
             block: self,
-            states: self.bricks.iter().map(carry).collect(),
+            states: self.carry(positions, None, moves),
         }))
     }
 }
@@ -129,28 +194,17 @@ struct Predicted<'a> {
 
 impl Strain for Predicted<'_> {
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let Self { block, states } = self;
-        block.each(
-            FORCE_BATCH,
-            |i, brick| brick.predicted_forces(block.material_of(brick), &states[i], positions),
-            |_, brick, corners| brick.add_to(&corners, forces),
-        );
+        self.block
+            .add_forces_of(positions, Some(&self.states), forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let Self { block, states } = self;
-        block.each(
-            STIFFNESS_BATCH,
-            |i, brick| brick.stiffness(block.material_of(brick), positions, Some(&states[i])),
-            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
-        );
+        self.block
+            .visit_stiffness_of(positions, Some(&self.states), visit);
     }
 
     fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        for (brick, state) in self.block.bricks.iter().zip(&mut self.states) {
-            let material = self.block.material_of(brick);
-            *state = brick.carry(material, Some(state), positions, moves);
-        }
+        self.states = self.block.carry(positions, Some(&self.states), moves);
         true
     }
 }

@@ -4,6 +4,7 @@ use voxsoft_solid::vector::Vec3;
 
 use super::cells::Interpolation;
 use super::parallel;
+use crate::rank::rank;
 
 /// A block, row-major.
 pub(crate) type Block = [f64; 9];
@@ -70,7 +71,7 @@ impl BlockMatrix {
     #[inline(always)]
     pub fn place(&self, row: usize, column: u32) -> usize {
         let (start, columns) = self.row(row);
-        start + columns.partition_point(|&c| c < column)
+        start + rank(columns, column)
     }
 
     /// `y = A x`.
@@ -141,7 +142,7 @@ impl BlockMatrix {
                 let (start, neighbors) = self.row(fine as usize);
                 for (block, &neighbor) in self.values[start..].iter().zip(neighbors) {
                     for &(column, share) in p.row(neighbor as usize) {
-                        let place = columns.partition_point(|&c| c < column);
+                        let place = rank(columns, column);
                         let factor = weight * share;
                         for (sum, entry) in blocks[place].iter_mut().zip(block) {
                             *sum += factor * entry;

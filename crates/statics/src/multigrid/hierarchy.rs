@@ -7,12 +7,13 @@
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
-use voxsoft_solid::vector::{Vec3, add, scale};
+use voxsoft_solid::vector::Vec3;
 
-use super::blocks::{Block, BlockMatrix, add_product, pseudo_inverse, transposed};
+use super::blocks::{BlockMatrix, transposed};
 use super::cells::{Cell, Interpolation, coarsen};
 use super::color::{Coloring, color};
 use super::parallel;
+use super::single::{Single, SingleMatrix, minus, plus, rounded, widened};
 
 /// A level of no more nodes than this is solved directly, by a dense factor.
 const COARSEST: usize = 250;
@@ -31,10 +32,9 @@ pub(crate) struct Hierarchy {
     patterns: Vec<BlockMatrix>,
 }
 
-/// What a hierarchy keeps of the matrices of one tangent: inverse diagonals, and the factor of the
-/// coarsest.
+/// What a hierarchy keeps of the matrices of one tangent: rounded ones, and the factor of the coarsest.
 pub(crate) struct Factors {
-    inverses: Vec<Vec<Block>>,
+    matrices: Vec<SingleMatrix>,
     last: Option<Llt<f64>>,
 }
 
@@ -47,9 +47,11 @@ pub(crate) struct Preconditioner<'a> {
 
 /// Vectors of every level.
 pub(crate) struct Workspace {
-    sides: Vec<Vec<Vec3>>,
-    answers: Vec<Vec<Vec3>>,
-    residuals: Vec<Vec<Vec3>>,
+    sides: Vec<Vec<Single>>,
+    answers: Vec<Vec<Single>>,
+    residuals: Vec<Vec<Single>>,
+    /// Of the coarsest level, which is solved in double precision.
+    last: Vec<Vec3>,
 }
 
 impl Hierarchy {
@@ -104,7 +106,7 @@ impl Hierarchy {
         let levels = std::iter::once(finest).chain(&self.patterns);
         let last = self.patterns.last().unwrap_or(finest);
         Factors {
-            inverses: levels.map(inverses_of).collect(),
+            matrices: levels.map(SingleMatrix::of).collect(),
             last: (last.rows() <= LARGEST_DENSE)
                 .then(|| dense_factor(last))
                 .flatten(),
@@ -129,69 +131,82 @@ impl Hierarchy {
         let vectors = || {
             std::iter::once(finest)
                 .chain(&self.patterns)
-                .map(|m| vec![[0.0; 3]; m.rows()])
+                .map(|m| vec![[0.0; 4]; m.rows()])
                 .collect()
         };
+        let last = self.patterns.last().unwrap_or(finest);
         Workspace {
             sides: vectors(),
             answers: vectors(),
             residuals: vectors(),
+            last: vec![[0.0; 3]; last.rows()],
         }
     }
 }
 
 impl Workspace {
-    /// What [`Preconditioner::apply`] found.
-    pub fn answer(&self) -> &[Vec3] {
-        &self.answers[0]
+    /// What [`Preconditioner::apply`] found for a row.
+    #[inline(always)]
+    pub fn answer(&self, row: usize) -> Vec3 {
+        widened(self.answers[0][row])
     }
 }
 
 impl Preconditioner<'_> {
     /// About `A⁻¹ side`.
     pub fn apply(&self, side: &[Vec3], work: &mut Workspace) {
-        work.sides[0].copy_from_slice(side);
+        parallel::for_each(&mut work.sides[0], |row, own| *own = rounded(side[row]));
         self.cycle(0, work);
     }
 
-    fn matrix(&self, level: usize) -> &BlockMatrix {
-        if level == 0 {
-            self.finest
-        } else {
-            &self.hierarchy.patterns[level - 1]
+    fn level(&self, level: usize) -> Level<'_> {
+        Level {
+            pattern: if level == 0 {
+                self.finest
+            } else {
+                &self.hierarchy.patterns[level - 1]
+            },
+            coloring: &self.hierarchy.colorings[level],
+            matrix: &self.factors.matrices[level],
         }
     }
 
     fn cycle(&self, level: usize, work: &mut Workspace) {
-        let matrix = self.matrix(level);
-        let coloring = &self.hierarchy.colorings[level];
-        let inverses = &self.factors.inverses[level];
+        let own = self.level(level);
         if level == self.hierarchy.down.len() {
             let (side, x) = (&work.sides[level], &mut work.answers[level]);
             if let Some(factor) = &self.factors.last {
-                x.copy_from_slice(side);
-                let flat = x.as_flattened_mut();
+                for (wide, side) in work.last.iter_mut().zip(side) {
+                    *wide = widened(*side);
+                }
+                let flat = work.last.as_flattened_mut();
                 let size = flat.len();
                 factor.solve_in_place(MatMut::from_column_major_slice_mut(flat, size, 1));
+                for (x, wide) in x.iter_mut().zip(&work.last) {
+                    *x = rounded(*wide);
+                }
             } else {
-                forward_from_zero(matrix, coloring, inverses, side, x);
-                backward(matrix, coloring, inverses, side, x);
+                own.forward_from_zero(side, x);
+                own.backward(side, x);
             }
             return;
         }
         let (down, up) = (&self.hierarchy.down[level], &self.hierarchy.up[level]);
         let x = &mut work.answers[level];
-        forward_from_zero(matrix, coloring, inverses, &work.sides[level], x);
+        own.forward_from_zero(&work.sides[level], x);
         // A sweep from zero leaves the residual of what it has not looked at: −U x.
         let residual = &mut work.residuals[level];
         parallel::for_each(residual, |row, r| {
-            let after = matrix.diagonals[row] + 1..matrix.starts[row + 1];
-            *r = scale(-1.0, matrix.product(after, |column| x[column]));
+            let after = own.pattern.diagonals[row] + 1..own.pattern.starts[row + 1];
+            let seen = own
+                .matrix
+                .product(&own.pattern.columns, after, |column| &x[column]);
+            *r = minus([0.0; 4], seen);
         });
         parallel::for_each(&mut work.sides[level + 1], |row, side| {
-            *side = [0.0; 3];
+            *side = [0.0; 4];
             for &(fine, weight) in up.row(row) {
-                *side = add(*side, scale(weight, residual[fine as usize]));
+                *side = plus(*side, weight as f32, residual[fine as usize]);
             }
         });
         self.cycle(level + 1, work);
@@ -200,67 +215,61 @@ impl Preconditioner<'_> {
         let correction = &coarser[0];
         parallel::for_each(x, |row, x| {
             for &(coarse, weight) in down.row(row) {
-                *x = add(*x, scale(weight, correction[coarse as usize]));
+                *x = plus(*x, weight as f32, correction[coarse as usize]);
             }
         });
-        backward(matrix, coloring, inverses, &work.sides[level], x);
+        own.backward(&work.sides[level], x);
     }
 }
 
-fn inverses_of(matrix: &BlockMatrix) -> Vec<Block> {
-    let diagonals = &matrix.diagonals;
-    let mut inverses = vec![[0.0; 9]; diagonals.len()];
-    parallel::for_each(&mut inverses, |row, inverse| {
-        *inverse = pseudo_inverse(&matrix.values[diagonals[row]]);
-    });
-    inverses
+/// A level of the V-cycle.
+struct Level<'a> {
+    pattern: &'a BlockMatrix,
+    coloring: &'a Coloring,
+    matrix: &'a SingleMatrix,
 }
 
-/// Gauss–Seidel through the colors, from zero.
-fn forward_from_zero(
-    matrix: &BlockMatrix,
-    coloring: &Coloring,
-    inverses: &[Block],
-    side: &[Vec3],
-    x: &mut [Vec3],
-) {
-    for range in coloring.ranges() {
-        let first = range.start;
-        let (before, rest) = x.split_at_mut(first);
-        parallel::for_each(&mut rest[..range.len()], |place, x| {
-            let row = first + place;
-            let seen = matrix.starts[row]..matrix.diagonals[row];
-            let known = matrix.product(seen, |column| before[column]);
-            *x = [0.0; 3];
-            add_product(x, &inverses[row], add(side[row], scale(-1.0, known)));
-        });
-    }
-}
-
-/// Gauss–Seidel back through the colors.
-fn backward(
-    matrix: &BlockMatrix,
-    coloring: &Coloring,
-    inverses: &[Block],
-    side: &[Vec3],
-    x: &mut [Vec3],
-) {
-    for range in coloring.ranges().rev() {
-        let (before, rest) = x.split_at_mut(range.start);
-        let (own, after) = rest.split_at_mut(range.len());
-        parallel::for_each(own, |place, x| {
-            let row = range.start + place;
-            let diagonal = matrix.diagonals[row];
-            let below = matrix.product(matrix.starts[row]..diagonal, |column| before[column]);
-            let above = matrix.product(diagonal + 1..matrix.starts[row + 1], |column| {
-                after[column - range.end]
+impl Level<'_> {
+    /// Gauss–Seidel through the colors, from zero.
+    fn forward_from_zero(&self, side: &[Single], x: &mut [Single]) {
+        let Self {
+            pattern, matrix, ..
+        } = self;
+        for range in self.coloring.ranges() {
+            let first = range.start;
+            let (before, rest) = x.split_at_mut(first);
+            parallel::for_each(&mut rest[..range.len()], |place, x| {
+                let row = first + place;
+                let seen = pattern.starts[row]..pattern.diagonals[row];
+                let known = matrix.product(&pattern.columns, seen, |column| &before[column]);
+                *x = matrix.solve(row, minus(side[row], known));
             });
-            let left = add(side[row], scale(-1.0, add(below, above)));
-            let mut new = [0.0; 3];
-            add_product(&mut new, &inverses[row], left);
-            // Axes without stiffness keep their value, which is zero.
-            *x = new;
-        });
+        }
+    }
+
+    /// Gauss–Seidel back through the colors.
+    fn backward(&self, side: &[Single], x: &mut [Single]) {
+        let Self {
+            pattern, matrix, ..
+        } = self;
+        for range in self.coloring.ranges().rev() {
+            let (before, rest) = x.split_at_mut(range.start);
+            let (own, after) = rest.split_at_mut(range.len());
+            parallel::for_each(own, |place, x| {
+                let row = range.start + place;
+                let diagonal = pattern.diagonals[row];
+                let below =
+                    matrix.product(&pattern.columns, pattern.starts[row]..diagonal, |column| {
+                        &before[column]
+                    });
+                let above = matrix.product(
+                    &pattern.columns,
+                    diagonal + 1..pattern.starts[row + 1],
+                    |column| &after[column - range.end],
+                );
+                *x = matrix.solve(row, minus(minus(side[row], below), above));
+            });
+        }
     }
 }
 

@@ -5,6 +5,7 @@ mod cells;
 mod color;
 mod hierarchy;
 mod parallel;
+mod single;
 
 pub(crate) use blocks::BlockMatrix;
 pub(crate) use cells::cells_of;

@@ -21,6 +21,15 @@ pub(crate) fn for_each<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + 
     items.chunks_mut(CHUNK).enumerate().for_each(run);
 }
 
+/// Calls `each(index, array)` for all arrays of `N` that follow each other in `items`.
+pub(crate) fn for_each_chunk<T: Send, const N: usize>(
+    items: &mut [T],
+    each: impl Fn(usize, &mut [T; N]) + Sync,
+) {
+    let (arrays, _) = items.as_chunks_mut::<N>();
+    for_each(arrays, each);
+}
+
 /// The sum of `each(index)` over `0..count`, always added in the same order.
 pub(crate) fn sum(count: usize, each: impl Fn(usize) -> f64 + Sync) -> f64 {
     let chunks = count.div_ceil(CHUNK);
