@@ -32,14 +32,15 @@ pub(crate) fn in_order<U: Send>(
     }
 }
 
-/// The same for work on `group` pieces at a time: `fill(first, results)` sets those of the pieces from `first` on.
+/// The same for work on `group` pieces at a time: `fill(first, results)` sets those of the pieces from `first` on, and
+/// `take(first, results)` gets those of one or more groups.
 pub(crate) fn groups_in_order<U: Clone + Send>(
     count: usize,
     #[cfg_attr(not(feature = "threads"), expect(unused_variables))] batch: usize,
     group: usize,
     empty: &U,
     fill: impl Fn(usize, &mut [U]) + Sync,
-    mut take: impl FnMut(usize, &U),
+    mut take: impl FnMut(usize, &[U]),
 ) {
     #[cfg(feature = "threads")]
     if count >= WORTHWHILE && rayon::current_num_threads() > 1 {
@@ -50,9 +51,7 @@ pub(crate) fn groups_in_order<U: Clone + Send>(
                 .par_chunks_mut(group)
                 .enumerate()
                 .for_each(|(place, results)| fill(start + place * group, results));
-            for (place, result) in results.iter().enumerate() {
-                take(start + place, result);
-            }
+            take(start, results);
         }
         return;
     }
@@ -60,8 +59,6 @@ pub(crate) fn groups_in_order<U: Clone + Send>(
     for start in (0..count).step_by(group) {
         let results = &mut results[..group.min(count - start)];
         fill(start, results);
-        for (place, result) in results.iter().enumerate() {
-            take(start + place, result);
-        }
+        take(start, results);
     }
 }

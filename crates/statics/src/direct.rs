@@ -189,7 +189,11 @@ impl DirectSystem {
     ) {
         self.assemble_pieces(jump, residual, |add| {
             match strains {
-                Some(strains) => strains.visit_stiffness(positions, add),
+                Some(strains) => strains.visit_elements(positions, &mut |elements| {
+                    elements
+                        .iter()
+                        .for_each(|(vertices, matrix)| add(vertices, matrix));
+                }),
                 None => elastic::visit_stiffness(problem.body(), positions, add),
             }
             problem.visit_load_stiffness(positions, factor_of, add);

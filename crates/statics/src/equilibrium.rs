@@ -123,6 +123,11 @@ const SUFFICIENT: f64 = 1e-4;
 const LINEAR_TOLERANCE: f64 = 1e-4;
 /// The same with contact, whose penalties take most of that energy.
 const LINEAR_TOLERANCE_WITH_CONTACT: f64 = 1e-6;
+/// The last step need leave no less than this part of what may be left: energies and residuals fall alike, but not together.
+/// It is the last where solutions to such an error are nearly as cheap as all others.
+const LAST_PART: f64 = 0.1;
+const AT_ONCE: f64 = 1e-6;
+const LOOSEST: f64 = 0.1;
 /// How often a step may be halved.
 const HALVINGS: u32 = 12;
 /// Potentials are sums of many terms and known to about this part of their size.
@@ -342,9 +347,10 @@ impl<'a> Equilibrium<'a> {
             );
             let factor = self.carried()?;
             let side = &mut forces.free;
+            let tolerance = self.linear_tolerance(relative, settings);
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
             self.system
-                .solve(&factor, side, false, self.linear_tolerance(), &mut stop)?;
+                .solve(&factor, side, false, tolerance, &mut stop)?;
             let mut moves = self.system.spread(&forces.free);
             if let Some(jump) = &jump {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
@@ -489,13 +495,9 @@ impl<'a> Equilibrium<'a> {
             let mut step = forces.free.clone();
             let factor = self.descending(&mut shift)?;
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
-            self.system.solve(
-                &factor,
-                &mut step,
-                false,
-                self.linear_tolerance(),
-                &mut stop,
-            )?;
+            let tolerance = self.linear_tolerance(relative, settings);
+            self.system
+                .solve(&factor, &mut step, false, tolerance, &mut stop)?;
             if !step.iter().all(|x| x.is_finite()) {
                 return Err(Failure::Singular);
             }
@@ -520,9 +522,13 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
-    fn linear_tolerance(&self) -> f64 {
+    /// What an iterative solution may leave of its error, where the residual is `relative` to the loads: no less than what is
+    /// asked for in the end, and that at once where it is near.
+    pub fn linear_tolerance(&self, relative: f64, settings: &Settings) -> f64 {
+        let enough = LAST_PART * settings.tolerance / relative;
         match self.problem.contact() {
             Some(_) => LINEAR_TOLERANCE_WITH_CONTACT,
+            None if enough >= AT_ONCE => enough.min(LOOSEST),
             None => LINEAR_TOLERANCE,
         }
     }

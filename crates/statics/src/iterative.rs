@@ -3,13 +3,16 @@
 //! The memory and the work of one iteration grow with the number of voxels, where those of a direct
 //! factor in three dimensions grow with its powers 4/3 and 2.
 
+use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Load, Problem, Term, elastic};
 
 use crate::multigrid::{
-    BlockMatrix, Factors, Hierarchy, Workspace, cells_of, color, for_each, sum,
+    Block, BlockMatrix, Coarsest, Hierarchy, Workspace, cells_of, color, for_each, for_each_large,
+    sum,
 };
+use crate::rank::rank;
 use crate::system::{FactorError, Means};
 
 /// What a vertex takes: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and
@@ -17,6 +20,9 @@ use crate::system::{FactorError, Means};
 const BYTES_PER_VERTEX: u64 = 4_000;
 /// Iterations after which a solution counts as stalled.
 const MAX_ITERATIONS: usize = 400;
+/// Elements from which on parts of the rows are worth a task each, and into how many the rows are parted.
+const MANY: usize = 64;
+const PARTS: usize = 8;
 /// An error of this part is of use to Newton's method even so.
 const USEFUL: f64 = 0.1;
 /// Iterations between two questions whether to stop.
@@ -35,7 +41,7 @@ pub(crate) struct IterativeSystem {
 
 /// A preconditioner, and whether solutions must go downhill.
 pub(crate) struct IterativeFactor {
-    factors: Factors,
+    coarsest: Coarsest,
     downhill: bool,
 }
 
@@ -105,52 +111,30 @@ impl IterativeSystem {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
-        let Self {
-            places,
-            held,
-            matrix,
-            ..
-        } = self;
-        matrix.values.fill([0.0; 9]);
-        let mut add = |vertices: &[u32], entries: &[f64]| {
-            let width = 3 * vertices.len();
-            for (a, &row_vertex) in vertices.iter().enumerate() {
-                let row = places[row_vertex as usize] as usize;
-                let fixed = held[row_vertex as usize];
-                for (b, &column_vertex) in vertices.iter().enumerate() {
-                    let column = places[column_vertex as usize];
-                    let place = matrix.place(row, column);
-                    let block = &mut matrix.values[place];
-                    if fixed == [false; 3] && held[column_vertex as usize] == [false; 3] {
-                        for i in 0..3 {
-                            let first = (3 * a + i) * width + 3 * b;
-                            for (sum, k) in
-                                block[3 * i..].iter_mut().zip(&entries[first..first + 3])
-                            {
-                                *sum += k;
-                            }
-                        }
-                        continue;
-                    }
-                    for i in (0..3).filter(|&i| !fixed[i]) {
-                        for j in 0..3 {
-                            let k = entries[(3 * a + i) * width + 3 * b + j];
-                            if !held[column_vertex as usize][j] {
-                                block[3 * i + j] += k;
-                            } else if let Some(jump) = jump {
-                                let moved = jump[column_vertex as usize][j];
-                                residual[3 * row_vertex as usize + i] -= k * moved;
-                            }
-                        }
-                    }
-                }
+        for_each(&mut self.matrix.values, |_, block| *block = [0.0; 9]);
+        let mut target = Target {
+            places: &self.places,
+            held: &self.held,
+            matrix: &mut self.matrix,
+        };
+        let mut add = |elements: Elements<'_>| match jump {
+            Some(jump) => {
+                target.push(elements, jump, residual);
+                target.add(elements);
             }
+            None => target.add(elements),
         };
         match strains {
-            Some(strains) => strains.visit_stiffness(positions, &mut add),
-            None => elastic::visit_stiffness(problem.body(), positions, &mut add),
+            Some(strains) => strains.visit_elements(positions, &mut add),
+            None => elastic::visit_elements(problem.body(), positions, &mut add),
         }
-        problem.visit_load_stiffness(positions, factor_of, &mut add);
+        problem.visit_load_stiffness(positions, factor_of, &mut |vertices, matrices| {
+            add(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices,
+            });
+        });
     }
 
     /// A preconditioner for the assembled tangent.
@@ -162,9 +146,8 @@ impl IterativeSystem {
         {
             return Err(FactorError::Singular);
         }
-        self.hierarchy.project(&self.matrix);
         Ok(IterativeFactor {
-            factors: self.hierarchy.factors(&self.matrix),
+            coarsest: self.hierarchy.project(&self.matrix),
             downhill,
         })
     }
@@ -227,7 +210,9 @@ impl IterativeSystem {
         let mut answer = vec![[0.0; 3]; count];
         let mut image = vec![[0.0; 3]; count];
         let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
-        let preconditioner = self.hierarchy.preconditioner(&self.matrix, &factor.factors);
+        let preconditioner = self
+            .hierarchy
+            .preconditioner(&self.matrix, &factor.coarsest);
         preconditioner.apply(&residual, &mut work);
         let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
         let mut gain = inner(&residual, &direction);
@@ -289,14 +274,106 @@ impl IterativeSystem {
     }
 }
 
+/// Where element matrices go.
+struct Target<'a> {
+    places: &'a [u32],
+    held: &'a [[bool; 3]],
+    matrix: &'a mut BlockMatrix,
+}
+
+impl Target<'_> {
+    /// Subtracts the forces of held coordinates that are about to move.
+    fn push(&self, elements: Elements<'_>, jump: &[Vec3], residual: &mut [f64]) {
+        for (vertices, entries) in elements.iter() {
+            let width = 3 * vertices.len();
+            for (row, entries) in entries.chunks(width).enumerate() {
+                let (vertex, axis) = (vertices[row / 3] as usize, row % 3);
+                if self.held[vertex][axis] {
+                    continue;
+                }
+                for (column, k) in entries.iter().enumerate() {
+                    let (other, along) = (vertices[column / 3] as usize, column % 3);
+                    if self.held[other][along] {
+                        residual[3 * vertex + axis] -= k * jump[other][along];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds to the matrix: many elements by parts of its rows, so that each row gets them in their order.
+    fn add(&mut self, elements: Elements<'_>) {
+        let Self {
+            places,
+            held,
+            matrix,
+        } = self;
+        let rows = matrix.diagonals.len();
+        let count = if elements.vertices.len() < MANY * elements.width {
+            1
+        } else {
+            PARTS
+        };
+        let BlockMatrix {
+            starts,
+            columns,
+            values,
+            ..
+        } = &mut **matrix;
+        // Rows are numbered by colors, of which a voxel has each once: equal parts are equal work.
+        let mut parts = Vec::with_capacity(count);
+        let mut left = values.as_mut_slice();
+        for part in 0..count {
+            let range = rows * part / count..rows * (part + 1) / count;
+            let (values, rest) = left.split_at_mut(starts[range.end] - starts[range.start]);
+            parts.push(Rows { range, values });
+            left = rest;
+        }
+        for_each_large(&mut parts, |_, rows| {
+            for (vertices, entries) in elements.iter() {
+                for (a, &vertex) in vertices.iter().enumerate() {
+                    let row = places[vertex as usize] as usize;
+                    if !rows.range.contains(&row) {
+                        continue;
+                    }
+                    let columns = &columns[starts[row]..starts[row + 1]];
+                    let first = starts[row] - starts[rows.range.start];
+                    let blocks = &mut rows.values[first..first + columns.len()];
+                    let fixed = held[vertex as usize];
+                    let width = 3 * vertices.len();
+                    let entries = &entries[3 * a * width..(3 * a + 3) * width];
+                    for (b, &other) in vertices.iter().enumerate() {
+                        let block = &mut blocks[rank(columns, places[other as usize])];
+                        let across = held[other as usize];
+                        let free = fixed == [false; 3] && across == [false; 3];
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                if free || !(fixed[i] || across[j]) {
+                                    block[3 * i + j] += entries[i * width + 3 * b + j];
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// Some rows of a matrix.
+struct Rows<'a> {
+    range: std::ops::Range<usize>,
+    values: &'a mut [Block],
+}
+
 /// The vertices of elements, one after the other.
 #[derive(Default)]
-struct Elements {
+struct Pieces {
     vertices: Vec<u32>,
     ends: Vec<usize>,
 }
 
-impl Elements {
+impl Pieces {
     fn push(&mut self, vertices: &[u32]) {
         self.vertices.extend_from_slice(vertices);
         self.ends.push(self.vertices.len());
@@ -312,7 +389,7 @@ impl Elements {
 fn pattern(problem: &Problem) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
-    let mut elements = Elements::default();
+    let mut elements = Pieces::default();
     body.voxels().iter().for_each(|v| elements.push(v));
     for term in body.terms_beyond_voxels() {
         term.visit_pattern(&mut |vertices| elements.push(vertices));

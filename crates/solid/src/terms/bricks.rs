@@ -1,5 +1,5 @@
 use super::{Strain, Term};
-use crate::assembly::Visitor;
+use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::batches::{groups_in_order, in_order};
 use crate::brick::{Brick, BrickMatrix, Carried, Tangent, Within};
 use crate::brick_lanes::{TOGETHER, Together};
@@ -8,7 +8,7 @@ use crate::vector::Vec3;
 
 /// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
 pub(crate) const FORCE_BATCH: usize = 8192;
-const STIFFNESS_BATCH: usize = 256;
+const STIFFNESS_BATCH: usize = 512;
 
 /// All hyperelastic voxels of a body.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,27 +93,55 @@ impl Bricks {
                 self.together(first, out.len(), positions, carried)
                     .forces(out);
             },
-            |i, corners| self.bricks[i].add_to(corners, forces),
+            |first, all| {
+                for (brick, corners) in self.bricks[first..].iter().zip(all) {
+                    brick.add_to(corners, forces);
+                }
+            },
         );
     }
 
-    fn visit_stiffness_of(
+    /// In the order of the vertices, so that neighbors meet in the cache.
+    fn visit_elements_of(
         &self,
         positions: &[Vec3],
         carried: Option<&[Carried]>,
-        visit: Visitor<'_>,
+        visit: ElementsVisitor<'_>,
     ) {
+        let mut order: Vec<u32> = (0..self.bricks.len() as u32).collect();
+        order.sort_by_key(|&index| self.bricks[index as usize].vertices[0]);
         let empty: BrickMatrix = [[0.0; 24]; 24];
+        let mut vertices = Vec::new();
         groups_in_order(
-            self.bricks.len(),
+            order.len(),
             STIFFNESS_BATCH,
             TOGETHER,
             &empty,
             |first, out| {
-                self.together(first, out.len(), positions, carried)
-                    .stiffness(out);
+                let last = out.len() - 1;
+                let own: [usize; TOGETHER] =
+                    std::array::from_fn(|place| order[first + place.min(last)] as usize);
+                let bricks = own.map(|index| self.bricks[index]);
+                let states = carried.map(|states| own.map(|index| states[index]));
+                let together = Together {
+                    bricks: &bricks[..=last],
+                    materials: &self.materials,
+                    positions,
+                    carried: states.as_ref().map(|states| &states[..=last]),
+                };
+                together.stiffness(out);
             },
-            |i, matrix| visit(&self.bricks[i].vertices, matrix.as_flattened()),
+            |first, matrices| {
+                vertices.clear();
+                for &index in &order[first..first + matrices.len()] {
+                    vertices.extend_from_slice(&self.bricks[index as usize].vertices);
+                }
+                visit(Elements {
+                    width: 8,
+                    vertices: &vertices,
+                    matrices: matrices.as_flattened().as_flattened(),
+                });
+            },
         );
     }
 
@@ -134,7 +162,7 @@ impl Bricks {
                 self.together(first, out.len(), positions, before)
                     .carry(moves, out);
             },
-            |_, state| states.push(*state),
+            |_, all| states.extend_from_slice(all),
         );
         states
     }
@@ -175,7 +203,15 @@ impl Term for Bricks {
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        self.visit_stiffness_of(positions, None, visit);
+        self.visit_elements(positions, &mut |elements| {
+            elements
+                .iter()
+                .for_each(|(vertices, matrix)| visit(vertices, matrix));
+        });
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_elements_of(positions, None, visit);
     }
 
     fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
@@ -199,8 +235,16 @@ impl Strain for Predicted<'_> {
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+        self.visit_elements(positions, &mut |elements| {
+            elements
+                .iter()
+                .for_each(|(vertices, matrix)| visit(vertices, matrix));
+        });
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
         self.block
-            .visit_stiffness_of(positions, Some(&self.states), visit);
+            .visit_elements_of(positions, Some(&self.states), visit);
     }
 
     fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {

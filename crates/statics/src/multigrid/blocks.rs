@@ -4,7 +4,6 @@ use voxsoft_solid::vector::Vec3;
 
 use super::cells::Interpolation;
 use super::parallel;
-use crate::rank::rank;
 
 /// A block, row-major.
 pub(crate) type Block = [f64; 9];
@@ -65,13 +64,6 @@ impl BlockMatrix {
     pub fn row(&self, row: usize) -> (usize, &[u32]) {
         let (start, end) = (self.starts[row], self.starts[row + 1]);
         (start, &self.columns[start..end])
-    }
-
-    /// Where the block of a row and a column of its pattern is.
-    #[inline(always)]
-    pub fn place(&self, row: usize, column: u32) -> usize {
-        let (start, columns) = self.row(row);
-        start + rank(columns, column)
     }
 
     /// `y = A x`.
@@ -135,18 +127,25 @@ impl BlockMatrix {
             rows.push(row);
             left = rest;
         }
-        parallel::for_each(&mut rows, |row, blocks| {
-            let columns = &columns[starts[row]..starts[row + 1]];
+        let count = starts.len() - 1;
+        let numbers = || vec![0u32; count];
+        parallel::for_each_with(&mut rows, numbers, |place_of, row, blocks| {
+            for (place, &column) in columns[starts[row]..starts[row + 1]].iter().enumerate() {
+                place_of[column as usize] = place as u32;
+            }
             blocks.fill([0.0; 9]);
             for &(fine, weight) in fine_of.row(row) {
                 let (start, neighbors) = self.row(fine as usize);
                 for (block, &neighbor) in self.values[start..].iter().zip(neighbors) {
+                    let weighted = block.map(|entry| weight * entry);
                     for &(column, share) in p.row(neighbor as usize) {
-                        let place = rank(columns, column);
-                        let factor = weight * share;
-                        for (sum, entry) in blocks[place].iter_mut().zip(block) {
-                            *sum += factor * entry;
+                        // A copy, which cannot overlap with what is added.
+                        let place = place_of[column as usize] as usize;
+                        let mut sum = blocks[place];
+                        for (sum, entry) in sum.iter_mut().zip(&weighted) {
+                            *sum += share * entry;
                         }
+                        blocks[place] = sum;
                     }
                 }
             }

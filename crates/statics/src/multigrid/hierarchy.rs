@@ -30,19 +30,18 @@ pub(crate) struct Hierarchy {
     colorings: Vec<Coloring>,
     /// Of levels 1, 2, …; the finest belongs to the caller.
     patterns: Vec<BlockMatrix>,
+    /// The matrices of all levels, rounded.
+    rounded: Vec<SingleMatrix>,
 }
 
-/// What a hierarchy keeps of the matrices of one tangent: rounded ones, and the factor of the coarsest.
-pub(crate) struct Factors {
-    matrices: Vec<SingleMatrix>,
-    last: Option<Llt<f64>>,
-}
+/// The factor of the coarsest matrix, where it has one.
+pub(crate) struct Coarsest(Option<Llt<f64>>);
 
 /// A V-cycle.
 pub(crate) struct Preconditioner<'a> {
     hierarchy: &'a Hierarchy,
     finest: &'a BlockMatrix,
-    factors: &'a Factors,
+    coarsest: &'a Coarsest,
 }
 
 /// Vectors of every level.
@@ -63,6 +62,7 @@ impl Hierarchy {
             up: Vec::new(),
             colorings: vec![coloring],
             patterns: Vec::new(),
+            rounded: Vec::new(),
         };
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
@@ -89,40 +89,37 @@ impl Hierarchy {
             hierarchy.patterns.push(pattern);
             cells = coarse;
         }
+        let levels = std::iter::once(matrix).chain(&hierarchy.patterns);
+        hierarchy.rounded = levels.map(SingleMatrix::for_matrix).collect();
         hierarchy
     }
 
-    /// Fills the coarse matrices.
-    pub fn project(&mut self, finest: &BlockMatrix) {
+    /// Fills the matrices of all levels; the factor of the coarsest comes along.
+    pub fn project(&mut self, finest: &BlockMatrix) -> Coarsest {
         for level in 0..self.patterns.len() {
             let (finer, coarser) = self.patterns.split_at_mut(level);
             let fine = finer.last().unwrap_or(finest);
             fine.project(&self.down[level], &self.up[level], &mut coarser[0]);
         }
-    }
-
-    /// The factors of a matrix that [`Hierarchy::project`] has seen.
-    pub fn factors(&self, finest: &BlockMatrix) -> Factors {
         let levels = std::iter::once(finest).chain(&self.patterns);
-        let last = self.patterns.last().unwrap_or(finest);
-        Factors {
-            matrices: levels.map(SingleMatrix::of).collect(),
-            last: (last.rows() <= LARGEST_DENSE)
-                .then(|| dense_factor(last))
-                .flatten(),
+        for (rounded, matrix) in self.rounded.iter_mut().zip(levels) {
+            rounded.take(matrix);
         }
+        let last = self.patterns.last().unwrap_or(finest);
+        let small = last.rows() <= LARGEST_DENSE;
+        Coarsest(small.then(|| dense_factor(last)).flatten())
     }
 
-    /// The preconditioner with the factors of a matrix.
+    /// The preconditioner of the matrix that [`Hierarchy::project`] has seen last.
     pub fn preconditioner<'a>(
         &'a self,
         finest: &'a BlockMatrix,
-        factors: &'a Factors,
+        coarsest: &'a Coarsest,
     ) -> Preconditioner<'a> {
         Preconditioner {
             hierarchy: self,
             finest,
-            factors,
+            coarsest,
         }
     }
 
@@ -167,7 +164,7 @@ impl Preconditioner<'_> {
                 &self.hierarchy.patterns[level - 1]
             },
             coloring: &self.hierarchy.colorings[level],
-            matrix: &self.factors.matrices[level],
+            matrix: &self.hierarchy.rounded[level],
         }
     }
 
@@ -175,7 +172,7 @@ impl Preconditioner<'_> {
         let own = self.level(level);
         if level == self.hierarchy.down.len() {
             let (side, x) = (&work.sides[level], &mut work.answers[level]);
-            if let Some(factor) = &self.factors.last {
+            if let Some(factor) = &self.coarsest.0 {
                 for (wide, side) in work.last.iter_mut().zip(side) {
                     *wide = widened(*side);
                 }

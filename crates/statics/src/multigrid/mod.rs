@@ -7,8 +7,8 @@ mod hierarchy;
 mod parallel;
 mod single;
 
-pub(crate) use blocks::BlockMatrix;
+pub(crate) use blocks::{Block, BlockMatrix};
 pub(crate) use cells::cells_of;
 pub(crate) use color::color;
-pub(crate) use hierarchy::{Factors, Hierarchy, Workspace};
-pub(crate) use parallel::{for_each, sum};
+pub(crate) use hierarchy::{Coarsest, Hierarchy, Workspace};
+pub(crate) use parallel::{for_each, for_each_large, sum};

@@ -23,18 +23,24 @@ pub(super) struct SingleMatrix {
 }
 
 impl SingleMatrix {
-    pub fn of(matrix: &BlockMatrix) -> Self {
-        let mut values = vec![0.0; BLOCK * matrix.values.len() + READ - BLOCK];
+    /// Room for a matrix.
+    pub fn for_matrix(matrix: &BlockMatrix) -> Self {
+        Self {
+            values: vec![0.0; BLOCK * matrix.values.len() + READ - BLOCK],
+            inverses: vec![[0.0; READ]; matrix.diagonals.len()],
+        }
+    }
+
+    /// Takes the values of the matrix.
+    pub fn take(&mut self, matrix: &BlockMatrix) {
         let used = BLOCK * matrix.values.len();
-        parallel::for_each_chunk(&mut values[..used], |place, out: &mut [f32; BLOCK]| {
+        parallel::for_each_chunk(&mut self.values[..used], |place, out: &mut [f32; BLOCK]| {
             *out = transposed(&matrix.values[place]);
         });
-        let mut inverses = vec![[0.0; READ]; matrix.diagonals.len()];
-        parallel::for_each(&mut inverses, |row, inverse| {
+        parallel::for_each(&mut self.inverses, |row, inverse| {
             let block = pseudo_inverse(&matrix.values[matrix.diagonals[row]]);
             inverse[..BLOCK].copy_from_slice(&transposed(&block));
         });
-        Self { values, inverses }
     }
 
     /// The sum of the given blocks of one row times what `value` says for their columns.
