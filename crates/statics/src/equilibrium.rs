@@ -253,9 +253,7 @@ impl<'a> Equilibrium<'a> {
         let start = positions.clone();
         let mut outcome = self.newton_by(way, positions, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
-            // From here on directly, if that fits in memory.
-            self.means.solver = LinearSolver::Direct;
-            self.system = System::new(self.problem, &self.held, self.means)?;
+            self.go_on_directly()?;
             positions.clone_from(&start);
             outcome = self.newton_by(way, positions, point, settings, observer);
         }
@@ -263,6 +261,13 @@ impl<'a> Equilibrium<'a> {
             *positions = start;
         }
         outcome
+    }
+
+    /// From here on solves directly, if that fits in memory.
+    pub fn go_on_directly(&mut self) -> Result<(), FactorError> {
+        self.means.solver = LinearSolver::Direct;
+        self.system = System::new(self.problem, &self.held, self.means)?;
+        Ok(())
     }
 
     fn newton_by(
@@ -439,7 +444,7 @@ impl<'a> Equilibrium<'a> {
         is_standstill(relative, largest, body.size(), moved)
     }
 
-    fn tell(
+    pub fn tell(
         &self,
         positions: &[Vec3],
         point: Point,

@@ -20,6 +20,8 @@ use crate::system::{FactorError, Means};
 const BYTES_PER_VERTEX: u64 = 4_000;
 /// Iterations after which a solution counts as stalled.
 const MAX_ITERATIONS: usize = 400;
+/// How many times what is just enough is added across a direction.
+const BEYOND: f64 = 10.0;
 /// Elements from which on parts of the rows are worth a task each, and into how many the rows are parted.
 const MANY: usize = 64;
 const PARTS: usize = 8;
@@ -36,7 +38,15 @@ pub(crate) struct IterativeSystem {
     places: Vec<u32>,
     held: Vec<[bool; 3]>,
     matrix: BlockMatrix,
+    /// By what part of itself the diagonal has been lifted.
+    lifted: f64,
     hierarchy: Hierarchy,
+}
+
+/// `factor` times the product of a vector with itself, which is added to the tangent.
+struct Border<'a> {
+    vector: &'a [Vec3],
+    factor: f64,
 }
 
 /// A preconditioner, and whether solutions must go downhill.
@@ -92,6 +102,7 @@ impl IterativeSystem {
             places,
             held: held.to_vec(),
             matrix,
+            lifted: 0.0,
             hierarchy,
         }))
     }
@@ -111,6 +122,7 @@ impl IterativeSystem {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
+        self.lifted = 0.0;
         for_each(&mut self.matrix.values, |_, block| *block = [0.0; 9]);
         let mut target = Target {
             places: &self.places,
@@ -135,6 +147,23 @@ impl IterativeSystem {
                 matrices,
             });
         });
+    }
+
+    /// Makes the diagonal of the assembled tangent `1 + shift` times what it was, where it is positive.
+    pub fn lift(&mut self, shift: f64) {
+        let by = (1.0 + shift) / (1.0 + self.lifted);
+        self.lifted = shift;
+        if by == 1.0 {
+            return;
+        }
+        for &place in &self.matrix.diagonals {
+            for axis in 0..3 {
+                let entry = &mut self.matrix.values[place][4 * axis];
+                if *entry > 0.0 {
+                    *entry *= by;
+                }
+            }
+        }
     }
 
     /// A preconditioner for the assembled tangent.
@@ -162,7 +191,7 @@ impl IterativeSystem {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        let (answer, end) = self.iterate(factor, side, tolerance, stop);
+        let (answer, end) = self.iterate(factor, side, None, tolerance, stop);
         for (vertex, &place) in self.places.iter().enumerate() {
             side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
         }
@@ -173,9 +202,15 @@ impl IterativeSystem {
         }
     }
 
+    /// See [`crate::system::System::is_held_across`]: the tangent plus `ρ g ⊗ g` is positive definite then for all ρ beyond
+    /// one over that compliance.
+    pub fn is_held_across(&mut self, gradient: &[f64], compliance: f64) -> bool {
+        self.is_positive_definite(Some((gradient, BEYOND / compliance.abs())))
+    }
+
     /// Conjugate gradients from zero look along every direction that the preconditioned side has a part
-    /// in, which one without any order has in all.
-    pub fn is_positive_definite(&mut self) -> bool {
+    /// in, which one without any order has in all. A vector and a factor may stand for what is added to the tangent.
+    pub fn is_positive_definite(&mut self, border: Option<(&[f64], f64)>) -> bool {
         let Ok(factor) = self.factor(true) else {
             return false;
         };
@@ -187,10 +222,24 @@ impl IterativeSystem {
                 *value = (seed >> 33) as f64 / f64::from(1u32 << 31) - 0.5;
             }
         }
+        let border = border.map(|(vector, factor)| (self.by_rows(vector), factor));
+        let border = border.as_ref().map(|(vector, factor)| Border {
+            vector,
+            factor: *factor,
+        });
         let end = self
-            .iterate(&factor, &side, DEFINITE_TOLERANCE, &mut || false)
+            .iterate(&factor, &side, border, DEFINITE_TOLERANCE, &mut || false)
             .1;
         end != End::NegativeCurvature
+    }
+
+    /// A vector of free coordinates by rows.
+    fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
+        let mut rows = vec![[0.0; 3]; self.places.len()];
+        for (vertex, &place) in self.places.iter().enumerate() {
+            rows[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
+        }
+        rows
     }
 
     /// The answer by rows.
@@ -198,14 +247,12 @@ impl IterativeSystem {
         &self,
         factor: &IterativeFactor,
         side: &[f64],
+        border: Option<Border<'_>>,
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> (Vec<Vec3>, End) {
         let count = self.places.len();
-        let mut residual = vec![[0.0; 3]; count];
-        for (vertex, &place) in self.places.iter().enumerate() {
-            residual[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
-        }
+        let mut residual = self.by_rows(side);
         let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
         let mut answer = vec![[0.0; 3]; count];
         let mut image = vec![[0.0; 3]; count];
@@ -227,6 +274,10 @@ impl IterativeSystem {
                 return (answer, End::Cancelled);
             }
             self.matrix.multiply(&direction, &mut image);
+            if let Some(Border { vector, factor }) = &border {
+                let part = factor * inner(vector, &direction);
+                for_each(&mut image, |row, image| axpy(image, part, vector[row]));
+            }
             let curvature = inner(&direction, &image);
             let positive = curvature > 0.0 && gain > 0.0;
             let lost = !(curvature.abs() > 0.0 && gain.is_finite());
