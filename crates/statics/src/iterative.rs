@@ -9,7 +9,7 @@ use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Load, Problem, Term, elastic};
 
 use crate::multigrid::{
-    Block, BlockMatrix, Coarsest, Hierarchy, Workspace, cells_of, color, for_each, for_each_large,
+    BlockMatrix, Coarsest, Hierarchy, Part, Workspace, cells_of, color, for_each, for_each_large,
     sum,
 };
 use crate::rank::rank;
@@ -123,7 +123,7 @@ impl IterativeSystem {
         residual: &mut [f64],
     ) {
         self.lifted = 0.0;
-        for_each(&mut self.matrix.values, |_, block| *block = [0.0; 9]);
+        self.matrix.values.clear();
         let mut target = Target {
             places: &self.places,
             held: &self.held,
@@ -158,9 +158,8 @@ impl IterativeSystem {
         }
         for &place in &self.matrix.diagonals {
             for axis in 0..3 {
-                let entry = &mut self.matrix.values[place][4 * axis];
-                if *entry > 0.0 {
-                    *entry *= by;
+                if self.matrix.values.block(place)[4 * axis] > 0.0 {
+                    self.matrix.values.scale(place, axis, axis, by);
                 }
             }
         }
@@ -168,11 +167,7 @@ impl IterativeSystem {
 
     /// A preconditioner for the assembled tangent.
     pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
-        let values = &self.matrix.values;
-        if !values
-            .iter()
-            .all(|block| block.iter().all(|v| v.is_finite()))
-        {
+        if !self.matrix.values.are_finite() {
             return Err(FactorError::Singular);
         }
         Ok(IterativeFactor {
@@ -372,14 +367,15 @@ impl Target<'_> {
             ..
         } = &mut **matrix;
         // Rows are numbered by colors, of which a voxel has each once: equal parts are equal work.
-        let mut parts = Vec::with_capacity(count);
-        let mut left = values.as_mut_slice();
-        for part in 0..count {
-            let range = rows * part / count..rows * (part + 1) / count;
-            let (values, rest) = left.split_at_mut(starts[range.end] - starts[range.start]);
-            parts.push(Rows { range, values });
-            left = rest;
-        }
+        let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
+        let sizes = ranges
+            .clone()
+            .map(|rows| starts[rows.end] - starts[rows.start]);
+        let values = values.parts(sizes);
+        let mut parts: Vec<Rows<'_>> = ranges
+            .zip(values)
+            .map(|(range, values)| Rows { range, values })
+            .collect();
         for_each_large(&mut parts, |_, rows| {
             for (vertices, entries) in elements.iter() {
                 for (a, &vertex) in vertices.iter().enumerate() {
@@ -389,21 +385,25 @@ impl Target<'_> {
                     }
                     let columns = &columns[starts[row]..starts[row + 1]];
                     let first = starts[row] - starts[rows.range.start];
-                    let blocks = &mut rows.values[first..first + columns.len()];
                     let fixed = held[vertex as usize];
                     let width = 3 * vertices.len();
                     let entries = &entries[3 * a * width..(3 * a + 3) * width];
                     for (b, &other) in vertices.iter().enumerate() {
-                        let block = &mut blocks[rank(columns, places[other as usize])];
-                        let across = held[other as usize];
-                        let free = fixed == [false; 3] && across == [false; 3];
+                        let mut block = [0.0; 9];
                         for i in 0..3 {
-                            for j in 0..3 {
-                                if free || !(fixed[i] || across[j]) {
-                                    block[3 * i + j] += entries[i * width + 3 * b + j];
+                            let entries = &entries[i * width + 3 * b..][..3];
+                            block[3 * i..3 * i + 3].copy_from_slice(entries);
+                        }
+                        let across = held[other as usize];
+                        if fixed != [false; 3] || across != [false; 3] {
+                            for (k, entry) in block.iter_mut().enumerate() {
+                                if fixed[k / 3] || across[k % 3] {
+                                    *entry = 0.0;
                                 }
                             }
                         }
+                        let place = first + rank(columns, places[other as usize]);
+                        rows.values.add(place, &block);
                     }
                 }
             }
@@ -414,7 +414,7 @@ impl Target<'_> {
 /// Some rows of a matrix.
 struct Rows<'a> {
     range: std::ops::Range<usize>,
-    values: &'a mut [Block],
+    values: Part<'a>,
 }
 
 /// The vertices of elements, one after the other.

@@ -4,6 +4,7 @@ use voxsoft_solid::vector::Vec3;
 
 use super::cells::Interpolation;
 use super::parallel;
+use super::values::Values;
 
 /// A block, row-major.
 pub(crate) type Block = [f64; 9];
@@ -13,7 +14,7 @@ pub(crate) type Block = [f64; 9];
 pub(crate) struct BlockMatrix {
     pub starts: Vec<usize>,
     pub columns: Vec<u32>,
-    pub values: Vec<Block>,
+    pub values: Values,
     /// Where the diagonal of each row is.
     pub diagonals: Vec<usize>,
 }
@@ -30,7 +31,7 @@ impl BlockMatrix {
             })
             .collect();
         Self {
-            values: vec![[0.0; 9]; columns.len()],
+            values: Values::zeros(columns.len()),
             starts,
             columns,
             diagonals,
@@ -69,21 +70,13 @@ impl BlockMatrix {
     /// `y = A x`.
     pub fn multiply(&self, x: &[Vec3], y: &mut [Vec3]) {
         parallel::for_each(y, |row, y| {
-            *y = self.product(self.starts[row]..self.starts[row + 1], |column| x[column]);
+            let mut sum = [0.0; 4];
+            for place in self.starts[row]..self.starts[row + 1] {
+                let x = x[self.columns[place] as usize];
+                self.values.add_product(place, x, &mut sum);
+            }
+            *y = [sum[0], sum[1], sum[2]];
         });
-    }
-
-    /// The sum of the given blocks of one row times what `value` says for their columns.
-    #[inline(always)]
-    pub fn product(&self, places: std::ops::Range<usize>, value: impl Fn(usize) -> Vec3) -> Vec3 {
-        let mut sum = [0.0; 3];
-        for (block, &column) in self.values[places.clone()]
-            .iter()
-            .zip(&self.columns[places])
-        {
-            add_product(&mut sum, block, value(column as usize));
-        }
-        sum
     }
 
     /// The pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
@@ -120,34 +113,31 @@ impl BlockMatrix {
             values,
             ..
         } = coarse;
-        let mut rows: Vec<&mut [Block]> = Vec::with_capacity(starts.len() - 1);
-        let mut left = values.as_mut_slice();
-        for ends in starts.windows(2) {
-            let (row, rest) = left.split_at_mut(ends[1] - ends[0]);
-            rows.push(row);
-            left = rest;
-        }
+        let mut rows = values.parts(starts.windows(2).map(|ends| ends[1] - ends[0]));
         let count = starts.len() - 1;
-        let numbers = || vec![0u32; count];
-        parallel::for_each_with(&mut rows, numbers, |place_of, row, blocks| {
-            for (place, &column) in columns[starts[row]..starts[row + 1]].iter().enumerate() {
+        let scratch = || (vec![0u32; count], Vec::<Block>::new());
+        parallel::for_each_with(&mut rows, scratch, |(place_of, sums), row, blocks| {
+            let columns = &columns[starts[row]..starts[row + 1]];
+            for (place, &column) in columns.iter().enumerate() {
                 place_of[column as usize] = place as u32;
             }
-            blocks.fill([0.0; 9]);
+            sums.clear();
+            sums.resize(columns.len(), [0.0; 9]);
             for &(fine, weight) in fine_of.row(row) {
                 let (start, neighbors) = self.row(fine as usize);
-                for (block, &neighbor) in self.values[start..].iter().zip(neighbors) {
+                for (offset, &neighbor) in neighbors.iter().enumerate() {
+                    let block = self.values.block(start + offset);
                     let weighted = block.map(|entry| weight * entry);
                     for &(column, share) in p.row(neighbor as usize) {
-                        // A copy, which cannot overlap with what is added.
-                        let place = place_of[column as usize] as usize;
-                        let mut sum = blocks[place];
+                        let sum = &mut sums[place_of[column as usize] as usize];
                         for (sum, entry) in sum.iter_mut().zip(&weighted) {
                             *sum += share * entry;
                         }
-                        blocks[place] = sum;
                     }
                 }
+            }
+            for (place, sum) in sums.iter().enumerate() {
+                blocks.set(place, sum);
             }
         });
     }
@@ -172,15 +162,6 @@ pub(crate) fn transposed(p: &Interpolation, count: usize) -> Interpolation {
         }
     }
     Interpolation { starts, entries }
-}
-
-/// `sum += block · x`.
-#[inline(always)]
-pub(crate) fn add_product(sum: &mut Vec3, block: &Block, x: Vec3) {
-    for axis in 0..3 {
-        sum[axis] +=
-            block[3 * axis] * x[0] + block[3 * axis + 1] * x[1] + block[3 * axis + 2] * x[2];
-    }
 }
 
 /// The inverse of a symmetric block on the axes that have stiffness, zero on the others: coordinates

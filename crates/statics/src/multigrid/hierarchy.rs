@@ -1,4 +1,4 @@
-//! The V-cycle: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
+//! The V-cycle in single precision: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
 //!
 //! Coarse spaces hold the trilinear functions of ever larger cubes, so rigid motions and uniform
 //! strains, the slow part of an error, are theirs exactly; coarse matrices are `Pᵀ A P`, so anything a
@@ -9,11 +9,11 @@ use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
 use voxsoft_solid::vector::Vec3;
 
-use super::blocks::{BlockMatrix, transposed};
+use super::blocks::{BlockMatrix, pseudo_inverse, transposed};
 use super::cells::{Cell, Interpolation, coarsen};
 use super::color::{Coloring, color};
 use super::parallel;
-use super::single::{Single, SingleMatrix, minus, plus, rounded, widened};
+use super::values::Single;
 
 /// A level of no more nodes than this is solved directly, by a dense factor.
 const COARSEST: usize = 250;
@@ -30,9 +30,12 @@ pub(crate) struct Hierarchy {
     colorings: Vec<Coloring>,
     /// Of levels 1, 2, …; the finest belongs to the caller.
     patterns: Vec<BlockMatrix>,
-    /// The matrices of all levels, rounded.
-    rounded: Vec<SingleMatrix>,
+    /// The inverses of the diagonals of all levels.
+    inverses: Vec<Vec<Inverse>>,
 }
+
+/// The inverse of a block on the diagonal, by columns; three places more fill a register.
+type Inverse = [f32; 12];
 
 /// The factor of the coarsest matrix, where it has one.
 pub(crate) struct Coarsest(Option<Llt<f64>>);
@@ -62,7 +65,7 @@ impl Hierarchy {
             up: Vec::new(),
             colorings: vec![coloring],
             patterns: Vec::new(),
-            rounded: Vec::new(),
+            inverses: Vec::new(),
         };
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
@@ -90,7 +93,9 @@ impl Hierarchy {
             cells = coarse;
         }
         let levels = std::iter::once(matrix).chain(&hierarchy.patterns);
-        hierarchy.rounded = levels.map(SingleMatrix::for_matrix).collect();
+        hierarchy.inverses = levels
+            .map(|matrix| vec![[0.0; 12]; matrix.rows()])
+            .collect();
         hierarchy
     }
 
@@ -102,8 +107,14 @@ impl Hierarchy {
             fine.project(&self.down[level], &self.up[level], &mut coarser[0]);
         }
         let levels = std::iter::once(finest).chain(&self.patterns);
-        for (rounded, matrix) in self.rounded.iter_mut().zip(levels) {
-            rounded.take(matrix);
+        for (inverses, matrix) in self.inverses.iter_mut().zip(levels) {
+            parallel::for_each(inverses, |row, inverse| {
+                let block = pseudo_inverse(&matrix.values.block(matrix.diagonals[row]));
+                for k in 0..9 {
+                    // Symmetric: by rows is by columns.
+                    inverse[k] = block[k] as f32;
+                }
+            });
         }
         let last = self.patterns.last().unwrap_or(finest);
         let small = last.rows() <= LARGEST_DENSE;
@@ -164,7 +175,7 @@ impl Preconditioner<'_> {
                 &self.hierarchy.patterns[level - 1]
             },
             coloring: &self.hierarchy.colorings[level],
-            matrix: &self.hierarchy.rounded[level],
+            inverses: &self.hierarchy.inverses[level],
         }
     }
 
@@ -195,9 +206,7 @@ impl Preconditioner<'_> {
         let residual = &mut work.residuals[level];
         parallel::for_each(residual, |row, r| {
             let after = own.pattern.diagonals[row] + 1..own.pattern.starts[row + 1];
-            let seen = own
-                .matrix
-                .product(&own.pattern.columns, after, |column| &x[column]);
+            let seen = own.product(after, |column| &x[column]);
             *r = minus([0.0; 4], seen);
         });
         parallel::for_each(&mut work.sides[level + 1], |row, side| {
@@ -223,14 +232,25 @@ impl Preconditioner<'_> {
 struct Level<'a> {
     pattern: &'a BlockMatrix,
     coloring: &'a Coloring,
-    matrix: &'a SingleMatrix,
+    inverses: &'a [Inverse],
 }
 
 impl Level<'_> {
+    /// The given blocks of one row times what `value` says for their columns.
+    #[inline(always)]
+    fn product<'a>(
+        &self,
+        places: std::ops::Range<usize>,
+        value: impl Fn(usize) -> &'a Single,
+    ) -> Single {
+        let values = &self.pattern.values;
+        values.rounded_product(&self.pattern.columns, places, value)
+    }
+
     /// Gauss–Seidel through the colors, from zero.
     fn forward_from_zero(&self, side: &[Single], x: &mut [Single]) {
         let Self {
-            pattern, matrix, ..
+            pattern, inverses, ..
         } = self;
         for range in self.coloring.ranges() {
             let first = range.start;
@@ -238,8 +258,8 @@ impl Level<'_> {
             parallel::for_each(&mut rest[..range.len()], |place, x| {
                 let row = first + place;
                 let seen = pattern.starts[row]..pattern.diagonals[row];
-                let known = matrix.product(&pattern.columns, seen, |column| &before[column]);
-                *x = matrix.solve(row, minus(side[row], known));
+                let known = self.product(seen, |column| &before[column]);
+                *x = solved(&inverses[row], minus(side[row], known));
             });
         }
     }
@@ -247,7 +267,7 @@ impl Level<'_> {
     /// Gauss–Seidel back through the colors.
     fn backward(&self, side: &[Single], x: &mut [Single]) {
         let Self {
-            pattern, matrix, ..
+            pattern, inverses, ..
         } = self;
         for range in self.coloring.ranges().rev() {
             let (before, rest) = x.split_at_mut(range.start);
@@ -255,19 +275,41 @@ impl Level<'_> {
             parallel::for_each(own, |place, x| {
                 let row = range.start + place;
                 let diagonal = pattern.diagonals[row];
-                let below =
-                    matrix.product(&pattern.columns, pattern.starts[row]..diagonal, |column| {
-                        &before[column]
-                    });
-                let above = matrix.product(
-                    &pattern.columns,
-                    diagonal + 1..pattern.starts[row + 1],
-                    |column| &after[column - range.end],
-                );
-                *x = matrix.solve(row, minus(minus(side[row], below), above));
+                let below = self.product(pattern.starts[row]..diagonal, |column| &before[column]);
+                let above = self.product(diagonal + 1..pattern.starts[row + 1], |column| {
+                    &after[column - range.end]
+                });
+                *x = solved(&inverses[row], minus(minus(side[row], below), above));
             });
         }
     }
+}
+
+/// An inverse times a vector. Axes without stiffness get zero.
+#[inline(always)]
+fn solved(inverse: &Inverse, x: Single) -> Single {
+    std::array::from_fn(|i| inverse[i] * x[0] + (inverse[3 + i] * x[1] + inverse[6 + i] * x[2]))
+}
+
+#[inline(always)]
+fn rounded(x: Vec3) -> Single {
+    [x[0] as f32, x[1] as f32, x[2] as f32, 0.0]
+}
+
+#[inline(always)]
+fn widened(x: Single) -> Vec3 {
+    [f64::from(x[0]), f64::from(x[1]), f64::from(x[2])]
+}
+
+#[inline(always)]
+fn minus(a: Single, b: Single) -> Single {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// `a + factor b`.
+#[inline(always)]
+fn plus(a: Single, factor: f32, b: Single) -> Single {
+    std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
 /// The dense Cholesky factor of the coarsest matrix, lifted on its diagonal as far as it must be.
@@ -276,7 +318,8 @@ fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
     let mut dense = Mat::<f64>::zeros(size, size);
     for row in 0..matrix.rows() {
         let (start, columns) = matrix.row(row);
-        for (block, &column) in matrix.values[start..].iter().zip(columns) {
+        for (offset, &column) in columns.iter().enumerate() {
+            let block = matrix.values.block(start + offset);
             for i in 0..3 {
                 for j in 0..3 {
                     dense[(3 * row + i, 3 * column as usize + j)] = block[3 * i + j];

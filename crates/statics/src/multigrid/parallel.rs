@@ -55,15 +55,6 @@ pub(crate) fn for_each_large<T: Send>(items: &mut [T], each: impl Fn(usize, &mut
         .for_each(|(index, item)| each(index, item));
 }
 
-/// Calls `each(index, array)` for all arrays of `N` that follow each other in `items`.
-pub(crate) fn for_each_chunk<T: Send, const N: usize>(
-    items: &mut [T],
-    each: impl Fn(usize, &mut [T; N]) + Sync,
-) {
-    let (arrays, _) = items.as_chunks_mut::<N>();
-    for_each(arrays, each);
-}
-
 /// The sum of `each(index)` over `0..count`, always added in the same order.
 pub(crate) fn sum(count: usize, each: impl Fn(usize) -> f64 + Sync) -> f64 {
     let chunks = count.div_ceil(CHUNK);
