@@ -138,9 +138,23 @@ pub struct BrickResponse {
 /// Strain and pressure of a voxel as unknowns of their own ([`crate::mixed`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
-    strain: BrickStrain,
+    pub(crate) strain: BrickStrain,
     /// The pressure that is carried is that of the strain at this shift.
-    pressure: Pressure,
+    pub(crate) pressure: Pressure,
+}
+
+impl Carried {
+    /// No strain and no pressure: what is there before an answer is.
+    pub(crate) const NOTHING: Self = Self {
+        strain: BrickStrain {
+            stretch: [0.0; 6],
+            hourglass: [[0.0; 3]; 3],
+        },
+        pressure: Pressure {
+            stiffness: 0.0,
+            shift: 0.0,
+        },
+    };
 }
 
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.

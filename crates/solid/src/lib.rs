@@ -41,6 +41,7 @@ pub mod body;
 pub mod breakdown;
 pub mod brick;
 mod brick_energy;
+mod brick_lanes;
 mod brick_thickness;
 mod clamp;
 mod color;

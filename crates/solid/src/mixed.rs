@@ -18,7 +18,7 @@
 //! by `p̂` in place of `K (J(ê) − 1)` in `C` and `G` alone; in the forces it cancels.
 
 use crate::Body;
-use crate::assembly::Visitor;
+use crate::assembly::{ElementsVisitor, Visitor};
 use crate::terms::{Strain, Term};
 use crate::vector::Vec3;
 
@@ -74,11 +74,10 @@ impl<'a> Strains<'a> {
         }
     }
 
-    /// The tangent at `positions` with the stress of these strains, an element at a time as in
-    /// [`crate::elastic::visit_stiffness`].
-    pub fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+    /// The tangent at `positions` with the stress of these strains, as many elements at a time as suits.
+    pub fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
         for term in &self.terms {
-            term.visit_stiffness(positions, visit);
+            term.visit_elements(positions, visit);
         }
     }
 }
@@ -93,5 +92,9 @@ impl Strain for AsItIs<'_> {
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
         self.0.visit_stiffness(positions, visit);
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.0.visit_elements(positions, visit);
     }
 }

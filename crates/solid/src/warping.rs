@@ -65,6 +65,11 @@ impl Warping {
     /// No free face.
     pub const NONE: Self = Self([[0.0; 2]; 3]);
 
+    /// The parts of each pair of axes.
+    pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
+        self.0
+    }
+
     /// That of a full voxel of isotropic rubber.
     pub fn of(faces: &Faces) -> Self {
         let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());

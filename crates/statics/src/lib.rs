@@ -51,6 +51,7 @@ mod multigrid;
 mod ordering;
 mod path;
 mod point;
+mod rank;
 mod sensitivity;
 mod settings;
 mod settle;

@@ -12,7 +12,7 @@ use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::settle::AtLoad;
 use crate::step_length::StepLength;
-use crate::system::{FactorError, Means, System};
+use crate::system::{FactorError, Means};
 use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
@@ -134,6 +134,8 @@ fn follow(
     let positions = start.map_or(rest, |start| &start.positions).to_vec();
     let solver = match settings.control {
         Control::Load => settings.linear,
+        // Where contact goes astray is told from the signs of pivots.
+        Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
     };
     let means = Means {
@@ -262,9 +264,7 @@ impl Path<'_, '_> {
     fn look_ahead(&mut self, settings: &Settings) -> Option<f64> {
         let equilibrium = &mut self.equilibrium;
         if equilibrium.system.is_iterative() {
-            equilibrium.means.solver = LinearSolver::Direct;
-            let (problem, held) = (equilibrium.problem, &equilibrium.held);
-            equilibrium.system = System::new(problem, held, equilibrium.means).ok()?;
+            equilibrium.go_on_directly().ok()?;
         }
         control::look_for_limit(self, settings)
     }

@@ -17,7 +17,9 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 
-use crate::assembly::{Visitor, add_product, add_row_sums, check_indices};
+use crate::assembly::{
+    Elements, ElementsVisitor, Visitor, add_product, add_row_sums, check_indices,
+};
 use crate::brick::Tangent;
 use crate::vector::Vec3;
 use crate::{Mirrored, ProblemError};
@@ -70,6 +72,17 @@ pub trait Term: Debug + Send + Sync {
 
     /// Hands the stiffness in N/m, the Hessian of the energy, to `visit`, an element at a time.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+
+    /// The same, as many elements at a time as suits.
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            visit(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices: matrix,
+            });
+        });
+    }
 
     /// The same with or without the stress that is there, which may make it indefinite.
     fn visit_tangent(&self, positions: &[Vec3], _tangent: Tangent, visit: Visitor<'_>) {
@@ -144,6 +157,17 @@ pub trait Strain {
 
     /// Hands over the tangent at `positions` with the stress of these strains.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+
+    /// The same, as many elements at a time as suits.
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            visit(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices: matrix,
+            });
+        });
+    }
 
     /// Goes on by a step `moves` from `positions`; `false` where what [`Term::predict`] says there is all that there is
     /// to know.
