@@ -43,6 +43,7 @@ pub mod brick;
 mod brick_energy;
 mod brick_thickness;
 mod clamp;
+mod clamped;
 mod color;
 pub mod conformance;
 mod contact;
