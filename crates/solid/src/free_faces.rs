@@ -29,7 +29,7 @@ enum Behind {
 }
 
 /// How many times as stiff another material must be to count as a clamp.
-const HOLDS: f64 = 5.0;
+const HOLDS: f64 = 2.0;
 
 /// How the faces of each voxel warp. `voxels` are all cubes of the body, `held` the axes that clamps hold of each vertex,
 /// `pressed` the triangles under pressure.
