@@ -50,26 +50,29 @@ def test_one_modulus_fits_each_beam(paper, name):
     assert alone.young == pytest.approx(theory, rel=0.04)
 
 
-def test_six_beams_extrapolated_from_two_coarse_sizes(accuracy):
-    """Elements of 5 and 2.5 mm, extrapolated with the order 1 of a clamp's singular edge.
+def test_six_beams_need_no_extrapolation(accuracy):
+    """Voxels of 5 mm, two or four across, and nothing fitted: 2 % of the tip's displacement.
 
-    Nothing is fitted. Seen are 0.9, 0.4, 0.2, 0.5, 0.6 and 0.9 % of the tip's displacement, and up
-    to 7.5 % with 5 mm alone. The references themselves move by up to 0.3 % on refinement. The two
-    shortest beams, whose clamp counts most, are solved here, and all six by the benchmark.
+    Seen are 1.8, 0.8, 0.5, 0.2, 1.0 and 0.6 %, with voxels of 2.5 mm 1.5, 0.4, 0.6, 0.3, 0.7 and
+    0.3 %. Without what voxels at a clamp draw in it was 3.6, 2.3, 3.4, 6.4, 6.0 and 6.0 %. The
+    references themselves move by up to 0.3 % on refinement.
     """
     for beam in accuracy.beams():
-        if beam.name not in "df":
-            continue
-        coarse, fine = (
-            accuracy.seen(accuracy.vs.simulate(beam.setup(accuracy.SOFT, refine)), beam)
-            for refine in (1, 2)
-        )
-        errors = [
-            np.linalg.norm(moved[-1] - beam.moved[-1]) / beam.reach
-            for moved in (coarse, fine, 2 * fine - coarse)
-        ]
-        assert errors[2] < 0.02
-        assert errors[2] < errors[1] < errors[0] < 0.08
+        moved = accuracy.seen(accuracy.vs.simulate(beam.setup(accuracy.SOFT)), beam)
+        assert np.linalg.norm(moved[-1] - beam.moved[-1]) < 0.02 * beam.reach, beam.name
+
+
+@pytest.mark.parametrize("poisson", [0.3, 0.4999])
+def test_short_beams_do_not_lock_at_their_clamps(accuracy, poisson):
+    """Voxels of 5 and 2.5 mm are up to 0.94 % apart, and without the clamp's modes 3.6 %."""
+    material = accuracy.vs.NeoHookean(young=60e3, poisson=poisson)
+    for beam in accuracy.beams():
+        if beam.name in "df":
+            coarse, fine = (
+                accuracy.seen(accuracy.vs.simulate(beam.setup(material, refine)), beam)[-1]
+                for refine in (1, 2)
+            )
+            assert np.linalg.norm(coarse - fine) < 0.012 * np.linalg.norm(fine), beam.name
 
 
 @pytest.mark.parametrize("poisson", [0.3, 0.499])

@@ -248,15 +248,16 @@ impl Body {
             chunk_tets,
             colors: order.colors,
         };
-        body.warp_unless(&vec![[false; 3]; mesh.vertices.len()]);
+        body.warp_unless(&vec![[false; 3]; mesh.vertices.len()], &[]);
         Ok(body)
     }
 
-    /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex.
-    pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]]) {
+    /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex. `pressed` are the
+    /// triangles under pressure.
+    pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
         let Bricks { bricks, materials } = &self.bricks;
         let membranes = &self.membranes.0;
-        let each = free_faces::warpings(bricks, materials, &self.voxels, membranes, held);
+        let each = free_faces::warpings(bricks, materials, &self.voxels, membranes, held, pressed);
         for (brick, warping) in self.bricks.bricks.iter_mut().zip(each) {
             brick.warping = warping;
         }

@@ -242,12 +242,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> f64 {
-        let state = self.rotated(positions);
-        state
-            .points(material.thinning())
-            .iter()
-            .map(|stretch| determinant(&to_matrix(stretch)))
-            .fold(f64::INFINITY, f64::min)
+        self.rotated(positions).smallest_volume(material.thinning())
     }
 
     /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of

@@ -5,10 +5,10 @@
 
 use crate::brick_thickness::Thickness;
 use crate::hyperelastic::symmetric::{
-    Sym, determinant_response, isochoric, isochoric_stress, to_sym,
+    Sym, determinant_response, isochoric, isochoric_stress, to_matrix, to_sym,
 };
 use crate::hyperelastic::{HyperelasticMaterial, Response, fiber};
-use crate::matrix::{Mat3, apply_transposed, polar};
+use crate::matrix::{Mat3, apply_transposed, determinant, polar};
 use crate::vector::{Vec3, axpy};
 use crate::warping::Warping;
 
@@ -218,7 +218,7 @@ impl Rotated {
 
     /// `Ĥₙ` for the axis `n` with the others `i, j`.
     #[inline(always)]
-    fn variation(&self, axes: Axes, thinning: f64) -> Variation {
+    pub(crate) fn variation(&self, axes: Axes, thinning: f64) -> Variation {
         let (n, i, j) = axes;
         let p = &self.hourglass;
         let (first, second) = (p[j][i], p[i][j]);
@@ -235,14 +235,21 @@ impl Rotated {
         }
     }
 
-    /// The stretches at the six points over which the energy is the mean.
-    pub fn points(&self, thinning: f64) -> [Sym; 6] {
+    /// The smallest ratio of volumes at the points over which the energy is the mean.
+    pub fn smallest_volume(&self, thinning: f64) -> f64 {
+        if let Some(clamped) = self.warping.clamped {
+            return self.smallest_clamped_volume(clamped, thinning);
+        }
         let ends = |n: usize| {
             let h = self.variation(AXES[n], thinning).h;
             self.ends(&h, self.filling.spread[n])
         };
-        let [[a, b], [c, d], [e, f]] = [ends(0), ends(1), ends(2)];
-        [a, b, c, d, e, f]
+        [0, 1, 2]
+            .map(ends)
+            .as_flattened()
+            .iter()
+            .map(|stretch| determinant(&to_matrix(stretch)))
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The two points of an axis: the face centers of a full voxel.
@@ -253,7 +260,10 @@ impl Rotated {
 
     /// The mean change of volume over the six points, with derivatives where `second` asks.
     fn volume(&self, thinning: f64, second: bool) -> Shaped {
-        self.mean(thinning, second, |at| determinant_response(at, second))
+        match self.warping.clamped {
+            Some(clamped) => self.clamped_volume(clamped, thinning, second),
+            None => self.mean(thinning, second, |at| determinant_response(at, second)),
+        }
     }
 
     /// The mean change of volume and its gradient by the generalized coordinates.
@@ -457,7 +467,7 @@ pub(crate) struct Shaped {
 }
 
 impl Shaped {
-    fn zero() -> Self {
+    pub(crate) fn zero() -> Self {
         Self {
             value: 0.0,
             gradient: [0.0; SHAPE],
@@ -475,15 +485,15 @@ fn stress_only(material: &HyperelasticMaterial, at: &Sym) -> Response {
     }
 }
 
-struct Variation {
-    h: Sym,
+pub(crate) struct Variation {
+    pub(crate) h: Sym,
     thickness: Thickness,
     bending: [f64; 2],
 }
 
 impl Variation {
     /// The derivatives of `Ĥₙ` by the coordinates that it depends on.
-    fn slopes(&self, (n, i, j): Axes, thinning: f64) -> [(usize, Sym); 7] {
+    pub(crate) fn slopes(&self, (n, i, j): Axes, thinning: f64) -> [(usize, Sym); 7] {
         let along = |axis: usize, value: f64| {
             let mut h = [0.0; 6];
             h[axis] = value;
@@ -512,7 +522,7 @@ impl Variation {
 
     /// Adds `moment` times the second derivatives of the thickness strain
     /// `−thinning (a N/I + b N/J)`.
-    fn add_curvature(
+    pub(crate) fn add_curvature(
         &self,
         (n, i, j): Axes,
         thinning: f64,

@@ -4,6 +4,9 @@
 //! plane of symmetry with material behind). As warping moves the faces across its way too, those must not be held in full,
 //! and what is behind must be of the same material. Voxels that are cut have their surface elsewhere, and fibers
 //! keep a face from warping as the rubber around them would: both stay as they are.
+//!
+//! At faces that a clamp holds in full, or another material that is much stiffer, the free ones beside them draw in as well
+//! ([`crate::clamped`]), but for those under pressure.
 
 use std::collections::HashSet;
 
@@ -21,17 +24,25 @@ enum Behind {
     Nothing,
     Same,
     Other,
+    /// Another material that holds this one as a clamp does.
+    Stiff,
 }
 
-/// How the faces of each voxel warp. `voxels` are all cubes of the body, `held` the axes that clamps hold of each vertex.
+/// How many times as stiff another material must be to count as a clamp.
+const HOLDS: f64 = 2.0;
+
+/// How the faces of each voxel warp. `voxels` are all cubes of the body, `held` the axes that clamps hold of each vertex,
+/// `pressed` the triangles under pressure.
 pub(crate) fn warpings(
     bricks: &[Brick],
     materials: &[HyperelasticMaterial],
     voxels: &[[u32; 8]],
     membranes: &[Membrane],
     held: &[[bool; 3]],
+    pressed: &[[u32; 3]],
 ) -> Vec<Warping> {
-    let behind = neighbors(bricks, voxels, held.len());
+    let behind = neighbors(bricks, materials, voxels, held.len());
+    let pressed: HashSet<[u32; 3]> = pressed.iter().map(|&triangle| sorted(triangle)).collect();
     let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
     let each = |(brick, behind): (&Brick, &[[Behind; 2]; 3])| {
         let fibers = !materials[brick.material as usize].fibers().is_empty();
@@ -49,7 +60,10 @@ pub(crate) fn warpings(
                 faces.free[axis][side] = what == Behind::Nothing
                     && !held.contains(&true)
                     && !is_covered(corners, &layers);
-                faces.stiff[axis][side] = what == Behind::Other || !held.contains(&false);
+                faces.pressed[axis][side] = is_covered(corners, &pressed);
+                let held = !held.contains(&false);
+                faces.held[axis][side] = held || what == Behind::Stiff;
+                faces.stiff[axis][side] = held || matches!(what, Behind::Other | Behind::Stiff);
             }
         }
         Warping::of(&faces)
@@ -58,7 +72,12 @@ pub(crate) fn warpings(
 }
 
 /// What is behind each face. A cube is found by its lowest corner, which no other has.
-fn neighbors(bricks: &[Brick], voxels: &[[u32; 8]], vertices: usize) -> Vec<[[Behind; 2]; 3]> {
+fn neighbors(
+    bricks: &[Brick],
+    materials: &[HyperelasticMaterial],
+    voxels: &[[u32; 8]],
+    vertices: usize,
+) -> Vec<[[Behind; 2]; 3]> {
     const NONE: u32 = u32::MAX;
     let mut cube_at = vec![NONE; vertices];
     for (index, voxel) in voxels.iter().enumerate() {
@@ -76,18 +95,26 @@ fn neighbors(bricks: &[Brick], voxels: &[[u32; 8]], vertices: usize) -> Vec<[[Be
                 continue;
             }
             let [low, high] = [brick_of[cube], brick_of[next as usize]];
-            let same = low != NONE
-                && high != NONE
-                && bricks[low as usize].material == bricks[high as usize].material;
-            let what = if same { Behind::Same } else { Behind::Other };
-            for (brick, side) in [(low, 1), (high, 0)] {
+            for (brick, other, side) in [(low, high, 1), (high, low, 0)] {
                 if brick != NONE {
-                    behind[brick as usize][axis][side] = what;
+                    let other = (other != NONE).then(|| bricks[other as usize].material);
+                    let own = bricks[brick as usize].material;
+                    behind[brick as usize][axis][side] = what_is(materials, own, other);
                 }
             }
         }
     }
     behind
+}
+
+/// What a voxel of one material is to another; a lattice has none.
+fn what_is(materials: &[HyperelasticMaterial], own: u32, other: Option<u32>) -> Behind {
+    let young = |material: u32| materials[material as usize].young();
+    match other {
+        Some(other) if other == own => Behind::Same,
+        Some(other) if young(other) >= HOLDS * young(own) => Behind::Stiff,
+        _ => Behind::Other,
+    }
 }
 
 /// The corner next to the lowest along an axis.

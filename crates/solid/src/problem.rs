@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::assembly::{Visitor, check_indices};
 use crate::loads::Vertices;
 use crate::vector::Vec3;
-use crate::{Body, Clamp, Contact, Floor, History, Load, ProblemError, Rigid, Term};
+use crate::{Body, Clamp, Contact, Floor, History, Load, LoadKind, ProblemError, Rigid, Term};
 
 /// A body with clamps, loads, and maybe a floor or contact.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ impl Problem {
         for load in &loads {
             load.kind.check(count)?;
         }
-        body.warp_unless(&held);
+        body.warp_unless(&held, &pressed(&loads));
         let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
             body,
@@ -59,7 +59,8 @@ impl Problem {
         let mut problem = self.with_term(term)?;
         let mut joined = problem.held.clone();
         contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
-        problem.body.warp_unless(&joined);
+        let pressed = pressed(&problem.loads);
+        problem.body.warp_unless(&joined, &pressed);
         problem.contact = Some(contact);
         Ok(problem)
     }
@@ -220,6 +221,15 @@ impl Problem {
             }
         }
     }
+}
+
+/// The triangles under pressure.
+fn pressed(loads: &[Load]) -> Vec<[u32; 3]> {
+    let each = loads.iter().filter_map(|load| match &load.kind {
+        LoadKind::Pressure(pressure) => Some(&pressure.triangles),
+        _ => None,
+    });
+    each.flatten().copied().collect()
 }
 
 #[cfg(test)]

@@ -40,6 +40,7 @@
 
 use crate::brick_energy::{AXES, BrickStrain, OFF, Rotated, SHAPE, Shaped};
 use crate::brick_thickness::positive;
+use crate::clamped::Clamped;
 use crate::hyperelastic::symmetric::{Response, Sym};
 
 const SQRT_2: f64 = std::f64::consts::SQRT_2;
@@ -50,7 +51,11 @@ const PLATE: f64 = 1.0 / 6.0;
 /// The parts `cⱼ, cₖ` of the shear of each pair of axes by which free faces make a voxel softer. Pairs are named by the
 /// axis that is not in them, `j` and `k` come after it in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Warping([[f64; 2]; 3]);
+pub struct Warping {
+    parts: [[f64; 2]; 3],
+    /// How it draws in at a clamp, in place of the parts.
+    pub(crate) clamped: Option<Clamped>,
+}
 
 /// The faces of a voxel at the two sides of each axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -59,11 +64,18 @@ pub struct Faces {
     pub free: [[bool; 2]; 3],
     /// They must not move along their axis but with their corners.
     pub stiff: [[bool; 2]; 3],
+    /// A clamp or something stiffer holds them in full.
+    pub held: [[bool; 2]; 3],
+    /// A pressure acts on them.
+    pub pressed: [[bool; 2]; 3],
 }
 
 impl Warping {
     /// No free face.
-    pub const NONE: Self = Self([[0.0; 2]; 3]);
+    pub const NONE: Self = Self {
+        parts: [[0.0; 2]; 3],
+        clamped: None,
+    };
 
     /// The parts of each pair of axes.
     pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
@@ -72,9 +84,16 @@ impl Warping {
 
     /// That of a full voxel of isotropic rubber.
     pub fn of(faces: &Faces) -> Self {
+        let clamped = Clamped::of(faces);
+        if clamped.is_some() {
+            return Self {
+                clamped,
+                ..Self::NONE
+            };
+        }
         let free = faces.free.map(|sides| sides.map(u8::from).iter().sum());
         let stiff = faces.stiff.map(|[low, high]| low || high);
-        Self(AXES.map(|(b, j, k)| {
+        let parts = AXES.map(|(b, j, k)| {
             // What the faces of one axis do moves those of the other.
             let counts = [(j, k), (k, j)].map(|(n, t)| if stiff[t] { 0 } else { free[n] });
             let thin = [free[j], free[k]].map(|count| count == 2);
@@ -90,13 +109,17 @@ impl Warping {
                     }
                 }),
             }
-        }))
+        });
+        Self {
+            parts,
+            ..Self::NONE
+        }
     }
 
     /// The stretch that the isochoric energy is that of.
     fn relieved(&self, stretch: &Sym) -> Sym {
         let mut relieved = *stretch;
-        for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
             relieved[OFF + b] *= (1.0 - pair[0] - pair[1]).sqrt();
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 relieved[n] -= part * Thinning::of(stretch, OFF + b, n, t).value;
@@ -111,7 +134,7 @@ impl Warping {
         for axis in 0..3 {
             slopes[axis][axis] = 1.0;
         }
-        for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
             slopes[OFF + b][OFF + b] = (1.0 - pair[0] - pair[1]).sqrt();
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let thinning = Thinning::of(stretch, OFF + b, n, t);
@@ -125,7 +148,7 @@ impl Warping {
 
     /// Adds the second derivatives of that stretch, each component times its `force`.
     fn add_curvature(&self, stretch: &Sym, force: &Sym, hessian: &mut [[f64; SHAPE]; SHAPE]) {
-        for (pair, (b, j, k)) in self.0.iter().zip(AXES) {
+        for (pair, (b, j, k)) in self.parts.iter().zip(AXES) {
             for (part, n, t) in [(pair[0], j, k), (pair[1], k, j)] {
                 let places = [OFF + b, n, t];
                 let curvature = Thinning::of(stretch, OFF + b, n, t).hessian();
@@ -213,6 +236,9 @@ impl Rotated {
         function: impl Fn(&Sym) -> Response,
     ) -> Shaped {
         let warping = self.warping;
+        if let Some(clamped) = warping.clamped {
+            return self.clamped_mean(clamped, thinning, second, function);
+        }
         if warping == Warping::NONE {
             return self.mean(thinning, second.is_some(), function);
         }

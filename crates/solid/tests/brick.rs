@@ -29,9 +29,32 @@ fn cut() -> Filling {
     }
 }
 
-/// Any faces free, and any of them held.
+/// Any faces free, and any of them held; or at a clamp.
 fn warping() -> impl Strategy<Value = Warping> {
-    any::<[[[bool; 2]; 3]; 2]>().prop_map(|[free, stiff]| Warping::of(&Faces { free, stiff }))
+    let faces = any::<[[[bool; 2]; 3]; 3]>().prop_map(|[free, stiff, held]| Faces {
+        free,
+        stiff,
+        held,
+        pressed: [[false; 2]; 3],
+    });
+    prop_oneof![faces, clamped()].prop_map(|faces| Warping::of(&faces))
+}
+
+/// A clamp on one side of an axis, free faces across it, some of them under pressure.
+fn clamped() -> impl Strategy<Value = Faces> {
+    any::<([[bool; 2]; 3], [[bool; 2]; 3], bool)>()
+        .prop_flat_map(|faces| (0..3usize).prop_map(move |axis| (faces, axis)))
+        .prop_map(|((free, pressed, high), axis)| {
+            let mut faces = Faces {
+                free,
+                pressed,
+                ..Faces::default()
+            };
+            faces.free[axis] = [false; 2];
+            faces.held[axis] = [!high, high];
+            faces.stiff[axis] = faces.held[axis];
+            faces
+        })
 }
 
 fn materials() -> Vec<HyperelasticMaterial> {

@@ -188,7 +188,13 @@ fn a_clamped_face_does_not_warp_and_nothing_moves_it() {
     let clamps = vec![clamp(&mesh, [true; 3], |x| x[0] == 0.0)];
     let problem = Problem::new(body(&mesh), clamps, vec![], None).unwrap();
     let at_clamp = voxel(problem.body(), [0.0, 0.0, 1.0]).warping;
-    assert_eq!(at_clamp, with(&[(1, 0), (2, 1)], &[(0, 0)]));
+    let faces = Faces {
+        free: [[false; 2], [true, false], [false, true]],
+        stiff: [[true, false], [false; 2], [false; 2]],
+        held: [[true, false], [false; 2], [false; 2]],
+        pressed: [[false; 2]; 3],
+    };
+    assert_eq!(at_clamp, Warping::of(&faces));
     assert_ne!(at_clamp, with(&[(1, 0), (2, 1)], &[]));
     let beyond = voxel(problem.body(), [1.0, 0.0, 1.0]).warping;
     assert_eq!(beyond, with(&[(1, 0), (2, 1)], &[]));

@@ -1,0 +1,665 @@
+//! How a voxel at a clamp draws in: what its eight nodes cannot follow beside a face that is held.
+//!
+//! # The modes
+//!
+//! A clamp keeps rubber from drawing in across the pull, and a free side gets over that within a fraction of the body's
+//! thickness. The row of voxels at the clamp can only draw in linearly from the held face `ξ_c = ∓1` to the face across, and as the
+//! volume of a voxel must be kept, what is missing there is missing along the pull as well: beams and walls are too stiff
+//! at their roots, the more the less they can be compressed. A quadratic row (27 nodes and a linear pressure) takes most of
+//! that away. What it takes away lives in the motions of its middle layer, and of those in the ones of free sides, so that none of its nodes
+//! is needed. For each free face with the normal `n` (at `ξₙ = s`) beside a held face, with `t` the third axis, these are
+//!
+//! `b eₙ`,  `b ξₜ eₙ`,  `b eₜ`  with  `b = (1 − ξ_c²)(1 + s ξₙ)/2` .
+//!
+//! They vanish on the held face, on the one across and on the one opposite to the free one. On those of `t` they move along `n` and
+//! `t`: a uniform stress that leaves the face `n` free has only a part along `t` there, and meets it in `b eₜ` alone, which does
+//! not change along `t`, so that its work on both faces cancels. As they come to nothing in the mean along `c` as well, uniform stress does no
+//! work on them but that of the lateral stress which there is none of: the patch test holds. The last one is that of
+//! [`crate::warping`] with `b` the axis of the clamp, and takes its place.
+//!
+//! # Small strain
+//!
+//! The strain at the eight Gauss points is `ε = S − 1 + Σ ξₙ Ĥₙ + Σ mᵢ qᵢ`, and the `q` are those of least energy,
+//!
+//! `(A + k b bᵀ) q = −(B + k b cᵀ) s` ,  `k = K/2G` ,
+//!
+//! with `A` and `B` the mean products of the deviators of modes with modes and with the voxel's strains `s`, and `b` and `c` the
+//! mean changes of volume: one pressure for each voxel, as in [`crate::brick`]. So `q = Q s`, and with `P = A⁻¹B`, `r = A⁻¹b`, `β = bᵀr`,
+//!
+//! `Q = −P − ζ r (cᵀ − bᵀP)` ,  `ζ = k/(1 + k β)` .
+//!
+//! `Q` depends on which faces are free and on ν alone.
+//!
+//! # Large strain
+//!
+//! There are no unknowns: the `q` remain a function of the voxel's strains, and the energy is that of the stretches
+//!
+//! `S + Σ ξₙ Ĥₙ + Σ Sₐₐ mᵢ qᵢ` ,  `a` the axis along which a mode moves.
+//!
+//! As a body that is drawn to several times its length becomes thinner in proportion, the `q` follow `dᵢ = ln Sᵢᵢ` and
+//! `p̂ₘ·eₖ/Sₖₖ`, which are the strains when they are small. Without compression `Q d` keeps the volume to first order whatever `s` is, so
+//! that no motion of the nodes could undo what changes it in second order, and the voxel would lock. A pressure moves the `q` along `r`, and
+//! this relief goes on with what the linear one, `θ = (cᵀ + bᵀQ) d`, leaves of the volume `J₁` at `Q d`:
+//!
+//! `q = Q d + r y` ,  `y = −ζ g(J₁ − 1 − θ)` ,  `J = J₁ + β y` ,
+//!
+//! with `g` the identity up to a half, where it levels off: a voxel that a wild step has swollen is pressed back as others are. The isochoric
+//! energy is that of the stretches with these `q`, and `U` is that of `J`, of which little is left as `K` grows. Both are bounded below as the
+//! material is. They depend on `S` and `p̂` only, so rigid motion costs nothing. Drawn out uniformly, an
+//! incompressible voxel has `Q d = 0` and `J₁ = 1` at any stretch: the patch test holds there at large strain too. What is left out is of second
+//! order in the strain, as the energy is stationary in `q`.
+//!
+//! The modes take no load. As a pressure works on those that move along its face's normal, a free face under pressure has `b eₜ` alone.
+
+use std::sync::OnceLock;
+
+use crate::brick_energy::{AXES, OFF, Rotated, SHAPE, Shaped};
+use crate::brick_thickness::positive;
+use crate::hyperelastic::Response;
+use crate::hyperelastic::symmetric::{Sym, determinant_response};
+use crate::warping::Faces;
+
+const SQRT_2: f64 = std::f64::consts::SQRT_2;
+
+/// Gauss points of a voxel.
+const POINTS: usize = 8;
+
+/// At most four for each of the two axes across the clamp's.
+const MODES: usize = 8;
+
+/// A voxel at a clamp: the axis of its held faces, and which faces across are free, and of these under pressure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Clamped {
+    axis: usize,
+    free: [[bool; 2]; 3],
+    pressed: [[bool; 2]; 3],
+}
+
+/// What depends on the faces alone.
+struct Table {
+    modes: Vec<Mode>,
+    /// `P` without what the thinning adds, and that.
+    plain: Vec<[f64; SHAPE]>,
+    thinned: Vec<[f64; SHAPE]>,
+    /// `r`.
+    spread: Vec<f64>,
+    /// `b` and `β`.
+    volume: Vec<f64>,
+    yielding: f64,
+}
+
+/// A mode: the axis along which it moves, and its strain at the Gauss points.
+struct Mode {
+    along: usize,
+    strain: [Sym; POINTS],
+}
+
+/// What depends on ν as well: `Q`, `ζ` and the coefficients of `θ`.
+struct Follow {
+    rows: [[f64; SHAPE]; MODES],
+    relief: f64,
+    volume: [f64; SHAPE],
+}
+
+/// The `q` with their slopes by the voxel's coordinates.
+struct Amplitudes<'a> {
+    table: &'a Table,
+    follow: &'a Follow,
+    drivers: &'a [Driver; SHAPE],
+    value: [f64; MODES],
+    slope: [[f64; SHAPE]; MODES],
+    /// `y` in them.
+    relief: Option<&'a Shaped>,
+}
+
+/// One of the `d`: its value, and its derivatives by its own coordinate and by the stretch (place, along an axis) that it
+/// is in proportion to.
+struct Driver {
+    value: f64,
+    by_own: f64,
+    by_stretch: Option<(usize, f64)>,
+    own_own: f64,
+    own_stretch: f64,
+    stretch_stretch: f64,
+}
+
+impl Clamped {
+    /// That of a voxel with held faces on one axis; `None` where nothing is free to draw in.
+    pub fn of(faces: &Faces) -> Option<Self> {
+        let has = |sides: [bool; 2]| sides.contains(&true);
+        let mut axes = (0..3).filter(|&axis| has(faces.held[axis]));
+        let (axis, further) = (axes.next()?, axes.next());
+        // The end of a stub is free as well; it warps as other free faces do.
+        if further.is_some() || has(faces.free[axis]) {
+            return None;
+        }
+        let mut own = Self {
+            axis,
+            free: [[false; 2]; 3],
+            pressed: [[false; 2]; 3],
+        };
+        for (n, t) in across(axis) {
+            // Motions of the faces `n` move those of `t`.
+            if !has(faces.stiff[t]) {
+                own.free[n] = faces.free[n];
+                own.pressed[n] = [0, 1].map(|side| faces.free[n][side] && faces.pressed[n][side]);
+            }
+        }
+        (own.free != own.pressed).then_some(own)
+    }
+
+    fn table(self) -> &'static Table {
+        static TABLES: [OnceLock<Table>; 3 << 8] = [const { OnceLock::new() }; 3 << 8];
+        let place = across(self.axis)
+            .iter()
+            .flat_map(|&(n, _)| [self.free[n], self.pressed[n]])
+            .flatten()
+            .fold(self.axis, |bits, has| 2 * bits + usize::from(has));
+        TABLES[place].get_or_init(|| self.tabulate())
+    }
+
+    fn tabulate(self) -> Table {
+        let modes = self.modes();
+        let count = modes.len();
+        let mean = |a: &dyn Fn(usize) -> Sym, b: &dyn Fn(usize) -> Sym| {
+            let each = |g| deviators(&a(g), &b(g));
+            (0..POINTS).map(each).sum::<f64>() / POINTS as f64
+        };
+        let volume: Vec<f64> = modes
+            .iter()
+            .map(|mode| mode.strain.iter().map(trace).sum::<f64>() / POINTS as f64)
+            .collect();
+        let strain = |thinning: f64, place: usize| move |g: usize| strain_at(g, thinning, place);
+        let mut system: Vec<Vec<f64>> = modes
+            .iter()
+            .map(|mode| {
+                let own = |g: usize| mode.strain[g];
+                let with = modes.iter().map(|other| mean(&own, &|g| other.strain[g]));
+                let plain = (0..SHAPE).map(|k| mean(&own, &strain(0.0, k)));
+                let whole = (0..SHAPE).map(|k| mean(&own, &strain(1.0, k)));
+                with.chain(plain).chain(whole).collect()
+            })
+            .collect();
+        for (row, volume) in system.iter_mut().zip(&volume) {
+            row.push(*volume);
+        }
+        eliminate(&mut system);
+        let part = |row: &Vec<f64>, start: usize| std::array::from_fn(|k| row[start + k]);
+        let plain: Vec<[f64; SHAPE]> = system.iter().map(|row| part(row, count)).collect();
+        let thinned = system.iter().zip(&plain).map(|(row, plain)| {
+            let whole: [f64; SHAPE] = part(row, count + SHAPE);
+            std::array::from_fn(|k| whole[k] - plain[k])
+        });
+        let spread: Vec<f64> = system.iter().map(|row| row[count + 2 * SHAPE]).collect();
+        Table {
+            thinned: thinned.collect(),
+            yielding: volume.iter().zip(&spread).map(|(b, r)| b * r).sum(),
+            plain,
+            spread,
+            volume,
+            modes,
+        }
+    }
+
+    /// The modes of all free faces; several faces share some.
+    fn modes(self) -> Vec<Mode> {
+        let mut modes = Vec::new();
+        for (along, other) in across(self.axis) {
+            // Functions of the two coordinates across, by 1, ξ along, ξ of the other, and their product.
+            let mut found: Vec<[f64; 4]> = Vec::new();
+            for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
+                if self.free[along][side] && !self.pressed[along][side] {
+                    found.push([0.5, 0.5 * sign, 0.0, 0.0]);
+                    found.push([0.0, 0.0, 0.5, 0.5 * sign]);
+                }
+                if self.free[other][side] {
+                    found.push([0.5, 0.0, 0.5 * sign, 0.0]);
+                }
+            }
+            let independent = independent(found);
+            modes.extend(independent.iter().map(|f| self.mode(along, other, f)));
+        }
+        modes
+    }
+
+    /// `(1 − ξ_c²) f` along an axis.
+    fn mode(self, along: usize, other: usize, f: &[f64; 4]) -> Mode {
+        let strain = std::array::from_fn(|g| {
+            let at = gauss_point(g);
+            let (x, y, z) = (at[along], at[other], at[self.axis]);
+            let bubble = 1.0 - z * z;
+            let mut gradient = [0.0; 3];
+            gradient[along] = bubble * (f[1] + f[3] * y);
+            gradient[other] = bubble * (f[2] + f[3] * x);
+            gradient[self.axis] = -2.0 * z * (f[0] + f[1] * x + f[2] * y + f[3] * x * y);
+            let mut strain = [0.0; 6];
+            strain[along] = gradient[along];
+            for axis in [other, self.axis] {
+                strain[OFF + 3 - along - axis] = gradient[axis] / SQRT_2;
+            }
+            strain
+        });
+        Mode { along, strain }
+    }
+}
+
+/// The two axes across an axis, each with the other of them.
+fn across(axis: usize) -> [(usize, usize); 2] {
+    let (_, j, k) = AXES[axis];
+    [(j, k), (k, j)]
+}
+
+fn gauss_point(g: usize) -> [f64; 3] {
+    let place = 1.0 / f64::sqrt(3.0);
+    std::array::from_fn(|axis| if g >> axis & 1 == 1 { place } else { -place })
+}
+
+fn trace(a: &Sym) -> f64 {
+    a[0] + a[1] + a[2]
+}
+
+/// The product of two deviators.
+fn deviators(a: &Sym, b: &Sym) -> f64 {
+    dot(a, b) - trace(a) * trace(b) / 3.0
+}
+
+fn dot(a: &Sym, b: &Sym) -> f64 {
+    (0..6).map(|k| a[k] * b[k]).sum()
+}
+
+/// The small strain at a Gauss point of one of the voxel's coordinates.
+fn strain_at(g: usize, thinning: f64, place: usize) -> Sym {
+    let mut strain = [0.0; 6];
+    if place < 6 {
+        strain[place] = 1.0;
+        return strain;
+    }
+    let at = gauss_point(g);
+    let (mode, axis) = ((place - 6) / 3, (place - 6) % 3);
+    for (n, i, j) in AXES {
+        if (mode, axis) == (j, i) || (mode, axis) == (i, j) {
+            strain[axis] += at[n];
+            strain[n] -= thinning * at[n];
+        } else if mode == axis && mode != n {
+            strain[OFF + n] += at[n] / SQRT_2;
+        }
+    }
+    strain
+}
+
+/// Those that are not combinations of the ones before them.
+fn independent(functions: Vec<[f64; 4]>) -> Vec<[f64; 4]> {
+    let dot = |a: &[f64; 4], b: &[f64; 4]| (0..4).map(|k| a[k] * b[k]).sum::<f64>();
+    let (mut kept, mut basis) = (Vec::new(), Vec::<[f64; 4]>::new());
+    for function in functions {
+        let mut rest = function;
+        for own in &basis {
+            let part = dot(&rest, own) / dot(own, own);
+            rest = std::array::from_fn(|k| rest[k] - part * own[k]);
+        }
+        // What is left of entries of one half is a simple fraction of them, or rounding.
+        if dot(&rest, &rest) > 1e-9 {
+            basis.push(rest);
+            kept.push(function);
+        }
+    }
+    kept
+}
+
+/// Solves a positive definite system by elimination: the columns beyond the square become the solutions.
+fn eliminate(system: &mut [Vec<f64>]) {
+    for pivot in 0..system.len() {
+        let scale = 1.0 / system[pivot][pivot];
+        system[pivot].iter_mut().for_each(|x| *x *= scale);
+        let row = system[pivot].clone();
+        for (index, other) in system.iter_mut().enumerate() {
+            if index != pivot {
+                let part = other[pivot];
+                for (x, own) in other.iter_mut().zip(&row) {
+                    *x -= part * own;
+                }
+            }
+        }
+    }
+}
+
+impl Table {
+    fn follow(&self, thinning: f64) -> Follow {
+        // k = (1 + 2κ)/3(1 − κ) with κ = ν/(1 − ν).
+        let stiff = 1.0 + 2.0 * thinning;
+        let relief = stiff / (3.0 * (1.0 - thinning) + stiff * self.yielding);
+        let mut rows = [[0.0; SHAPE]; MODES];
+        for ((row, plain), thinned) in rows.iter_mut().zip(&self.plain).zip(&self.thinned) {
+            *row = std::array::from_fn(|k| -(plain[k] + thinning * thinned[k]));
+        }
+        let missing = self.volume_of(&rows);
+        for (row, spread) in rows.iter_mut().zip(&self.spread) {
+            for k in 0..SHAPE {
+                row[k] -= relief * spread * missing[k];
+            }
+        }
+        Follow {
+            volume: self.volume_of(&rows),
+            rows,
+            relief,
+        }
+    }
+
+    /// `cᵀ + bᵀQ`.
+    fn volume_of(&self, rows: &[[f64; SHAPE]; MODES]) -> [f64; SHAPE] {
+        std::array::from_fn(|k| {
+            let own = if k < 3 { 1.0 } else { 0.0 };
+            let theirs = rows.iter().zip(&self.volume);
+            own + theirs.map(|(row, b)| b * row[k]).sum::<f64>()
+        })
+    }
+}
+
+impl Driver {
+    fn all(state: &Rotated) -> [Self; SHAPE] {
+        std::array::from_fn(|place| Self::of(state, place))
+    }
+
+    fn of(state: &Rotated, place: usize) -> Self {
+        if place < 3 {
+            let [stretch, slope, turn] = positive(state.stretch[place]);
+            return Self {
+                value: stretch.ln(),
+                by_own: slope / stretch,
+                own_own: turn / stretch - (slope / stretch).powi(2),
+                ..Self::itself(0.0)
+            };
+        }
+        if place < 6 {
+            return Self::itself(state.stretch[place]);
+        }
+        let axis = (place - 6) % 3;
+        let own = state.hourglass[(place - 6) / 3][axis];
+        let [stretch, slope, turn] = positive(state.stretch[axis]);
+        Self {
+            value: own / stretch,
+            by_own: 1.0 / stretch,
+            by_stretch: Some((axis, -own * slope / stretch.powi(2))),
+            own_own: 0.0,
+            own_stretch: -slope / stretch.powi(2),
+            stretch_stretch: own * (2.0 * slope * slope / stretch.powi(3) - turn / stretch.powi(2)),
+        }
+    }
+
+    fn itself(value: f64) -> Self {
+        Self {
+            value,
+            by_own: 1.0,
+            by_stretch: None,
+            own_own: 0.0,
+            own_stretch: 0.0,
+            stretch_stretch: 0.0,
+        }
+    }
+}
+
+/// Adds a combination of the `d` with these coefficients: its slopes.
+fn add_slopes(drivers: &[Driver; SHAPE], coefficients: &[f64; SHAPE], slopes: &mut [f64; SHAPE]) {
+    for (place, (driver, factor)) in drivers.iter().zip(coefficients).enumerate() {
+        slopes[place] += factor * driver.by_own;
+        if let Some((stretch, by)) = driver.by_stretch {
+            slopes[stretch] += factor * by;
+        }
+    }
+}
+
+/// Its second derivatives.
+fn add_curvatures(
+    drivers: &[Driver; SHAPE],
+    coefficients: &[f64; SHAPE],
+    hessian: &mut [[f64; SHAPE]; SHAPE],
+) {
+    for (place, (driver, factor)) in drivers.iter().zip(coefficients).enumerate() {
+        hessian[place][place] += factor * driver.own_own;
+        if let Some((stretch, _)) = driver.by_stretch {
+            hessian[place][stretch] += factor * driver.own_stretch;
+            hessian[stretch][place] += factor * driver.own_stretch;
+            hessian[stretch][stretch] += factor * driver.stretch_stretch;
+        }
+    }
+}
+
+/// Where the relief of a volume levels off.
+const MOST_RELIEF: f64 = 0.5;
+
+/// `g` with two derivatives.
+fn levelling(x: f64) -> [f64; 3] {
+    let part = x / MOST_RELIEF;
+    let root = 1.0 + part.powi(4);
+    let first = root.powf(-1.25);
+    [
+        x * root.powf(-0.25),
+        first,
+        -5.0 * part.powi(3) * first / root / MOST_RELIEF,
+    ]
+}
+
+impl<'a> Amplitudes<'a> {
+    fn of(
+        table: &'a Table,
+        follow: &'a Follow,
+        drivers: &'a [Driver; SHAPE],
+        relief: Option<&'a Shaped>,
+    ) -> Self {
+        let (mut value, mut slope) = ([0.0; MODES], [[0.0; SHAPE]; MODES]);
+        for m in 0..table.modes.len() {
+            let row = &follow.rows[m];
+            value[m] = drivers
+                .iter()
+                .zip(row)
+                .map(|(d, factor)| factor * d.value)
+                .sum();
+            add_slopes(drivers, row, &mut slope[m]);
+            if let Some(relief) = relief {
+                value[m] += table.spread[m] * relief.value;
+                for (sum, own) in slope[m].iter_mut().zip(&relief.gradient) {
+                    *sum += table.spread[m] * own;
+                }
+            }
+        }
+        Self {
+            table,
+            follow,
+            drivers,
+            value,
+            slope,
+            relief,
+        }
+    }
+
+    /// The strain of all modes at a Gauss point, and its derivatives (rows) by the coordinates.
+    fn strain(&self, state: &Rotated, g: usize) -> (Sym, [Sym; SHAPE]) {
+        let (mut strain, mut slopes) = ([0.0; 6], [[0.0; 6]; SHAPE]);
+        for (m, mode) in self.table.modes.iter().enumerate() {
+            let scale = state.stretch[mode.along];
+            for (k, &own) in mode.strain[g].iter().enumerate() {
+                if own == 0.0 {
+                    continue;
+                }
+                strain[k] += scale * self.value[m] * own;
+                slopes[mode.along][k] += self.value[m] * own;
+                for (row, slope) in slopes.iter_mut().zip(&self.slope[m]) {
+                    row[k] += scale * slope * own;
+                }
+            }
+        }
+        (strain, slopes)
+    }
+
+    /// Adds the second derivatives of the strains of the modes, each times its `force`.
+    fn add_curvature(
+        &self,
+        state: &Rotated,
+        force: &[f64; MODES],
+        hessian: &mut [[f64; SHAPE]; SHAPE],
+    ) {
+        // What moves the `d`, and what moves `y`.
+        let (mut pull, mut press) = ([0.0; SHAPE], 0.0);
+        for (m, mode) in self.table.modes.iter().enumerate() {
+            let scaled = force[m] * state.stretch[mode.along];
+            press += scaled * self.table.spread[m];
+            for k in 0..SHAPE {
+                let both = force[m] * self.slope[m][k];
+                hessian[mode.along][k] += both;
+                hessian[k][mode.along] += both;
+                pull[k] += scaled * self.follow.rows[m][k];
+            }
+        }
+        add_curvatures(self.drivers, &pull, hessian);
+        if let Some(relief) = self.relief {
+            let own = relief.hessian.as_flattened();
+            for (sum, own) in hessian.as_flattened_mut().iter_mut().zip(own) {
+                *sum += press * own;
+            }
+        }
+    }
+}
+
+impl Rotated {
+    /// [`Rotated::mean`] for the stretches at a clamp, with derivatives where `second` says how often what the stress adds to
+    /// the second ones counts.
+    pub(crate) fn clamped_mean(
+        &self,
+        clamped: Clamped,
+        thinning: f64,
+        second: Option<f64>,
+        function: impl Fn(&Sym) -> Response,
+    ) -> Shaped {
+        let table = clamped.table();
+        let (follow, drivers) = (table.follow(thinning), Driver::all(self));
+        let plain = Amplitudes::of(table, &follow, &drivers, None);
+        let relief = self.relief(&plain, thinning, second.is_some()).1;
+        let amplitudes = Amplitudes::of(table, &follow, &drivers, Some(&relief));
+        self.mean_with(&amplitudes, thinning, second, function)
+    }
+
+    /// `J`, with derivatives where `second` asks.
+    pub(crate) fn clamped_volume(&self, clamped: Clamped, thinning: f64, second: bool) -> Shaped {
+        let table = clamped.table();
+        let (follow, drivers) = (table.follow(thinning), Driver::all(self));
+        let plain = Amplitudes::of(table, &follow, &drivers, None);
+        let (mut volume, relief) = self.relief(&plain, thinning, second);
+        let beta = table.yielding;
+        volume.value += beta * relief.value;
+        for (row, own) in volume.gradient.iter_mut().zip(&relief.gradient) {
+            *row += beta * own;
+        }
+        let own = relief.hessian.as_flattened();
+        for (sum, own) in volume.hessian.as_flattened_mut().iter_mut().zip(own) {
+            *sum += beta * own;
+        }
+        volume
+    }
+
+    /// `J₁` and `y`.
+    fn relief(&self, plain: &Amplitudes<'_>, thinning: f64, second: bool) -> (Shaped, Shaped) {
+        let volume = self.mean_with(plain, thinning, second.then_some(1.0), |at| {
+            determinant_response(at, second)
+        });
+        let coefficients = plain.follow.volume.map(|x| -x);
+        let mut left = volume.gradient;
+        add_slopes(plain.drivers, &coefficients, &mut left);
+        let linear = plain.drivers.iter().zip(&coefficients);
+        let rest = volume.value - 1.0 + linear.map(|(d, c)| c * d.value).sum::<f64>();
+        let [value, slope, turn] = levelling(rest).map(|x| -plain.follow.relief * x);
+        let mut relief = Shaped::zero();
+        relief.value = value;
+        relief.gradient = left.map(|x| slope * x);
+        if second {
+            relief.hessian = volume.hessian;
+            add_curvatures(plain.drivers, &coefficients, &mut relief.hessian);
+            for (row, own) in relief.hessian.iter_mut().zip(&left) {
+                for (entry, other) in row.iter_mut().zip(&left) {
+                    *entry = slope * *entry + turn * own * other;
+                }
+            }
+        }
+        (volume, relief)
+    }
+
+    fn mean_with(
+        &self,
+        amplitudes: &Amplitudes<'_>,
+        thinning: f64,
+        second: Option<f64>,
+        function: impl Fn(&Sym) -> Response,
+    ) -> Shaped {
+        let variations = AXES.map(|axes| self.variation(axes, thinning));
+        let bent: [_; 3] = std::array::from_fn(|n| variations[n].slopes(AXES[n], thinning));
+        let weight = 1.0 / POINTS as f64;
+        let mut mean = Shaped::zero();
+        let (mut moments, mut force) = ([[0.0; 6]; 3], [0.0; MODES]);
+        for g in 0..POINTS {
+            let at = gauss_point(g);
+            let (mut stretch, mut slopes) = amplitudes.strain(self, g);
+            for k in 0..6 {
+                stretch[k] += self.stretch[k];
+                slopes[k][k] += 1.0;
+                for n in 0..3 {
+                    stretch[k] += at[n] * variations[n].h[k];
+                }
+            }
+            for n in 0..3 {
+                for (place, direction) in &bent[n] {
+                    for k in 0..6 {
+                        slopes[*place][k] += at[n] * direction[k];
+                    }
+                }
+            }
+            let response = function(&stretch);
+            mean.value += weight * response.value;
+            let stress = response.stress.map(|x| weight * x);
+            for (sum, slope) in mean.gradient.iter_mut().zip(&slopes) {
+                *sum += dot(slope, &stress);
+            }
+            if second.is_none() {
+                continue;
+            }
+            for n in 0..3 {
+                for k in 0..6 {
+                    moments[n][k] += at[n] * stress[k];
+                }
+            }
+            for (sum, mode) in force.iter_mut().zip(&amplitudes.table.modes) {
+                *sum += dot(&mode.strain[g], &stress);
+            }
+            for column in 0..SHAPE {
+                let turned: Sym =
+                    std::array::from_fn(|k| weight * dot(&response.tangent[k], &slopes[column]));
+                for row in 0..=column {
+                    mean.hessian[row][column] += dot(&slopes[row], &turned);
+                }
+            }
+        }
+        if let Some(curvature) = second {
+            for column in 0..SHAPE {
+                for row in 0..column {
+                    mean.hessian[column][row] = mean.hessian[row][column];
+                }
+            }
+            for n in 0..3 {
+                let (variation, hessian) = (&variations[n], &mut mean.hessian);
+                variation.add_curvature(AXES[n], thinning, moments[n][n], hessian);
+            }
+            let force = force.map(|f| curvature * f);
+            amplitudes.add_curvature(self, &force, &mut mean.hessian);
+        }
+        mean
+    }
+
+    /// The smallest ratio of volumes at the Gauss points.
+    pub(crate) fn smallest_clamped_volume(&self, clamped: Clamped, thinning: f64) -> f64 {
+        let smallest = std::cell::Cell::new(f64::INFINITY);
+        self.clamped_mean(clamped, thinning, None, |at| {
+            let response = determinant_response(at, false);
+            smallest.set(smallest.get().min(response.value));
+            response
+        });
+        smallest.get()
+    }
+}
