@@ -105,11 +105,18 @@ struct Follow {
 struct Amplitudes<'a> {
     table: &'a Table,
     follow: &'a Follow,
-    drivers: &'a [Driver; SHAPE],
+    drivers: &'a Drivers,
     value: [f64; MODES],
     slope: [[f64; SHAPE]; MODES],
     /// `y` in them.
     relief: Option<&'a Shaped>,
+}
+
+/// All `d`, `φ` with two derivatives by `ρ²`, the sum of their squares, and the slopes of that.
+struct Drivers {
+    each: [Driver; SHAPE],
+    fading: [f64; 3],
+    square: [f64; SHAPE],
 }
 
 /// One of the `d`: its value, and its derivatives by its own coordinate and by the stretch (place, along an axis) that it
@@ -355,11 +362,140 @@ impl Table {
     }
 }
 
-impl Driver {
-    fn all(state: &Rotated) -> [Self; SHAPE] {
-        std::array::from_fn(|place| Self::of(state, place))
+impl Drivers {
+    fn of(state: &Rotated) -> Self {
+        let each = std::array::from_fn(|place| Driver::of(state, place));
+        let square = each.iter().map(|d: &Driver| d.value * d.value).sum::<f64>();
+        let mut own = Self {
+            fading: fading(square),
+            square: [0.0; SHAPE],
+            each,
+        };
+        let twice = own.values().map(|d| 2.0 * d);
+        own.square = own.slopes(&twice);
+        own
     }
 
+    fn values(&self) -> [f64; SHAPE] {
+        std::array::from_fn(|place| self.each[place].value)
+    }
+
+    /// The slopes of a combination of the `d` with these coefficients.
+    fn slopes(&self, coefficients: &[f64; SHAPE]) -> [f64; SHAPE] {
+        let mut slopes = [0.0; SHAPE];
+        for (place, (driver, factor)) in self.each.iter().zip(coefficients).enumerate() {
+            slopes[place] += factor * driver.by_own;
+            if let Some((stretch, by)) = driver.by_stretch {
+                slopes[stretch] += factor * by;
+            }
+        }
+        slopes
+    }
+
+    /// Adds its second derivatives.
+    fn add_curvatures(&self, coefficients: &[f64; SHAPE], hessian: &mut [[f64; SHAPE]; SHAPE]) {
+        for (place, (driver, factor)) in self.each.iter().zip(coefficients).enumerate() {
+            hessian[place][place] += factor * driver.own_own;
+            if let Some((stretch, _)) = driver.by_stretch {
+                hessian[place][stretch] += factor * driver.own_stretch;
+                hessian[stretch][place] += factor * driver.own_stretch;
+                hessian[stretch][stretch] += factor * driver.stretch_stretch;
+            }
+        }
+    }
+
+    /// A combination of the `φ d`, and its slopes.
+    fn faded(&self, coefficients: &[f64; SHAPE]) -> (f64, [f64; SHAPE]) {
+        let [factor, first, _] = self.fading;
+        let whole = dot_all(coefficients, &self.values());
+        let mut slopes = self.slopes(coefficients);
+        for (slope, square) in slopes.iter_mut().zip(&self.square) {
+            *slope = factor * *slope + first * whole * square;
+        }
+        (factor * whole, slopes)
+    }
+
+    /// Adds its second derivatives.
+    fn add_faded_curvatures(
+        &self,
+        coefficients: &[f64; SHAPE],
+        hessian: &mut [[f64; SHAPE]; SHAPE],
+    ) {
+        let [factor, first, second] = self.fading;
+        let whole = dot_all(coefficients, &self.values());
+        let slopes = self.slopes(coefficients);
+        // With ρ² = Σ d²: those of `φ` are φ″ ∂ρ² ⊗ ∂ρ² + 2φ′ Σ (∂d ⊗ ∂d + d ∂²d).
+        let twice = 2.0 * first * whole;
+        let combined: [f64; SHAPE] =
+            std::array::from_fn(|k| factor * coefficients[k] + twice * self.each[k].value);
+        self.add_curvatures(&combined, hessian);
+        self.add_squares(twice, hessian);
+        for row in 0..SHAPE {
+            for column in 0..SHAPE {
+                let (a, b) = (self.square[row], self.square[column]);
+                hessian[row][column] +=
+                    first * (a * slopes[column] + slopes[row] * b) + second * whole * a * b;
+            }
+        }
+    }
+}
+
+impl Drivers {
+    /// Adds `factor Σ ∂d ⊗ ∂d`.
+    fn add_squares(&self, factor: f64, hessian: &mut [[f64; SHAPE]; SHAPE]) {
+        for (place, driver) in self.each.iter().enumerate() {
+            let (stretch, by) = driver.by_stretch.unwrap_or((place, 0.0));
+            hessian[place][place] += factor * driver.by_own * driver.by_own;
+            hessian[place][stretch] += factor * driver.by_own * by;
+            hessian[stretch][place] += factor * driver.by_own * by;
+            hessian[stretch][stretch] += factor * by * by;
+        }
+    }
+
+    /// Multiplies a function of the coordinates by `φ`, with its second derivatives where asked.
+    fn fade(&self, of: &mut Shaped, second: bool) {
+        let [factor, slope, turn] = self.fading;
+        if second {
+            let twice = 2.0 * slope * of.value;
+            for row in 0..SHAPE {
+                for column in 0..SHAPE {
+                    let (a, b) = (self.square[row], self.square[column]);
+                    let entry = &mut of.hessian[row][column];
+                    *entry = factor * *entry
+                        + slope * (a * of.gradient[column] + of.gradient[row] * b)
+                        + turn * of.value * a * b;
+                }
+            }
+            let combined = self.values().map(|d| twice * d);
+            self.add_curvatures(&combined, &mut of.hessian);
+            self.add_squares(twice, &mut of.hessian);
+        }
+        for (own, square) in of.gradient.iter_mut().zip(&self.square) {
+            *own = factor * *own + slope * of.value * square;
+        }
+        of.value *= factor;
+    }
+}
+
+fn dot_all(a: &[f64; SHAPE], b: &[f64; SHAPE]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// How large the `d` may be, as a root of the sum of their squares, before the `q` level off.
+const MOST_STRAIN: f64 = 0.3;
+
+/// `φ = (1 + (ρ/ρ₀)⁴)^(−1/4)` with two derivatives by `ρ²`.
+fn fading(square: f64) -> [f64; 3] {
+    let scale = MOST_STRAIN.powi(-4);
+    let base = 1.0 + scale * square * square;
+    let factor = base.powf(-0.25);
+    // φ⁴ = 1/base: 4 φ³ φ′ = −2 s ρ²/base².
+    let first = -0.5 * scale * square * factor / base;
+    let second = -0.5 * scale * factor / base * (1.0 - 2.5 * scale * square * square / base);
+    [factor, first, second]
+}
+
+impl Driver {
     fn of(state: &Rotated, place: usize) -> Self {
         if place < 3 {
             let [stretch, slope, turn] = positive(state.stretch[place]);
@@ -398,32 +534,6 @@ impl Driver {
     }
 }
 
-/// Adds a combination of the `d` with these coefficients: its slopes.
-fn add_slopes(drivers: &[Driver; SHAPE], coefficients: &[f64; SHAPE], slopes: &mut [f64; SHAPE]) {
-    for (place, (driver, factor)) in drivers.iter().zip(coefficients).enumerate() {
-        slopes[place] += factor * driver.by_own;
-        if let Some((stretch, by)) = driver.by_stretch {
-            slopes[stretch] += factor * by;
-        }
-    }
-}
-
-/// Its second derivatives.
-fn add_curvatures(
-    drivers: &[Driver; SHAPE],
-    coefficients: &[f64; SHAPE],
-    hessian: &mut [[f64; SHAPE]; SHAPE],
-) {
-    for (place, (driver, factor)) in drivers.iter().zip(coefficients).enumerate() {
-        hessian[place][place] += factor * driver.own_own;
-        if let Some((stretch, _)) = driver.by_stretch {
-            hessian[place][stretch] += factor * driver.own_stretch;
-            hessian[stretch][place] += factor * driver.own_stretch;
-            hessian[stretch][stretch] += factor * driver.stretch_stretch;
-        }
-    }
-}
-
 /// Where the relief of a volume levels off.
 const MOST_RELIEF: f64 = 0.5;
 
@@ -443,18 +553,13 @@ impl<'a> Amplitudes<'a> {
     fn of(
         table: &'a Table,
         follow: &'a Follow,
-        drivers: &'a [Driver; SHAPE],
+        drivers: &'a Drivers,
         relief: Option<&'a Shaped>,
     ) -> Self {
         let (mut value, mut slope) = ([0.0; MODES], [[0.0; SHAPE]; MODES]);
         for m in 0..table.modes.len() {
             let row = &follow.rows[m];
-            value[m] = drivers
-                .iter()
-                .zip(row)
-                .map(|(d, factor)| factor * d.value)
-                .sum();
-            add_slopes(drivers, row, &mut slope[m]);
+            (value[m], slope[m]) = drivers.faded(row);
             if let Some(relief) = relief {
                 value[m] += table.spread[m] * relief.value;
                 for (sum, own) in slope[m].iter_mut().zip(&relief.gradient) {
@@ -510,7 +615,7 @@ impl<'a> Amplitudes<'a> {
                 pull[k] += scaled * self.follow.rows[m][k];
             }
         }
-        add_curvatures(self.drivers, &pull, hessian);
+        self.drivers.add_faded_curvatures(&pull, hessian);
         if let Some(relief) = self.relief {
             let own = relief.hessian.as_flattened();
             for (sum, own) in hessian.as_flattened_mut().iter_mut().zip(own) {
@@ -531,7 +636,7 @@ impl Rotated {
         function: impl Fn(&Sym) -> Response,
     ) -> Shaped {
         let table = clamped.table();
-        let (follow, drivers) = (table.follow(thinning), Driver::all(self));
+        let (follow, drivers) = (table.follow(thinning), Drivers::of(self));
         let plain = Amplitudes::of(table, &follow, &drivers, None);
         let relief = self.relief(&plain, thinning, second.is_some()).1;
         let amplitudes = Amplitudes::of(table, &follow, &drivers, Some(&relief));
@@ -541,7 +646,7 @@ impl Rotated {
     /// `J`, with derivatives where `second` asks.
     pub(crate) fn clamped_volume(&self, clamped: Clamped, thinning: f64, second: bool) -> Shaped {
         let table = clamped.table();
-        let (follow, drivers) = (table.follow(thinning), Driver::all(self));
+        let (follow, drivers) = (table.follow(thinning), Drivers::of(self));
         let plain = Amplitudes::of(table, &follow, &drivers, None);
         let (mut volume, relief) = self.relief(&plain, thinning, second);
         let beta = table.yielding;
@@ -561,24 +666,30 @@ impl Rotated {
         let volume = self.mean_with(plain, thinning, second.then_some(1.0), |at| {
             determinant_response(at, second)
         });
-        let coefficients = plain.follow.volume.map(|x| -x);
-        let mut left = volume.gradient;
-        add_slopes(plain.drivers, &coefficients, &mut left);
-        let linear = plain.drivers.iter().zip(&coefficients);
-        let rest = volume.value - 1.0 + linear.map(|(d, c)| c * d.value).sum::<f64>();
+        // θ: what the voxel's own strains change, and what the `q` do.
+        let drivers = plain.drivers;
+        let own: [f64; SHAPE] = std::array::from_fn(|k| if k < 3 { -1.0 } else { 0.0 });
+        let theirs = std::array::from_fn(|k| -plain.follow.volume[k] - own[k]);
+        let (faded, slopes) = drivers.faded(&theirs);
+        let by_own = drivers.slopes(&own);
+        let left: [f64; SHAPE] =
+            std::array::from_fn(|k| volume.gradient[k] + by_own[k] + slopes[k]);
+        let rest = volume.value - 1.0 + dot_all(&own, &drivers.values()) + faded;
         let [value, slope, turn] = levelling(rest).map(|x| -plain.follow.relief * x);
         let mut relief = Shaped::zero();
         relief.value = value;
         relief.gradient = left.map(|x| slope * x);
         if second {
             relief.hessian = volume.hessian;
-            add_curvatures(plain.drivers, &coefficients, &mut relief.hessian);
+            drivers.add_curvatures(&own, &mut relief.hessian);
+            drivers.add_faded_curvatures(&theirs, &mut relief.hessian);
             for (row, own) in relief.hessian.iter_mut().zip(&left) {
                 for (entry, other) in row.iter_mut().zip(&left) {
                     *entry = slope * *entry + turn * own * other;
                 }
             }
         }
+        drivers.fade(&mut relief, second);
         (volume, relief)
     }
 
