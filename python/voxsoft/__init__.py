@@ -70,6 +70,7 @@ if TYPE_CHECKING:
         Rotation,
         Solver,
         Spring,
+        Symmetry,
         Traction,
     )
     from voxsoft.design.discretize import mesh_of, voxels_of
@@ -139,6 +140,7 @@ _HOMES = {
         "Rotation",
         "Solver",
         "Spring",
+        "Symmetry",
         "Traction",
     ),
     "voxsoft.design.discretize": ("mesh_of", "voxels_of"),

@@ -228,11 +228,30 @@ class ProblemParts:
         pressure: float,
         history: _History = None,
         voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
+        closed: bool = False,
     ) -> None: ...
     def forces(
         self,
         vertices: NDArray[np.uint32],
         forces: NDArray[np.float64],
+        history: _History = None,
+    ) -> None: ...
+    def mirrored_membrane(
+        self,
+        images: tuple[NDArray[np.uint32], NDArray[np.float64]],
+        points: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        young: float,
+        poisson: float,
+        thickness: float,
+        density: float,
+        share: float,
+    ) -> None: ...
+    def mirrored_pressure(
+        self,
+        images: tuple[NDArray[np.uint32], NDArray[np.float64]],
+        triangles: NDArray[np.uint32],
+        pressure: float,
         history: _History = None,
     ) -> None: ...
     def floor(self, z: float) -> None: ...
@@ -493,6 +512,7 @@ def equilibrium(
     linear: str = "auto",
     memory: int = ...,
     start: NDArray[np.float64] | None = None,
+    pressures: NDArray[np.float64] | None = None,
     sensors: Sequence[tuple[NDArray[np.uint32], NDArray[np.float64]]] = ...,
     frames: bool = False,
     progress: Callable[[int, float, float], None] | None = None,
@@ -547,6 +567,7 @@ class Problem:
     def masses(self) -> NDArray[np.float64]: ...
     def edges(self) -> tuple[NDArray[np.uint32], NDArray[np.float64], NDArray[np.float64]]: ...
     def elastic(self, positions: NDArray[np.float64]) -> tuple[float, NDArray[np.float64]]: ...
+    def pressures(self, positions: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def net_forces(self, positions: NDArray[np.float64]) -> NDArray[np.float64]: ...
     def relax(
         self,

@@ -79,8 +79,9 @@ def placed(model, tables):
 
 def _entries(name, info, tables):
     text = str(info.annotation)
-    for start in range(0, len(tables), AT_ONCE):
-        some = tables[start : start + AT_ONCE]
+    at_once = 1 if name == "symmetry" else AT_ONCE  # of planes there is one across each axis
+    for start in range(0, len(tables), at_once):
+        some = tables[start : start + at_once]
         if text.startswith("tuple"):
             yield {name: list(_of_own_names(some)) if name in ("objects", "bodies") else some}
         elif "Mapping" in text[:30]:

@@ -9,7 +9,7 @@ use pyo3::exceptions::{PyArithmeticError, PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Progress, State};
-use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings};
+use voxsoft_statics::{AdjointError, Control, LinearSolver, Settings, Start};
 use voxsoft_xpbd::{Answer, Status};
 
 use crate::answer::{PyAnswer, PyPath};
@@ -64,9 +64,10 @@ pub(crate) fn to_python(error: AdjointError) -> PyErr {
 }
 
 /// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
+/// `start` are positions, and `pressures` what the voxels there have instead of their own, see `Problem.pressures`;
 /// `linear` is "auto", "direct" or "iterative", `memory` the bytes that the tangent may take.
 #[pyfunction]
-#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, sensors=vec![], frames=false, progress=None))]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, pressures=None, sensors=vec![], frames=false, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -82,6 +83,7 @@ pub fn equilibrium(
     linear: &str,
     memory: u64,
     start: Option<PyReadonlyArray2<'_, f64>>,
+    pressures: Option<PyReadonlyArray1<'_, f64>>,
     sensors: Vec<(PyReadonlyArray1<'_, u32>, PyReadonlyArray1<'_, f64>)>,
     frames: bool,
     progress: Option<Py<PyAny>>,
@@ -113,13 +115,18 @@ pub fn equilibrium(
         memory,
         ..Settings::default()
     };
-    let start = start.map(|start| problem.positions(&start)).transpose()?;
+    let pressures = pressures.map(|found| problem.brick_pressures(&found));
+    let pressures = pressures.transpose()?;
+    let positions = start.map(|start| problem.positions(&start)).transpose()?;
+    let start = positions.map(|positions| Start {
+        positions,
+        pressures,
+    });
     let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
     let problem_of_work = Arc::clone(inner);
     let (answer, watch) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);
-        let answer =
-            voxsoft_statics::solve(&problem_of_work, start.as_deref(), &settings, &mut see);
+        let answer = voxsoft_statics::solve(&problem_of_work, start.as_ref(), &settings, &mut see);
         (answer, watch)
     })?;
     let stable = answer.stable;

@@ -10,9 +10,9 @@ use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Clamp, Contact, Filling, Floor, Gravity, History, Load, LoadKind, Material,
-    Membrane, MembraneMaterial, Mesh, Motion, PointForces, Pressure, Problem, ProblemError, State,
-    Term, elastic,
+    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Gravity, History, Images, Load,
+    LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, Motion, PointForces,
+    Pressure, Problem, ProblemError, State, Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -128,14 +128,16 @@ impl PyProblemParts {
         self.load(Gravity { acceleration }, history)
     }
 
-    /// A pressure on triangles, and on the given parts of cut tetrahedra.
-    #[pyo3(signature = (triangles, pressure, history=None, voids=None))]
+    /// A pressure on triangles, and on the given parts of cut tetrahedra; those that are `closed` enclose a volume,
+    /// where need be with planes of symmetry through the origin.
+    #[pyo3(signature = (triangles, pressure, history=None, voids=None, closed=false))]
     fn pressure(
         &mut self,
         triangles: PyReadonlyArray2<'_, u32>,
         pressure: f64,
         history: HistoryArgument,
         voids: VoidsArgument<'_>,
+        closed: bool,
     ) -> PyResult<()> {
         let triangles = rows("triangles", &triangles)?;
         let voids = self::voids(voids)?;
@@ -144,6 +146,7 @@ impl PyProblemParts {
                 triangles,
                 voids,
                 pressure,
+                closed,
             },
             history,
         )
@@ -285,6 +288,61 @@ impl PyProblemParts {
         Ok(())
     }
 
+    /// A part of a membrane on triangles with corners that are mirror images, with where these are at rest.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
+    fn mirrored_membrane(
+        &mut self,
+        images: ImagesArgument<'_>,
+        points: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        young: f64,
+        poisson: f64,
+        thickness: f64,
+        density: f64,
+        share: f64,
+    ) -> PyResult<()> {
+        let points: Vec<Vec3> = rows("points", &points)?;
+        let material = MembraneMaterial {
+            young,
+            poisson,
+            thickness,
+            density,
+        };
+        let membrane = |triangle: [u32; 3]| {
+            let corner = |v: u32| points.get(v as usize).copied().unwrap_or([f64::NAN; 3]);
+            let whole = Membrane::new(triangle, triangle.map(corner), material);
+            whole.map(|m| m.with_share(share)).map_err(to_python)
+        };
+        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
+        let membranes = triangles.into_iter().map(membrane);
+        let membranes = Membranes(membranes.collect::<PyResult<_>>()?);
+        let mirrored = Mirrored::new(self::images(&images)?, membranes);
+        self.attachments
+            .push(Attachment::MirroredMembranes(mirrored));
+        Ok(())
+    }
+
+    /// A pressure on triangles with corners that are mirror images: parts of a closed surface.
+    #[pyo3(signature = (images, triangles, pressure, history=None))]
+    fn mirrored_pressure(
+        &mut self,
+        images: ImagesArgument<'_>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        pressure: f64,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let load = Pressure {
+            triangles: rows("triangles", &triangles)?,
+            voids: Vec::new(),
+            pressure,
+            closed: true,
+        };
+        self.load(Mirrored::new(self::images(&images)?, load), history)
+    }
+
     /// The filled part of each block, and where in it the material is: center and spread along the
     /// axes, and the means of the products of two coordinates, in halves of an edge.
     #[pyo3(signature = (fractions, moments=None))]
@@ -307,6 +365,16 @@ impl PyProblemParts {
 
 /// Tetrahedra and the part of each that is void.
 type VoidsArgument<'py> = Option<(PyReadonlyArray2<'py, u32>, PyReadonlyArray1<'py, f64>)>;
+
+/// The vertex of each image, and by what its vectors are multiplied.
+type ImagesArgument<'py> = (PyReadonlyArray1<'py, u32>, PyReadonlyArray2<'py, f64>);
+
+fn images((of, signs): &ImagesArgument<'_>) -> PyResult<Images> {
+    Ok(Images {
+        of: of.as_array().to_vec(),
+        signs: rows("signs", signs)?,
+    })
+}
 
 fn voids(argument: VoidsArgument<'_>) -> PyResult<Vec<([u32; 4], f64)>> {
     let Some((tets, parts)) = argument else {
@@ -440,6 +508,22 @@ impl PyProblem {
             PyArray1::from_vec(py, collect(|edge| edge.length)),
             PyArray1::from_vec(py, collect(|edge| edge.stiffness)),
         )
+    }
+
+    /// The pressure (Pa, positive in tension) in each hyperelastic voxel, on the vertex at its lowest corner; not a number
+    /// on others.
+    fn pressures<'py>(
+        &self,
+        py: Python<'py>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let positions = self.positions(&positions)?;
+        let bricks = self.problem.body().brick_term();
+        let mut found = vec![f64::NAN; self.own()];
+        for (brick, pressure) in bricks.bricks.iter().zip(bricks.pressures(&positions)) {
+            found[brick.vertices[0] as usize] = pressure;
+        }
+        Ok(PyArray1::from_vec(py, found))
     }
 
     /// Elastic energy in J and forces in N at the given positions.
@@ -606,6 +690,20 @@ impl PyProblem {
         self.touching
             .as_ref()
             .map_or(all, |touching| touching.first)
+    }
+
+    /// Pressures in the order of hyperelastic voxels, of those at their lowest corners.
+    pub(crate) fn brick_pressures(&self, array: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<f64>> {
+        let array = array.as_array();
+        let bricks = &self.problem.body().brick_term().bricks;
+        let pressure = |brick: &Brick| array.get(brick.vertices[0] as usize).copied();
+        let found: Option<Vec<f64>> = bricks.iter().map(pressure).collect();
+        match found {
+            Some(found) if found.iter().all(|p| p.is_finite()) => Ok(found),
+            _ => Err(PyValueError::new_err(
+                "pressures: a voxel has none at its lowest corner",
+            )),
+        }
     }
 
     pub(crate) fn positions(&self, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Vec3>> {

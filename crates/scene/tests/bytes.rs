@@ -125,6 +125,7 @@ fn full() -> Scene {
         triangles: triangles.clone(),
         voids: vec![([0, 1, 2, 3], 0.5)],
         pressure: 300.0,
+        closed: false,
     };
     let pull = PointForces {
         vertices: vec![3],

@@ -7,6 +7,28 @@ use crate::vector::Vec3;
 /// and columns `3 place + axis`.
 pub type Visitor<'a> = &'a mut dyn FnMut(&[u32], &[f64]);
 
+/// Matrices of elements with the same number of vertices.
+#[derive(Clone, Copy)]
+pub struct Elements<'a> {
+    /// How many vertices each element has.
+    pub width: usize,
+    /// The vertices of one element after the other.
+    pub vertices: &'a [u32],
+    /// Their matrices, as a [`Visitor`] gets them.
+    pub matrices: &'a [f64],
+}
+
+/// Takes element matrices many at a time, so that it can work on them on all threads.
+pub type ElementsVisitor<'a> = &'a mut dyn FnMut(Elements<'_>);
+
+impl<'a> Elements<'a> {
+    /// One element after the other.
+    pub fn iter(self) -> impl Iterator<Item = (&'a [u32], &'a [f64])> {
+        let matrices = self.matrices.chunks(9 * self.width * self.width);
+        self.vertices.chunks(self.width).zip(matrices)
+    }
+}
+
 /// Adds the product of one element matrix with `direction`.
 pub(crate) fn add_product(
     vertices: &[u32],

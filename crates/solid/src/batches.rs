@@ -31,3 +31,34 @@ pub(crate) fn in_order<U: Send>(
         take(index, each(index));
     }
 }
+
+/// The same for work on `group` pieces at a time: `fill(first, results)` sets those of the pieces from `first` on, and
+/// `take(first, results)` gets those of one or more groups.
+pub(crate) fn groups_in_order<U: Clone + Send>(
+    count: usize,
+    #[cfg_attr(not(feature = "threads"), expect(unused_variables))] batch: usize,
+    group: usize,
+    empty: &U,
+    fill: impl Fn(usize, &mut [U]) + Sync,
+    mut take: impl FnMut(usize, &[U]),
+) {
+    #[cfg(feature = "threads")]
+    if count >= WORTHWHILE && rayon::current_num_threads() > 1 {
+        let mut results = vec![empty.clone(); batch.min(count)];
+        for start in (0..count).step_by(batch) {
+            let results = &mut results[..batch.min(count - start)];
+            results
+                .par_chunks_mut(group)
+                .enumerate()
+                .for_each(|(place, results)| fill(start + place * group, results));
+            take(start, results);
+        }
+        return;
+    }
+    let mut results = vec![empty.clone(); group];
+    for start in (0..count).step_by(group) {
+        let results = &mut results[..group.min(count - start)];
+        fill(start, results);
+        take(start, results);
+    }
+}

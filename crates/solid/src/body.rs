@@ -118,9 +118,14 @@ impl Body {
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
         }
+        for attachment in &mesh.attachments {
+            attachment.add_masses(&mut masses);
+        }
         for &(vertex, mass) in &mesh.point_masses {
             masses[vertex as usize] += mass;
         }
+        // Of what is bonded to membranes: Young's modulus times size, the least around each vertex, in N/m.
+        let mut behind = vec![f64::INFINITY; mesh.vertices.len()];
         let mut found: Vec<Edge> = Vec::new();
         let mut edges_from = EdgesFrom::new(mesh.vertices.len());
         let (mut tets, mut edge_order) = (Vec::with_capacity(mesh.tets.len()), Vec::new());
@@ -134,6 +139,11 @@ impl Body {
                 let fraction = fraction_of(mesh, block);
                 let mut constraints = Vec::with_capacity(block.len());
                 let cube = cube::corners(mesh, block, axes_of(mesh, block).as_ref());
+                let young = materials[usize::from(mesh.tet_part[block[0]])].young(side);
+                for &vertex in block.iter().flat_map(|&t| &mesh.tets[t]) {
+                    let least = &mut behind[vertex as usize];
+                    *least = least.min(young * side);
+                }
                 for &t in block {
                     let Material::Lattice(material) = materials[usize::from(mesh.tet_part[t])]
                     else {
@@ -212,6 +222,12 @@ impl Body {
                 strain_forces[vertex as usize] += young(brick) * brick.volume() / brick.side;
             }
         }
+        let mut membranes = Membranes(mesh.membranes.clone());
+        membranes.set_behind(&behind);
+        let mut attachments = mesh.attachments.clone();
+        for attachment in &mut attachments {
+            attachment.set_behind(&behind);
+        }
         let mut body = Self {
             unit_strain_force: strain_forces.iter().map(|f| f * f).sum::<f64>().sqrt(),
             unit_strain_energy: (edge_energy + brick_energy) / 2.0,
@@ -225,8 +241,8 @@ impl Body {
                 bricks,
                 materials: hyperelastic,
             },
-            membranes: Membranes(mesh.membranes.clone()),
-            attachments: mesh.attachments.clone(),
+            membranes,
+            attachments,
             foreign: Vec::new(),
             chunk_edges,
             chunk_tets,

@@ -138,9 +138,23 @@ pub struct BrickResponse {
 /// Strain and pressure of a voxel as unknowns of their own ([`crate::mixed`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
-    strain: BrickStrain,
+    pub(crate) strain: BrickStrain,
     /// The pressure that is carried is that of the strain at this shift.
-    pressure: Pressure,
+    pub(crate) pressure: Pressure,
+}
+
+impl Carried {
+    /// No strain and no pressure: what is there before an answer is.
+    pub(crate) const NOTHING: Self = Self {
+        strain: BrickStrain {
+            stretch: [0.0; 6],
+            hourglass: [[0.0; 3]; 3],
+        },
+        pressure: Pressure {
+            stiffness: 0.0,
+            shift: 0.0,
+        },
+    };
 }
 
 /// A dense stiffness matrix of a voxel; row and column `3 corner + axis`.
@@ -496,6 +510,25 @@ impl Brick {
             pressure: Pressure {
                 shift: start + along - end,
                 ..Pressure::of(material)
+            },
+        }
+    }
+
+    /// The strain at `positions` with another pressure (Pa, positive in tension).
+    pub fn with_pressure(
+        &self,
+        material: &HyperelasticMaterial,
+        positions: &[Vec3],
+        pressure: f64,
+    ) -> Carried {
+        let state = self.rotated(positions);
+        let own = Pressure::of(material);
+        let there = state.response(material, own).pressure;
+        Carried {
+            strain: state.strain(),
+            pressure: Pressure {
+                shift: (pressure - there) / own.stiffness,
+                ..own
             },
         }
     }

@@ -1,6 +1,6 @@
 //! Energy, forces and stiffness of a body: the sums over its terms.
 
-use crate::assembly::Visitor;
+use crate::assembly::{ElementsVisitor, Visitor};
 use crate::body::Body;
 use crate::brick::{Tangent, Within};
 use crate::terms::Term;
@@ -40,6 +40,12 @@ pub fn respond(
 pub fn visit_stiffness(body: &Body, positions: &[Vec3], visit: Visitor<'_>) {
     body.terms()
         .for_each(|term| term.visit_stiffness(positions, visit));
+}
+
+/// The same, as many elements at a time as suits.
+pub fn visit_elements(body: &Body, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+    body.terms()
+        .for_each(|term| term.visit_elements(positions, visit));
 }
 
 /// The same within a step, with the stress that is there or without it.

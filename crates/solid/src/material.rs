@@ -18,6 +18,14 @@ impl Material {
         }
     }
 
+    /// Young's modulus in Pa of unstrained material, for voxels of a size in m.
+    pub fn young(&self, voxel_size: f64) -> f64 {
+        match self {
+            Self::Lattice(material) => material.young(voxel_size),
+            Self::Hyperelastic(material) => material.young(),
+        }
+    }
+
     /// The hyperelastic material, if it is one.
     pub fn hyperelastic(&self) -> Option<&HyperelasticMaterial> {
         match self {

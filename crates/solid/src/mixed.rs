@@ -18,9 +18,12 @@
 //! by `p̂` in place of `K (J(ê) − 1)` in `C` and `G` alone; in the forces it cancels.
 
 use crate::Body;
-use crate::assembly::Visitor;
+use crate::assembly::{ElementsVisitor, Visitor};
 use crate::terms::{Strain, Term};
 use crate::vector::Vec3;
+
+/// The place of hyperelastic voxels among the terms of a body.
+const BRICKS: usize = 2;
 
 /// The strain of every element of a body.
 pub struct Strains<'a> {
@@ -34,6 +37,18 @@ impl<'a> Strains<'a> {
         Self {
             terms: body.terms().map(predict).collect(),
         }
+    }
+
+    /// The strains at `positions` with other pressures in the hyperelastic voxels, in Pa, positive in tension: those of
+    /// larger voxels there, say.
+    pub fn with_pressures(body: &'a Body, positions: &[Vec3], pressures: &[f64]) -> Self {
+        let bricks = body.brick_term().with_pressures(positions, pressures);
+        let others = body.terms_but_bricks();
+        let as_they_are = others.map(|term| Box::new(AsItIs(term)) as Box<dyn Strain + 'a>);
+        // In the order of the body's terms, in which they are carried on.
+        let mut terms: Vec<_> = as_they_are.collect();
+        terms.insert(BRICKS, bricks);
+        Self { terms }
     }
 
     /// The same after a further step.
@@ -59,11 +74,10 @@ impl<'a> Strains<'a> {
         }
     }
 
-    /// The tangent at `positions` with the stress of these strains, an element at a time as in
-    /// [`crate::elastic::visit_stiffness`].
-    pub fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
+    /// The tangent at `positions` with the stress of these strains, as many elements at a time as suits.
+    pub fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
         for term in &self.terms {
-            term.visit_stiffness(positions, visit);
+            term.visit_elements(positions, visit);
         }
     }
 }
@@ -78,5 +92,9 @@ impl Strain for AsItIs<'_> {
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
         self.0.visit_stiffness(positions, visit);
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.0.visit_elements(positions, visit);
     }
 }

@@ -258,6 +258,7 @@ mod tests {
             triangles,
             voids,
             pressure: 2.0,
+            closed: false,
         });
         Problem::new(body, vec![], vec![load], None).unwrap()
     }

@@ -77,6 +77,11 @@ impl Warping {
         clamped: None,
     };
 
+    /// The parts of each pair of axes.
+    pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
+        self.0
+    }
+
     /// That of a full voxel of isotropic rubber.
     pub fn of(faces: &Faces) -> Self {
         let clamped = Clamped::of(faces);

@@ -4,8 +4,9 @@ use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::conformance::{Broken, Law, check_load, check_term};
 use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
 use voxsoft_solid::{
-    Body, ExternalForce, Fiber, Gravity, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
-    MembraneMaterial, Mesh, PointForces, Pressure, ProblemError, Strain, Term, Vertices, elastic,
+    Body, ExternalForce, Fiber, Gravity, HyperelasticMaterial, Images, LatticeMaterial, Material,
+    Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, PointForces, Pressure, ProblemError,
+    Strain, Term, Vertices, elastic,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -318,6 +319,7 @@ fn pressure(faces: usize, voids: Vec<([u32; 4], f64)>) -> Pressure {
         triangles: FACES[..faces].to_vec(),
         voids,
         pressure: 2.0,
+        closed: false,
     }
 }
 
@@ -345,6 +347,40 @@ fn every_kind_of_load_keeps_the_laws() {
     check(pressure(4, vec![])).unwrap();
     check(pressure(3, vec![])).unwrap();
     check(pressure(4, vec![([0, 1, 2, 3], 0.4)])).unwrap();
+    check(Mirrored::new(images(), pressure(4, vec![]))).unwrap();
+}
+
+/// Corners two of which are images of the third and fourth of a tetrahedron across planes.
+fn images() -> Images {
+    Images {
+        of: vec![0, 2, 3, 3],
+        signs: vec![
+            [1.0, 1.0, 1.0],
+            [1.0, -1.0, 1.0],
+            [-1.0, 1.0, 1.0],
+            [1.0, 1.0, 1.0],
+        ],
+    }
+}
+
+#[test]
+fn membranes_on_mirror_images_keep_the_laws() {
+    // Along the axes, where rest has a strain of zero without rounding.
+    let rest = [[1.0, 1.0, 0.5], [1.0, 2.0, 0.5]];
+    let images = Images {
+        of: vec![0, 0, 1],
+        signs: vec![[-1.0, 1.0, 1.0], [1.0; 3], [1.0; 3]],
+    };
+    let material = MembraneMaterial {
+        young: 3.0,
+        poisson: 0.3,
+        thickness: 0.1,
+        density: 1.0,
+    };
+    let corners = [[-1.0, 1.0, 0.5], rest[0], rest[1]];
+    let membranes = Membranes(vec![Membrane::new([0, 1, 2], corners, material).unwrap()]);
+    let strained = [[1.1, 0.9, 0.5], [1.15, 2.1, 0.6]];
+    check_term(&Mirrored::new(images, membranes), &rest, &strained).unwrap();
 }
 
 #[test]

@@ -42,6 +42,9 @@ const ROUNDING: f64 = 1e-12;
 /// a way would be listed, and is of no use.
 const FARTHEST: f64 = 1.0;
 const FARTHEST_WITH_CONTACT: f64 = 0.5;
+/// What an iterative solution leaves of the displacements by the factor: its change, which they are multiplied with, falls as
+/// the residual does.
+pub(crate) const DIRECTION_TOLERANCE: f64 = 1e-4;
 /// The change of the factor over which the velocity of clamps is a difference: rotations are good to its square.
 const DIFFERENCE: f64 = 1e-4;
 
@@ -134,23 +137,13 @@ impl<C: Constraint> Search for Bordered<C> {
             observer,
         };
         let mut now = start.clone();
-        let seen = if touches && round > 0 {
-            // Near its end, but friction may let go there, and iterations without a line search overshoot.
-            match newton.searched(&mut now) {
-                Err(Failure::Lost | Failure::Singular) => {
-                    now = start;
-                    newton.mixed(&mut now)?
-                }
-                other => other?,
-            }
-        } else {
-            match newton.mixed(&mut now) {
-                Err(Failure::Lost) if now.iterations > 0 && searches => {
-                    newton.searched(&mut now)?
-                }
-                other => other?,
-            }
-        };
+        let mut seen = newton.find(&mut now, touches && round > 0, searches);
+        if let Err(Failure::Stalled) = seen {
+            newton.equilibrium.go_on_directly()?;
+            now = start;
+            seen = newton.find(&mut now, touches && round > 0, searches);
+        }
+        let seen = seen?;
         if !equilibrium.is_sound(&now.positions) {
             return Err(Failure::Lost);
         }
@@ -249,15 +242,19 @@ pub(crate) fn assemble(
 }
 
 impl Sides {
-    /// `a` and `b` with a factorized tangent.
+    /// `a` and `b` with a factorized tangent; where solutions come from an iteration, to such errors.
     pub fn solve(
         &self,
         equilibrium: &Equilibrium<'_>,
         factor: &Factor,
+        tolerances: [f64; 2],
+        stop: &mut dyn FnMut() -> bool,
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         let (mut a, mut b) = (self.residual.clone(), self.direction.clone());
-        equilibrium.system.solve_directly(factor, &mut a);
-        equilibrium.system.solve_directly(factor, &mut b);
+        for (side, tolerance) in [&mut a, &mut b].into_iter().zip(tolerances) {
+            let system = &equilibrium.system;
+            system.solve(factor, side, false, tolerance, stop)?;
+        }
         if a.iter().chain(&b).all(|x| x.is_finite()) {
             Ok((a, b))
         } else {
@@ -336,6 +333,25 @@ struct Newton<'n, 'e, 'o, C> {
 }
 
 impl<C: Constraint> Newton<'_, '_, '_, C> {
+    /// The way to the equilibrium: with a line search first from one that is `near`, or last where there is something to search.
+    fn find(&mut self, now: &mut Iterate, near: bool, searches: bool) -> Result<Seen, Failure> {
+        if near {
+            // Friction may let go there, and iterations without a line search overshoot.
+            let start = now.clone();
+            return match self.searched(now) {
+                Err(Failure::Lost | Failure::Singular) => {
+                    *now = start;
+                    self.mixed(now)
+                }
+                other => other,
+            };
+        }
+        match self.mixed(now) {
+            Err(Failure::Lost) if now.iterations > 0 && searches => self.searched(now),
+            other => other,
+        }
+    }
+
     /// Looks at both equations, with room in the tangent for what touches, and tells the observer.
     fn look(&mut self, positions: &[Vec3], factor: f64) -> Result<Seen, Failure> {
         self.equilibrium.follow_contact(positions)?;
@@ -371,13 +387,23 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
 
     /// Solves the bordered system with a factorized tangent.
     fn step(
-        &self,
+        &mut self,
         factor: &Factor,
         sides: &Sides,
         now: &Iterate,
         seen: &Seen,
     ) -> Result<Step, Failure> {
-        let (a, b) = sides.solve(self.equilibrium, factor)?;
+        let relative = seen.forces.relative();
+        let tolerances = [
+            self.equilibrium.linear_tolerance(relative, self.settings),
+            DIRECTION_TOLERANCE,
+        ];
+        let (equilibrium, observer) = (&*self.equilibrium, &mut *self.observer);
+        let mut stop = || {
+            let told = equilibrium.tell(&now.positions, seen.point, relative, observer);
+            told.is_err()
+        };
+        let (a, b) = sides.solve(equilibrium, factor, tolerances, &mut stop)?;
         let (across, along) = self.constraint.gradient(self.equilibrium, &now.positions);
         let compliance = product(&across, &b) + along;
         let change = (seen.missing.size - product(&across, &a)) / compliance;

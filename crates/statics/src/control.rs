@@ -4,7 +4,9 @@
 use voxsoft_solid::vector::{Vec3, dot, scale, sub};
 use voxsoft_solid::{Problem, Status};
 
-use crate::bordered::{Bordered, Constraint, Missing, Place, Unknown, assemble, product};
+use crate::bordered::{
+    Bordered, Constraint, DIRECTION_TOLERANCE, Missing, Place, Unknown, assemble, product,
+};
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::path::{Ending, LONGEST_OF_WAY, Path, status_of};
 use crate::point::Point;
@@ -307,7 +309,8 @@ impl Walk {
         };
         let sides = assemble(equilibrium, place, &residual);
         let factor = equilibrium.system.factor(0.0)?;
-        let (_, b) = sides.solve(equilibrium, &factor)?;
+        let tolerances = [DIRECTION_TOLERANCE; 2];
+        let (_, b) = sides.solve(equilibrium, &factor, tolerances, &mut || false)?;
         let length = (product(&b, &b) / (self.unit * self.unit) + 1.0).sqrt();
         let moves = equilibrium.system.spread(&b);
         let mut sign = 1.0;

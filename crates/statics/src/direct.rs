@@ -17,6 +17,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Body, Load, Problem, elastic};
 
 use crate::ordering::nested_dissection;
+use crate::rank::rank;
 use crate::system::{FactorError, Means};
 
 /// Marks a coordinate that is held.
@@ -188,7 +189,11 @@ impl DirectSystem {
     ) {
         self.assemble_pieces(jump, residual, |add| {
             match strains {
-                Some(strains) => strains.visit_stiffness(positions, add),
+                Some(strains) => strains.visit_elements(positions, &mut |elements| {
+                    elements
+                        .iter()
+                        .for_each(|(vertices, matrix)| add(vertices, matrix));
+                }),
                 None => elastic::visit_stiffness(problem.body(), positions, add),
             }
             problem.visit_load_stiffness(positions, factor_of, add);
@@ -216,12 +221,24 @@ impl DirectSystem {
             for (b, &column_vertex) in vertices.iter().enumerate() {
                 let first_column = 3 * column_vertex as usize;
                 let list = &neighbors[column_vertex as usize];
+                let columns = [0, 1, 2].map(|j| rows[first_column + j]);
                 for (a, &row_vertex) in vertices.iter().enumerate() {
                     let first_row = 3 * row_vertex as usize;
-                    let place = list
-                        .binary_search(&row_vertex)
-                        .expect("the pattern holds every pair of a piece");
+                    let place = rank(list, row_vertex);
                     let offset = offsets[column_vertex as usize][place] as usize;
+                    let free = rows[first_row..first_row + 3]
+                        .iter()
+                        .all(|&row| row != HELD);
+                    if free && columns.iter().all(|&column| column != HELD) {
+                        for j in 0..3 {
+                            let start = column_starts[columns[j] as usize] + offset;
+                            let column = &mut values[start..start + 3];
+                            for i in 0..3 {
+                                column[i] += matrix[(3 * a + i) * width + 3 * b + j];
+                            }
+                        }
+                        continue;
+                    }
                     for j in 0..3 {
                         let column = rows[first_column + j];
                         if column == HELD {

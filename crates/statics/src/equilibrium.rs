@@ -89,6 +89,8 @@ pub(crate) struct Equilibrium<'a> {
     /// How far the linear answer may turn a voxel from rest (rad), as long as only that is known of the
     /// body.
     pub largest_turn: Option<f64>,
+    /// Pressures in the hyperelastic voxels in Pa that the first iteration takes for those of its positions.
+    pub opening: Option<Vec<f64>>,
     /// What the forces of a body in motion count against as well.
     pub inertia: Option<&'a Inertia>,
     /// Forces in N that do not matter.
@@ -123,6 +125,11 @@ const SUFFICIENT: f64 = 1e-4;
 const LINEAR_TOLERANCE: f64 = 1e-4;
 /// The same with contact, whose penalties take most of that energy.
 const LINEAR_TOLERANCE_WITH_CONTACT: f64 = 1e-6;
+/// The last step need leave no less than this part of what may be left: energies and residuals fall alike, but not together.
+/// It is the last where solutions to such an error are nearly as cheap as all others.
+const LAST_PART: f64 = 0.1;
+const AT_ONCE: f64 = 1e-6;
+const LOOSEST: f64 = 0.1;
 /// How often a step may be halved.
 const HALVINGS: u32 = 12;
 /// Potentials are sums of many terms and known to about this part of their size.
@@ -150,6 +157,7 @@ impl<'a> Equilibrium<'a> {
             iterations: 0,
             back_offs: 0,
             largest_turn: None,
+            opening: None,
             inertia: None,
             negligible: 0.0,
             precision: 1.0,
@@ -248,9 +256,7 @@ impl<'a> Equilibrium<'a> {
         let start = positions.clone();
         let mut outcome = self.newton_by(way, positions, point, settings, observer);
         if let Err(Failure::Stalled) = outcome {
-            // From here on directly, if that fits in memory.
-            self.means.solver = LinearSolver::Direct;
-            self.system = System::new(self.problem, &self.held, self.means)?;
+            self.go_on_directly()?;
             positions.clone_from(&start);
             outcome = self.newton_by(way, positions, point, settings, observer);
         }
@@ -258,6 +264,13 @@ impl<'a> Equilibrium<'a> {
             *positions = start;
         }
         outcome
+    }
+
+    /// From here on solves directly, if that fits in memory.
+    pub fn go_on_directly(&mut self) -> Result<(), FactorError> {
+        self.means.solver = LinearSolver::Direct;
+        self.system = System::new(self.problem, &self.held, self.means)?;
+        Ok(())
     }
 
     fn newton_by(
@@ -292,7 +305,8 @@ impl<'a> Equilibrium<'a> {
         observer: &mut Observer<'_>,
     ) -> Result<Found, Failure> {
         let body = self.problem.body();
-        let mut strains: Option<Strains<'_>> = None;
+        let opening = self.opening.take();
+        let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         let mut previous = f64::INFINITY;
@@ -342,9 +356,10 @@ impl<'a> Equilibrium<'a> {
             );
             let factor = self.carried()?;
             let side = &mut forces.free;
+            let tolerance = self.linear_tolerance(relative, settings);
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
             self.system
-                .solve(&factor, side, false, self.linear_tolerance(), &mut stop)?;
+                .solve(&factor, side, false, tolerance, &mut stop)?;
             let mut moves = self.system.spread(&forces.free);
             if let Some(jump) = &jump {
                 moves = moves.iter().zip(jump).map(|(a, b)| add(*a, *b)).collect();
@@ -433,7 +448,7 @@ impl<'a> Equilibrium<'a> {
         is_standstill(relative, largest, body.size(), moved)
     }
 
-    fn tell(
+    pub fn tell(
         &self,
         positions: &[Vec3],
         point: Point,
@@ -489,13 +504,9 @@ impl<'a> Equilibrium<'a> {
             let mut step = forces.free.clone();
             let factor = self.descending(&mut shift)?;
             let mut stop = || self.tell(positions, point, relative, observer).is_err();
-            self.system.solve(
-                &factor,
-                &mut step,
-                false,
-                self.linear_tolerance(),
-                &mut stop,
-            )?;
+            let tolerance = self.linear_tolerance(relative, settings);
+            self.system
+                .solve(&factor, &mut step, false, tolerance, &mut stop)?;
             if !step.iter().all(|x| x.is_finite()) {
                 return Err(Failure::Singular);
             }
@@ -520,9 +531,13 @@ impl<'a> Equilibrium<'a> {
         Err(Failure::Lost)
     }
 
-    fn linear_tolerance(&self) -> f64 {
+    /// What an iterative solution may leave of its error, where the residual is `relative` to the loads: no less than what is
+    /// asked for in the end, and that at once where it is near.
+    pub fn linear_tolerance(&self, relative: f64, settings: &Settings) -> f64 {
+        let enough = LAST_PART * settings.tolerance / relative;
         match self.problem.contact() {
             Some(_) => LINEAR_TOLERANCE_WITH_CONTACT,
+            None if enough >= AT_ONCE => enough.min(LOOSEST),
             None => LINEAR_TOLERANCE,
         }
     }

@@ -3,13 +3,16 @@
 //! The memory and the work of one iteration grow with the number of voxels, where those of a direct
 //! factor in three dimensions grow with its powers 4/3 and 2.
 
+use voxsoft_solid::assembly::Elements;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, axpy, dot};
 use voxsoft_solid::{Load, Problem, Term, elastic};
 
 use crate::multigrid::{
-    BlockMatrix, Factors, Hierarchy, Workspace, cells_of, color, for_each, sum,
+    BlockMatrix, Coarsest, Hierarchy, Part, Workspace, cells_of, color, for_each, for_each_large,
+    sum,
 };
+use crate::rank::rank;
 use crate::system::{FactorError, Means};
 
 /// What a vertex takes: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and
@@ -17,6 +20,11 @@ use crate::system::{FactorError, Means};
 const BYTES_PER_VERTEX: u64 = 4_000;
 /// Iterations after which a solution counts as stalled.
 const MAX_ITERATIONS: usize = 400;
+/// How many times what is just enough is added across a direction.
+const BEYOND: f64 = 10.0;
+/// Elements from which on parts of the rows are worth a task each, and into how many the rows are parted.
+const MANY: usize = 64;
+const PARTS: usize = 8;
 /// An error of this part is of use to Newton's method even so.
 const USEFUL: f64 = 0.1;
 /// Iterations between two questions whether to stop.
@@ -30,12 +38,20 @@ pub(crate) struct IterativeSystem {
     places: Vec<u32>,
     held: Vec<[bool; 3]>,
     matrix: BlockMatrix,
+    /// By what part of itself the diagonal has been lifted.
+    lifted: f64,
     hierarchy: Hierarchy,
+}
+
+/// `factor` times the product of a vector with itself, which is added to the tangent.
+struct Border<'a> {
+    vector: &'a [Vec3],
+    factor: f64,
 }
 
 /// A preconditioner, and whether solutions must go downhill.
 pub(crate) struct IterativeFactor {
-    factors: Factors,
+    coarsest: Coarsest,
     downhill: bool,
 }
 
@@ -86,6 +102,7 @@ impl IterativeSystem {
             places,
             held: held.to_vec(),
             matrix,
+            lifted: 0.0,
             hierarchy,
         }))
     }
@@ -105,55 +122,56 @@ impl IterativeSystem {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
-        let Self {
-            places,
-            held,
-            matrix,
-            ..
-        } = self;
-        matrix.values.fill([0.0; 9]);
-        let mut add = |vertices: &[u32], entries: &[f64]| {
-            let width = 3 * vertices.len();
-            for (a, &row_vertex) in vertices.iter().enumerate() {
-                let row = places[row_vertex as usize] as usize;
-                let fixed = held[row_vertex as usize];
-                for (b, &column_vertex) in vertices.iter().enumerate() {
-                    let column = places[column_vertex as usize];
-                    let place = matrix.place(row, column);
-                    let block = &mut matrix.values[place];
-                    for i in (0..3).filter(|&i| !fixed[i]) {
-                        for j in 0..3 {
-                            let k = entries[(3 * a + i) * width + 3 * b + j];
-                            if !held[column_vertex as usize][j] {
-                                block[3 * i + j] += k;
-                            } else if let Some(jump) = jump {
-                                let moved = jump[column_vertex as usize][j];
-                                residual[3 * row_vertex as usize + i] -= k * moved;
-                            }
-                        }
-                    }
-                }
+        self.lifted = 0.0;
+        self.matrix.values.clear();
+        let mut target = Target {
+            places: &self.places,
+            held: &self.held,
+            matrix: &mut self.matrix,
+        };
+        let mut add = |elements: Elements<'_>| match jump {
+            Some(jump) => {
+                target.push(elements, jump, residual);
+                target.add(elements);
             }
+            None => target.add(elements),
         };
         match strains {
-            Some(strains) => strains.visit_stiffness(positions, &mut add),
-            None => elastic::visit_stiffness(problem.body(), positions, &mut add),
+            Some(strains) => strains.visit_elements(positions, &mut add),
+            None => elastic::visit_elements(problem.body(), positions, &mut add),
         }
-        problem.visit_load_stiffness(positions, factor_of, &mut add);
+        problem.visit_load_stiffness(positions, factor_of, &mut |vertices, matrices| {
+            add(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices,
+            });
+        });
+    }
+
+    /// Makes the diagonal of the assembled tangent `1 + shift` times what it was, where it is positive.
+    pub fn lift(&mut self, shift: f64) {
+        let by = (1.0 + shift) / (1.0 + self.lifted);
+        self.lifted = shift;
+        if by == 1.0 {
+            return;
+        }
+        for &place in &self.matrix.diagonals {
+            for axis in 0..3 {
+                if self.matrix.values.block(place)[4 * axis] > 0.0 {
+                    self.matrix.values.scale(place, axis, axis, by);
+                }
+            }
+        }
     }
 
     /// A preconditioner for the assembled tangent.
     pub fn factor(&mut self, downhill: bool) -> Result<IterativeFactor, FactorError> {
-        let values = &self.matrix.values;
-        if !values
-            .iter()
-            .all(|block| block.iter().all(|v| v.is_finite()))
-        {
+        if !self.matrix.values.are_finite() {
             return Err(FactorError::Singular);
         }
-        self.hierarchy.project(&self.matrix);
         Ok(IterativeFactor {
-            factors: self.hierarchy.factors(&self.matrix),
+            coarsest: self.hierarchy.project(&self.matrix),
             downhill,
         })
     }
@@ -168,7 +186,7 @@ impl IterativeSystem {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        let (answer, end) = self.iterate(factor, side, tolerance, stop);
+        let (answer, end) = self.iterate(factor, side, None, tolerance, stop);
         for (vertex, &place) in self.places.iter().enumerate() {
             side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
         }
@@ -179,9 +197,15 @@ impl IterativeSystem {
         }
     }
 
+    /// See [`crate::system::System::is_held_across`]: the tangent plus `ρ g ⊗ g` is positive definite then for all ρ beyond
+    /// one over that compliance.
+    pub fn is_held_across(&mut self, gradient: &[f64], compliance: f64) -> bool {
+        self.is_positive_definite(Some((gradient, BEYOND / compliance.abs())))
+    }
+
     /// Conjugate gradients from zero look along every direction that the preconditioned side has a part
-    /// in, which one without any order has in all.
-    pub fn is_positive_definite(&mut self) -> bool {
+    /// in, which one without any order has in all. A vector and a factor may stand for what is added to the tangent.
+    pub fn is_positive_definite(&mut self, border: Option<(&[f64], f64)>) -> bool {
         let Ok(factor) = self.factor(true) else {
             return false;
         };
@@ -193,10 +217,24 @@ impl IterativeSystem {
                 *value = (seed >> 33) as f64 / f64::from(1u32 << 31) - 0.5;
             }
         }
+        let border = border.map(|(vector, factor)| (self.by_rows(vector), factor));
+        let border = border.as_ref().map(|(vector, factor)| Border {
+            vector,
+            factor: *factor,
+        });
         let end = self
-            .iterate(&factor, &side, DEFINITE_TOLERANCE, &mut || false)
+            .iterate(&factor, &side, border, DEFINITE_TOLERANCE, &mut || false)
             .1;
         end != End::NegativeCurvature
+    }
+
+    /// A vector of free coordinates by rows.
+    fn by_rows(&self, side: &[f64]) -> Vec<Vec3> {
+        let mut rows = vec![[0.0; 3]; self.places.len()];
+        for (vertex, &place) in self.places.iter().enumerate() {
+            rows[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
+        }
+        rows
     }
 
     /// The answer by rows.
@@ -204,21 +242,21 @@ impl IterativeSystem {
         &self,
         factor: &IterativeFactor,
         side: &[f64],
+        border: Option<Border<'_>>,
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> (Vec<Vec3>, End) {
         let count = self.places.len();
-        let mut residual = vec![[0.0; 3]; count];
-        for (vertex, &place) in self.places.iter().enumerate() {
-            residual[place as usize].copy_from_slice(&side[3 * vertex..3 * vertex + 3]);
-        }
+        let mut residual = self.by_rows(side);
         let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
         let mut answer = vec![[0.0; 3]; count];
         let mut image = vec![[0.0; 3]; count];
         let mut work: Workspace = self.hierarchy.workspace(&self.matrix);
-        let preconditioner = self.hierarchy.preconditioner(&self.matrix, &factor.factors);
+        let preconditioner = self
+            .hierarchy
+            .preconditioner(&self.matrix, &factor.coarsest);
         preconditioner.apply(&residual, &mut work);
-        let mut direction = work.answer().to_vec();
+        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
         let mut gain = inner(&residual, &direction);
         // The energy of the error, as the preconditioner sees it: residual forces would say little about
         // soft bending modes, which carry most of a slender body's displacement.
@@ -231,6 +269,10 @@ impl IterativeSystem {
                 return (answer, End::Cancelled);
             }
             self.matrix.multiply(&direction, &mut image);
+            if let Some(Border { vector, factor }) = &border {
+                let part = factor * inner(vector, &direction);
+                for_each(&mut image, |row, image| axpy(image, part, vector[row]));
+            }
             let curvature = inner(&direction, &image);
             let positive = curvature > 0.0 && gain > 0.0;
             let lost = !(curvature.abs() > 0.0 && gain.is_finite());
@@ -244,16 +286,16 @@ impl IterativeSystem {
             for_each(&mut answer, |row, x| axpy(x, step, direction[row]));
             for_each(&mut residual, |row, r| axpy(r, -step, image[row]));
             preconditioner.apply(&residual, &mut work);
-            let fresh = work.answer();
-            let next = inner(&residual, fresh);
+            let next = sum(count, |row| dot(residual[row], work.answer(row)));
             if next.abs() <= goal {
                 return (answer, End::Converged);
             }
             let keep = next / gain;
             gain = next;
             for_each(&mut direction, |row, d| {
+                let fresh = work.answer(row);
                 for axis in 0..3 {
-                    d[axis] = keep * d[axis] + fresh[row][axis];
+                    d[axis] = keep * d[axis] + fresh[axis];
                 }
             });
         }
@@ -278,14 +320,111 @@ impl IterativeSystem {
     }
 }
 
+/// Where element matrices go.
+struct Target<'a> {
+    places: &'a [u32],
+    held: &'a [[bool; 3]],
+    matrix: &'a mut BlockMatrix,
+}
+
+impl Target<'_> {
+    /// Subtracts the forces of held coordinates that are about to move.
+    fn push(&self, elements: Elements<'_>, jump: &[Vec3], residual: &mut [f64]) {
+        for (vertices, entries) in elements.iter() {
+            let width = 3 * vertices.len();
+            for (row, entries) in entries.chunks(width).enumerate() {
+                let (vertex, axis) = (vertices[row / 3] as usize, row % 3);
+                if self.held[vertex][axis] {
+                    continue;
+                }
+                for (column, k) in entries.iter().enumerate() {
+                    let (other, along) = (vertices[column / 3] as usize, column % 3);
+                    if self.held[other][along] {
+                        residual[3 * vertex + axis] -= k * jump[other][along];
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds to the matrix: many elements by parts of its rows, so that each row gets them in their order.
+    fn add(&mut self, elements: Elements<'_>) {
+        let Self {
+            places,
+            held,
+            matrix,
+        } = self;
+        let rows = matrix.diagonals.len();
+        let count = if elements.vertices.len() < MANY * elements.width {
+            1
+        } else {
+            PARTS
+        };
+        let BlockMatrix {
+            starts,
+            columns,
+            values,
+            ..
+        } = &mut **matrix;
+        // Rows are numbered by colors, of which a voxel has each once: equal parts are equal work.
+        let ranges = (0..count).map(|part| rows * part / count..rows * (part + 1) / count);
+        let sizes = ranges
+            .clone()
+            .map(|rows| starts[rows.end] - starts[rows.start]);
+        let values = values.parts(sizes);
+        let mut parts: Vec<Rows<'_>> = ranges
+            .zip(values)
+            .map(|(range, values)| Rows { range, values })
+            .collect();
+        for_each_large(&mut parts, |_, rows| {
+            for (vertices, entries) in elements.iter() {
+                for (a, &vertex) in vertices.iter().enumerate() {
+                    let row = places[vertex as usize] as usize;
+                    if !rows.range.contains(&row) {
+                        continue;
+                    }
+                    let columns = &columns[starts[row]..starts[row + 1]];
+                    let first = starts[row] - starts[rows.range.start];
+                    let fixed = held[vertex as usize];
+                    let width = 3 * vertices.len();
+                    let entries = &entries[3 * a * width..(3 * a + 3) * width];
+                    for (b, &other) in vertices.iter().enumerate() {
+                        let mut block = [0.0; 9];
+                        for i in 0..3 {
+                            let entries = &entries[i * width + 3 * b..][..3];
+                            block[3 * i..3 * i + 3].copy_from_slice(entries);
+                        }
+                        let across = held[other as usize];
+                        if fixed != [false; 3] || across != [false; 3] {
+                            for (k, entry) in block.iter_mut().enumerate() {
+                                if fixed[k / 3] || across[k % 3] {
+                                    *entry = 0.0;
+                                }
+                            }
+                        }
+                        let place = first + rank(columns, places[other as usize]);
+                        rows.values.add(place, &block);
+                    }
+                }
+            }
+        });
+    }
+}
+
+/// Some rows of a matrix.
+struct Rows<'a> {
+    range: std::ops::Range<usize>,
+    values: Part<'a>,
+}
+
 /// The vertices of elements, one after the other.
 #[derive(Default)]
-struct Elements {
+struct Pieces {
     vertices: Vec<u32>,
     ends: Vec<usize>,
 }
 
-impl Elements {
+impl Pieces {
     fn push(&mut self, vertices: &[u32]) {
         self.vertices.extend_from_slice(vertices);
         self.ends.push(self.vertices.len());
@@ -301,7 +440,7 @@ impl Elements {
 fn pattern(problem: &Problem) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
-    let mut elements = Elements::default();
+    let mut elements = Pieces::default();
     body.voxels().iter().for_each(|v| elements.push(v));
     for term in body.terms_beyond_voxels() {
         term.visit_pattern(&mut |vertices| elements.push(vertices));

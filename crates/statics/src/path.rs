@@ -12,7 +12,7 @@ use crate::point::Point;
 use crate::settings::{Answer, Control, LinearSolver, PathPoint, Settings};
 use crate::settle::AtLoad;
 use crate::step_length::StepLength;
-use crate::system::{FactorError, Means, System};
+use crate::system::{FactorError, Means};
 use crate::volume;
 
 /// A step that took no more iterations than this lets the next one grow.
@@ -91,11 +91,20 @@ pub(crate) struct Path<'a, 'b> {
     pub looking: bool,
 }
 
-/// Finds the equilibrium under the final values of all loads and motions, from `start` (positions in m)
-/// or from rest.
+/// Where the search for an equilibrium begins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Start {
+    /// Positions in m.
+    pub positions: Vec<Vec3>,
+    /// Pressures in the hyperelastic voxels in Pa, positive in tension, in the order of [`voxsoft_solid::Bricks`]; `None` for
+    /// those of the positions.
+    pub pressures: Option<Vec<f64>>,
+}
+
+/// Finds the equilibrium under the final values of all loads and motions, from a start or from rest.
 pub fn solve(
     problem: &Problem,
-    start: Option<&[Vec3]>,
+    start: Option<&Start>,
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Answer {
@@ -116,15 +125,17 @@ pub fn solve(
 /// Follows the path of a problem, in which dampers hold what is loose.
 fn follow(
     problem: &Problem,
-    start: Option<&[Vec3]>,
+    start: Option<&Start>,
     settings: &Settings,
     observer: &mut Observer<'_>,
     loose: Option<&Loose>,
 ) -> Answer {
     let rest = problem.body().rest();
-    let positions = start.unwrap_or(rest).to_vec();
+    let positions = start.map_or(rest, |start| &start.positions).to_vec();
     let solver = match settings.control {
         Control::Load => settings.linear,
+        // Where contact goes astray is told from the signs of pivots.
+        Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
     };
     let means = Means {
@@ -144,6 +155,7 @@ fn follow(
     let mut path = Path {
         equilibrium: Equilibrium {
             has_loose: loose.is_some(),
+            opening: start.and_then(|start| start.pressures.clone()),
             ..equilibrium
         },
         positions,
@@ -252,9 +264,7 @@ impl Path<'_, '_> {
     fn look_ahead(&mut self, settings: &Settings) -> Option<f64> {
         let equilibrium = &mut self.equilibrium;
         if equilibrium.system.is_iterative() {
-            equilibrium.means.solver = LinearSolver::Direct;
-            let (problem, held) = (equilibrium.problem, &equilibrium.held);
-            equilibrium.system = System::new(problem, held, equilibrium.means).ok()?;
+            equilibrium.go_on_directly().ok()?;
         }
         control::look_for_limit(self, settings)
     }

@@ -1,7 +1,7 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Observer, Problem, Solution, Solver, State, Status};
 
-use crate::path::solve;
+use crate::path::{Start, solve};
 use crate::point::Point;
 
 /// How a load path is followed.
@@ -84,7 +84,11 @@ impl Solver for Settings {
         start: Option<&[Vec3]>,
         observer: &mut Observer<'_>,
     ) -> Solution {
-        let answer = solve(problem, start, self, observer);
+        let start = start.map(|positions| Start {
+            positions: positions.to_vec(),
+            pressures: None,
+        });
+        let answer = solve(problem, start.as_ref(), self, observer);
         Solution {
             state: State {
                 positions: answer.positions,

@@ -117,7 +117,10 @@ impl System {
                 other => other,
             }
             .map(Factor::Direct),
-            Self::Iterative(system) => system.factor(false).map(Factor::Iterative),
+            Self::Iterative(system) => {
+                system.lift(shift);
+                system.factor(false).map(Factor::Iterative)
+            }
         }
     }
 
@@ -164,11 +167,12 @@ impl System {
         }
     }
 
-    /// Solves for a right-hand side in place with a direct factor, which paths past a limit take.
-    pub fn solve_directly(&self, factor: &Factor, side: &mut [f64]) {
-        match (self, factor) {
-            (Self::Direct(system), Factor::Direct(factor)) => system.solve(factor, side, false),
-            _ => unreachable!("a path past a limit takes direct factors"),
+    /// Whether the tangent is positive among all directions across `gradient`, where its inverse gives `gradient` a negative
+    /// `compliance` by itself: it has one negative eigenvalue then.
+    pub fn is_held_across(&mut self, factor: &Factor, gradient: &[f64], compliance: f64) -> bool {
+        match self {
+            Self::Direct(_) => self.negative_pivots(factor) == Some(1),
+            Self::Iterative(system) => system.is_held_across(gradient, compliance),
         }
     }
 
@@ -176,7 +180,7 @@ impl System {
     pub fn is_positive_definite(&mut self) -> bool {
         match self {
             Self::Direct(system) => system.factor(0.0, true).is_ok(),
-            Self::Iterative(system) => system.is_positive_definite(),
+            Self::Iterative(system) => system.is_positive_definite(None),
         }
     }
 

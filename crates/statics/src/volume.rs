@@ -8,7 +8,9 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, Status};
 
-use crate::bordered::{Bordered, Constraint, Missing, Unknown, load_direction, product};
+use crate::bordered::{
+    Bordered, Constraint, DIRECTION_TOLERANCE, Missing, Unknown, load_direction, product,
+};
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
 use crate::path::{Along, Ending, LONGEST_OF_WAY, Path, SNAP, UNSTABLE_CUTS, status_of};
@@ -219,10 +221,19 @@ fn stability(equilibrium: &mut Equilibrium<'_>, positions: &[Vec3], point: Point
     };
     let gradient = load_direction(equilibrium, positions, Unknown::Pressure);
     let mut along = gradient.clone();
-    equilibrium.system.solve_directly(&factor, &mut along);
-    let falls = product(&gradient, &along) < 0.0;
-    let one = equilibrium.system.negative_pivots(&factor) == Some(1);
-    (false, falls && one)
+    let solved =
+        equilibrium
+            .system
+            .solve(&factor, &mut along, false, DIRECTION_TOLERANCE, &mut || {
+                false
+            });
+    let compliance = product(&gradient, &along);
+    let held = solved.is_ok()
+        && compliance < 0.0
+        && equilibrium
+            .system
+            .is_held_across(&factor, &gradient, compliance);
+    (false, held)
 }
 
 /// The volume that the pressures work on, weighted with them (J).

@@ -161,6 +161,7 @@ fn chamber(vertices: &[Vec3], top: &[u32], base: u32, other_diagonal: bool) -> L
         triangles: faces.into_iter().flat_map(split).collect(),
         voids: Vec::new(),
         pressure: PRESSURE / 2.0,
+        closed: false,
     })
 }
 

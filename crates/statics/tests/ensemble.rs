@@ -125,6 +125,7 @@ fn what_cannot_be_laid_out_is_refused() {
         triangles: vec![[0, 1, 2]],
         voids: vec![],
         pressure: 1.0,
+        closed: false,
     });
     let floor = Some(voxsoft_solid::Floor { z: -1.0 });
     let problem = |loads, floor| Problem::new(body(), vec![wall.clone()], loads, floor).unwrap();

@@ -70,6 +70,7 @@ fn chamber(soft: impl Into<Material>, firm: impl Into<Material>, pressure: f64) 
         triangles,
         voids: Vec::new(),
         pressure,
+        closed: false,
     });
     let wall = vertices_where(&mesh, |x| x[0] < 1e-9);
     Problem::new(body, vec![Clamp::fixed(wall)], vec![load], None).unwrap()
@@ -158,6 +159,7 @@ fn an_open_pressure_that_turns_with_the_surface_comes_to_rest_too() {
         triangles,
         voids: Vec::new(),
         pressure: 150.0,
+        closed: false,
     });
     let problem = Problem::new(body, vec![Clamp::fixed(wall)], vec![load], None).unwrap();
     assert!(!problem.is_conservative());

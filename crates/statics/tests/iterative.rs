@@ -70,6 +70,7 @@ fn chambers(material: impl Into<Material>, film: bool) -> Problem {
             triangles,
             voids: vec![],
             pressure: 2e3,
+            closed: false,
         }),
     ];
     Problem::new(body, vec![Clamp::fixed(wall)], loads, None).unwrap()

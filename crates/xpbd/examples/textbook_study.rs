@@ -117,6 +117,7 @@ impl Design {
             triangles: pressed.clone(),
             voids: Vec::new(),
             pressure: PRESSURE,
+            closed: false,
         });
         let problem = Problem::new(body, vec![Clamp::fixed(held)], vec![load], None)?;
         let mut design = Self {

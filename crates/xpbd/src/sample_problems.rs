@@ -47,6 +47,7 @@ pub(crate) fn problems() -> Vec<Problem> {
         voids: vec![(body.tets()[3].vertices, 0.3)],
         triangles,
         pressure: 800.0,
+        closed: false,
     });
     let end = vertices(&body, |p| p[0] > 6.9 * SIDE);
     let turned = Clamp {

@@ -215,6 +215,7 @@ fn a_pressure_that_nothing_can_carry_diverges_with_place_and_time() {
             voids: Vec::new(),
             triangles: triangles.clone(),
             pressure,
+            closed: false,
         };
         problem(
             &mesh,

@@ -327,7 +327,7 @@ class _Search:
         small = 8 * self.own.voxels <= limit
         reasons = []
         if asked == "coarser" or (asked == "auto" and not small):
-            other = self._solved(2.0 * self.own.size)
+            other = self._solved(2.0 * self.own.size, None)
             if isinstance(other, str):
                 reasons.append(f"on voxels twice as large {other}")
             elif asked == "coarser" or other.is_like(self.own):
@@ -335,7 +335,7 @@ class _Search:
             else:
                 reasons.append("voxels twice as large are another body")
         if asked == "finer" or (asked == "auto" and small):
-            other = self._solved(0.5 * self.own.size)
+            other = self._solved(0.5 * self.own.size, self.own)
             if not isinstance(other, str):
                 return self._bars([self.own, other])
             reasons.append(f"on voxels half as large {other}")
@@ -352,7 +352,7 @@ class _Search:
             if 8 * runs[-1].voxels > ACCURATE_UP_TO:
                 other: _Run | str = f"there would be about {8 * runs[-1].voxels:,} voxels"
             else:
-                other = self._solved(0.5 * runs[-1].size)
+                other = self._solved(0.5 * runs[-1].size, runs[-1])
             if isinstance(other, str):
                 what = f"the accuracy was not reached: on voxels half as large {other}"
                 hint = "ask for less, or begin with other voxels"
@@ -364,8 +364,8 @@ class _Search:
             if _largest_error(bars, self.own.result.design) <= accuracy:
                 return bars
 
-    def _solved(self, size: float) -> _Run | str:
-        """The run on other voxels, or what went wrong."""
+    def _solved(self, size: float, coarser: _Run | None) -> _Run | str:
+        """The run on other voxels, from that on voxels twice as large, or what went wrong."""
         design = self.own.result.design
         finer = (self.own.size / size) ** 3
         if self._announce is not None:
@@ -373,7 +373,8 @@ class _Search:
             self._announce(size, round(finer * self.own.voxels), seconds)
         other = design.with_values(f"voxel_size={size * 1e3!r} mm")
         try:
-            result = simulate(other, progress=self._progress)
+            begin = None if coarser is None else coarser.result
+            result = simulate(other, progress=self._progress, coarser=begin)
         except VoxSoftError as error:
             return str(error).partition("\n")[0]
         self._seconds += result.seconds

@@ -16,6 +16,7 @@ from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
+from voxsoft.design.symmetry import Symmetry
 from voxsoft.design.target import Constraint, Objective
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "Rotation",
     "Solver",
     "Spring",
+    "Symmetry",
     "Traction",
     "require_design",
     "set_values",

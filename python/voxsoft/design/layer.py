@@ -53,7 +53,8 @@ class Layer(Record):
     Notes
     -----
     The material is linear (Saint Venant-Kirchhoff in plane stress). Compressed, it wrinkles below
-    the size of a voxel and keeps a hundredth of its stiffness (tension field). Over an opening it
+    the size of a voxel (tension field) and keeps a hundredth of its stiffness, or that of a voxel
+    of the solid at its corners if that is less. Over an opening it
     is held by the rim and stays flat in between: what it would bulge there, about
     ``(p s⁴/(E t))^(1/3)`` under a pressure ``p`` over a span ``s``, is left out. Where that counts,
     close the chamber by a layer of voxels.

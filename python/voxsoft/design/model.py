@@ -49,6 +49,7 @@ from voxsoft.design.resolution import Document, Resolution, formulas, with_param
 from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
+from voxsoft.design.symmetry import Symmetry, symmetry_problems
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.errors import DesignError, ErrorDetail, FormulaError, VoxSoftError
 from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
@@ -99,6 +100,8 @@ class Design(Record):
         Springs between places of the body, or to fixed points.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
+    symmetry
+        Planes of symmetry: a half, quarter or eighth of the body is solved.
     objects, contact
         Rigid things beside the body, and what touches with how much friction.
     chambers
@@ -149,6 +152,7 @@ class Design(Record):
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
+    symmetry: tuple[Symmetry, ...] = Field((), max_length=3)
     objects: tuple[Object, ...] = Field((), max_length=250)
     contact: Contact | None = None
     chambers: Table[ChamberName, Chamber] = Field(default_factory=FrozenDict)
@@ -268,6 +272,7 @@ class Design(Record):
             self._assembled = whole
             return []  # what contact and references lack is found in the whole
         floor = self.floor is not None
+        wrong += symmetry_problems(self.symmetry)
         wrong += contact_problems(self.objects, self.contact, floor, self.body_names)
         return wrong
 

@@ -123,7 +123,8 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
     if design.layers or any(isinstance(material, Rigid) for material in materials):
         return LoadControl
     # What only lies on a floor may slide: its place is not unique, which Newton's method needs.
-    if solver.damping is not None or not design.clamps:
+    is_held = bool(design.clamps) or len(design.symmetry) == 3
+    if solver.damping is not None or not is_held:
         return Relaxation
     return LoadControl if all(isinstance(m, Hyperelastic) for m in materials) else QuickestRest
 

@@ -14,6 +14,7 @@ from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.start import Start
 from voxsoft.units import format_percent
 
 DEFAULT_STATICS_TOLERANCE: Final = 1e-8
@@ -96,8 +97,11 @@ def find_equilibrium(
     problem: _core.Problem | None = None,
     *,
     frames: bool = False,
+    start: Start | None = None,
 ) -> Answer:
     """Solve a setup by statics, or a variant of its problem; `frames` keeps all of the path.
+
+    Without a start it begins at rest.
 
     Returns
     -------
@@ -114,6 +118,8 @@ def find_equilibrium(
     answer = _core.equilibrium(
         problem or setup.problem,
         **asked,
+        start=None if start is None else start.positions,
+        pressures=None if start is None else start.pressures,
         control=statics.control,
         memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],

@@ -17,8 +17,10 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.method import Report, Watch
+from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
+from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
@@ -33,6 +35,7 @@ def simulate(
     record_interval: float | str | None = None,
     frames: bool = False,
     progress: ProgressCallback | None = None,
+    coarser: Result | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> Result:
     """Simulate a design until it comes to rest, or to an end time.
@@ -58,6 +61,10 @@ def simulate(
     progress
         Called about ten times a second with (steps, time, residual); an exception it raises
         ends the run.
+    coarser
+        An equilibrium of the same design on voxels twice as large. Load control without contact
+        begins there, in a fraction of the iterations, where the voxels fill the large ones; other
+        ways begin at rest.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own: ``time_step``,
         ``substeps``, ``iterations``, ``damping``, ``tolerance``, ``max_time``, ``end_time`` ...
@@ -96,9 +103,16 @@ def simulate(
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
     started = time.perf_counter()
-    used, report = method.solve(setup, Watch(progress, record_interval, frames))
+    part = SectorSetup.part_of(setup)
+    solved = setup if part is None else part
+    if isinstance(method, LoadControl) and coarser is not None:
+        start = nested(coarser, solved)
+        used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
+    else:
+        used, report = method.solve(solved, Watch(progress, record_interval, frames))
     used["refine"] = refinement(setup)
-    return result_of(setup, used, report, time.perf_counter() - started)
+    result = result_of(solved, used, report, time.perf_counter() - started)
+    return result if part is None else part.unfolded(result)
 
 
 def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int) -> Result:
@@ -265,7 +279,7 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
             _, place, when = answer.breakdown
             if setup.touching is not None:
                 return _lost_contact(setup, answer)
-            point = ", ".join(f"{value * 1e3:.1f}" for value in place)
+            point = ", ".join(f"{value * 1e3:.1f}" for value in setup.origin + place)
             return (
                 f"diverged at ({point}) mm, after {when:.6g} "
                 f"{'s' if answer.substep else 'steps'} and {answer.back_offs} halvings of "

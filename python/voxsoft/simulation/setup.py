@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,8 @@ from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resol
 from voxsoft.simulation.materials import core_materials, solid_materials
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
+from voxsoft.simulation.sector import Sector
+from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.touching import (
     CoreHistory,
@@ -135,6 +138,8 @@ class Setup:
         _ = self.places, self.attached
         if self.touching is not None:
             _ = self.touching.surfaces
+        if self.sector is not None:
+            _ = self.sector_parts
 
     @cached_property
     def layers(self) -> tuple[LayerTriangles, ...]:
@@ -157,6 +162,42 @@ class Setup:
         return {
             name: self.place(probe, f"probes.{name}") for name, probe in self.design.probes.items()
         }
+
+    @property
+    def origin(self) -> NDArray[np.float64]:
+        """Where the solver's origin is, (3,), m."""
+        return np.zeros(3)
+
+    @cached_property
+    def sector(self) -> Sector | None:
+        """The part of the body that is solved; None for one without planes of symmetry.
+
+        Raises
+        ------
+        DesignError
+            The voxels are not symmetric.
+        """
+        planes = self.design.symmetry
+        if planes and has_contact(self.design):
+            what = "is not known together with contact yet"
+            raise DesignError("symmetry", what, "leave contact and objects out, or the planes")
+        return Sector.of(planes, self.mesh) if planes else None
+
+    @cached_property
+    def sector_parts(self) -> _core.ProblemParts:
+        """Clamps, layers and loads of the part of the body that is solved.
+
+        Raises
+        ------
+        DesignError
+            One that is not symmetric.
+        """
+        assert self.sector is not None  # asked for with planes of symmetry alone
+        spanning = [np.zeros((0, 3), np.int32), *(layer.spanning for layer in self.layers)]
+        parts = SectorParts(self.sector, np.concatenate(spanning))
+        self._give_to(parts)
+        parts.hold_planes()
+        return parts.kept
 
     @cached_property
     def problem(self) -> _core.Problem:
@@ -182,7 +223,17 @@ class Setup:
 
     def _parts(self, *, touching: bool = True) -> _core.ProblemParts:
         parts = _core.ProblemParts()
-        for layer, found in zip(self.design.layers, self.layers, strict=True):
+        self._give_to(parts)
+        if self.touching is not None and touching:
+            self.touching.give_to(parts)
+        elif self.design.floor is not None:
+            parts.floor(self.design.floor.z)
+        return parts
+
+    def _give_to(self, parts: _core.ProblemParts | SectorParts) -> None:
+        """Hand layers, clamps, loads and what is attached to the problem of the core."""
+        for where, layer, found in _numbered("layers", self.design.layers, self.layers):
+            _say_where(parts, where)
             parts.membrane(
                 found.all.astype(np.uint32),
                 young=layer.young,
@@ -190,20 +241,18 @@ class Setup:
                 thickness=layer.thickness,
                 density=layer.density,
             )
-        for clamp, vertices in zip(self.design.clamps, self.clamped, strict=True):
+        for where, clamp, vertices in _numbered("clamps", self.design.clamps, self.clamped):
+            _say_where(parts, where)
             axes = [axis in clamp.axes for axis in "xyz"]
             parts.clamp(vertices, axes, **motion_arguments(clamp.motion))
-        for load in self.loads:
+        for index, load in enumerate(self.loads):
+            _say_where(parts, f"loads[{index}]")
             receiver = _CoreLoads(self.other_split, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
         for term, elements in self.attached.items():
+            _say_where(parts, term)
             parts.attach(term, json.dumps(elements, allow_nan=False))
-        if self.touching is not None and touching:
-            self.touching.give_to(parts)
-        elif self.design.floor is not None:
-            parts.floor(self.design.floor.z)
-        return parts
 
     @cached_property
     def touching(self) -> Touching | None:
@@ -292,6 +341,8 @@ class Setup:
         """Every component must be held, unless it may come to lie on a floor or an object."""
         if self.design.floor is not None or self.design.objects:
             return
+        if len(self.design.symmetry) == 3:
+            return  # its middle cannot move
         if not self.design.clamps:
             raise DesignError(
                 "clamps",
@@ -371,10 +422,32 @@ def core_problem(
     )
 
 
+_First = TypeVar("_First")
+_Second = TypeVar("_Second")
+
+
+def _numbered(
+    name: str, first: Iterable[_First], second: Iterable[_Second]
+) -> Iterator[tuple[str, _First, _Second]]:
+    """Pairs, each with its place in the design."""
+    for index, (one, other) in enumerate(zip(first, second, strict=True)):
+        yield f"{name}[{index}]", one, other
+
+
+def _say_where(parts: _core.ProblemParts | SectorParts, where: str) -> None:
+    if isinstance(parts, SectorParts):
+        parts.where = where
+
+
 class _CoreLoads(LoadReceiver):
     """Loads of the core's problem."""
 
-    def __init__(self, split: OtherSplit, parts: _core.ProblemParts, history: CoreHistory) -> None:
+    def __init__(
+        self,
+        split: OtherSplit,
+        parts: _core.ProblemParts | SectorParts,
+        history: CoreHistory,
+    ) -> None:
         super().__init__(split.mesh)
         self._split, self._parts, self._history = split, parts, history
 
@@ -393,7 +466,9 @@ class _CoreLoads(LoadReceiver):
             parts = len(surfaces) * cavity.void_parts  # each void is there once
             voids = (cavity.void_tets.astype(np.uint32), parts)
         each = value / len(surfaces)
-        self._parts.pressure(np.concatenate(surfaces).astype(np.uint32), each, self._history, voids)
+        found = np.concatenate(surfaces).astype(np.uint32)
+        closed = cavity is not None
+        self._parts.pressure(found, each, self._history, voids, closed)
 
     def traction(self, triangles: NDArray[np.int32], stress: NDArray[np.float64]) -> None:
         both = np.concatenate([triangles, self._split.triangles(triangles)])

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::assembly::Visitor;
 use crate::vector::Vec3;
-use crate::{History, ProblemError};
+use crate::{History, Mirrored, ProblemError};
 
 pub use gravity::Gravity;
 pub use point_forces::PointForces;
@@ -81,6 +81,8 @@ pub enum LoadKind {
     Pressure(Pressure),
     /// Forces on vertices.
     Forces(PointForces),
+    /// A pressure on a surface that crosses planes of symmetry.
+    MirroredPressure(Mirrored<Pressure>),
 }
 
 impl std::ops::Deref for LoadKind {
@@ -91,6 +93,7 @@ impl std::ops::Deref for LoadKind {
             Self::Gravity(gravity) => gravity,
             Self::Pressure(pressure) => pressure,
             Self::Forces(forces) => forces,
+            Self::MirroredPressure(pressure) => pressure,
         }
     }
 }
@@ -104,6 +107,12 @@ impl From<Gravity> for LoadKind {
 impl From<Pressure> for LoadKind {
     fn from(pressure: Pressure) -> Self {
         Self::Pressure(pressure)
+    }
+}
+
+impl From<Mirrored<Pressure>> for LoadKind {
+    fn from(pressure: Mirrored<Pressure>) -> Self {
+        Self::MirroredPressure(pressure)
     }
 }
 

@@ -17,6 +17,11 @@ pub struct Pressure {
     pub voids: Vec<([u32; 4], f64)>,
     /// In Pa; positive pushes against the solid.
     pub pressure: f64,
+    /// Whether the triangles are known to enclose a volume, where need be with planes of symmetry through the origin: a rim
+    /// stays in these, so that the cone from the origin over it has no volume and pushes along their normals alone, where
+    /// the rim is held. Left out of scenes, it is found from the triangles.
+    #[serde(skip)]
+    pub closed: bool,
 }
 
 impl ExternalForce for Pressure {
@@ -58,7 +63,7 @@ impl ExternalForce for Pressure {
     }
 
     fn is_conservative(&self) -> bool {
-        is_closed(&self.triangles)
+        self.is_closed()
     }
 
     fn is_pressure(&self) -> bool {
@@ -69,7 +74,7 @@ impl ExternalForce for Pressure {
     /// open one loads each corner with a third of `−p A n`, whose derivative is not symmetric.
     fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
         let pressure = factor * self.pressure;
-        let closed = is_closed(&self.triangles);
+        let closed = self.is_closed();
         for triangle in &self.triangles {
             let corners = triangle.map(|v| positions[v as usize]);
             let matrix = if closed {
@@ -100,7 +105,14 @@ impl ExternalForce for Pressure {
                 .map(|(t, part)| (t.map(number), *part))
                 .collect(),
             pressure: self.pressure,
+            closed: self.closed,
         })
+    }
+}
+
+impl Pressure {
+    fn is_closed(&self) -> bool {
+        self.closed || is_closed(&self.triangles)
     }
 }
 

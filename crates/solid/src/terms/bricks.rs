@@ -1,13 +1,14 @@
 use super::{Strain, Term};
-use crate::assembly::Visitor;
-use crate::batches::in_order;
-use crate::brick::{Brick, Carried, Tangent, Within};
+use crate::assembly::{Elements, ElementsVisitor, Visitor};
+use crate::batches::{groups_in_order, in_order};
+use crate::brick::{Brick, BrickMatrix, Carried, Tangent, Within};
+use crate::brick_lanes::{TOGETHER, Together};
 use crate::hyperelastic::HyperelasticMaterial;
 use crate::vector::Vec3;
 
 /// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
 pub(crate) const FORCE_BATCH: usize = 8192;
-const STIFFNESS_BATCH: usize = 256;
+const STIFFNESS_BATCH: usize = 512;
 
 /// All hyperelastic voxels of a body.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -65,6 +66,133 @@ impl Bricks {
         );
     }
 
+    /// The pressure in each voxel in Pa, positive in tension.
+    pub fn pressures(&self, positions: &[Vec3]) -> Vec<f64> {
+        let pressure = |brick: &Brick| {
+            let material = self.material_of(brick);
+            let within = Within::elastic(material);
+            brick.respond(material, positions, &within).pressure
+        };
+        self.bricks.iter().map(pressure).collect()
+    }
+
+    /// The strains at `positions` with other pressures in Pa, one for each voxel.
+    pub(crate) fn with_pressures<'a>(
+        &'a self,
+        positions: &[Vec3],
+        pressures: &[f64],
+    ) -> Box<dyn Strain + 'a> {
+        let pairs = self.bricks.iter().zip(pressures);
+        let state = |(brick, &pressure): (&Brick, &f64)| {
+            brick.with_pressure(self.material_of(brick), positions, pressure)
+        };
+        Box::new(Predicted {
+            block: self,
+            states: pairs.map(state).collect(),
+        })
+    }
+
+    /// The voxels from `first` on, with what is carried of them.
+    fn together<'a>(
+        &'a self,
+        first: usize,
+        count: usize,
+        positions: &'a [Vec3],
+        carried: Option<&'a [Carried]>,
+    ) -> Together<'a> {
+        let range = first..first + count;
+        Together {
+            bricks: &self.bricks[range.clone()],
+            materials: &self.materials,
+            positions,
+            carried: carried.map(|states| &states[range]),
+        }
+    }
+
+    fn add_forces_of(&self, positions: &[Vec3], carried: Option<&[Carried]>, forces: &mut [Vec3]) {
+        groups_in_order(
+            self.bricks.len(),
+            FORCE_BATCH,
+            TOGETHER,
+            &[[0.0; 3]; 8],
+            |first, out| {
+                self.together(first, out.len(), positions, carried)
+                    .forces(out);
+            },
+            |first, all| {
+                for (brick, corners) in self.bricks[first..].iter().zip(all) {
+                    brick.add_to(corners, forces);
+                }
+            },
+        );
+    }
+
+    /// In the order of the vertices, so that neighbors meet in the cache.
+    fn visit_elements_of(
+        &self,
+        positions: &[Vec3],
+        carried: Option<&[Carried]>,
+        visit: ElementsVisitor<'_>,
+    ) {
+        let mut order: Vec<u32> = (0..self.bricks.len() as u32).collect();
+        order.sort_by_key(|&index| self.bricks[index as usize].vertices[0]);
+        let empty: BrickMatrix = [[0.0; 24]; 24];
+        let mut vertices = Vec::new();
+        groups_in_order(
+            order.len(),
+            STIFFNESS_BATCH,
+            TOGETHER,
+            &empty,
+            |first, out| {
+                let last = out.len() - 1;
+                let own: [usize; TOGETHER] =
+                    std::array::from_fn(|place| order[first + place.min(last)] as usize);
+                let bricks = own.map(|index| self.bricks[index]);
+                let states = carried.map(|states| own.map(|index| states[index]));
+                let together = Together {
+                    bricks: &bricks[..=last],
+                    materials: &self.materials,
+                    positions,
+                    carried: states.as_ref().map(|states| &states[..=last]),
+                };
+                together.stiffness(out);
+            },
+            |first, matrices| {
+                vertices.clear();
+                for &index in &order[first..first + matrices.len()] {
+                    vertices.extend_from_slice(&self.bricks[index as usize].vertices);
+                }
+                visit(Elements {
+                    width: 8,
+                    vertices: &vertices,
+                    matrices: matrices.as_flattened().as_flattened(),
+                });
+            },
+        );
+    }
+
+    /// What is carried after a step `moves`, see [`Brick::carry`].
+    fn carry(
+        &self,
+        positions: &[Vec3],
+        before: Option<&[Carried]>,
+        moves: &[Vec3],
+    ) -> Vec<Carried> {
+        let mut states = Vec::with_capacity(self.bricks.len());
+        groups_in_order(
+            self.bricks.len(),
+            FORCE_BATCH,
+            TOGETHER,
+            &Carried::NOTHING,
+            |first, out| {
+                self.together(first, out.len(), positions, before)
+                    .carry(moves, out);
+            },
+            |_, all| states.extend_from_slice(all),
+        );
+        states
+    }
+
     /// Works on voxels on all threads and takes the results in their order.
     fn each<U: Send>(
         &self,
@@ -97,26 +225,25 @@ impl Term for Bricks {
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        self.each(
-            FORCE_BATCH,
-            |_, brick| brick.forces(self.material_of(brick), positions),
-            |_, brick, corners| brick.add_to(&corners, forces),
-        );
+        self.add_forces_of(positions, None, forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        self.each(
-            STIFFNESS_BATCH,
-            |_, brick| brick.stiffness(self.material_of(brick), positions, None),
-            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
-        );
+        self.visit_elements(positions, &mut |elements| {
+            elements
+                .iter()
+                .for_each(|(vertices, matrix)| visit(vertices, matrix));
+        });
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_elements_of(positions, None, visit);
     }
 
     fn predict<'a>(&'a self, positions: &[Vec3], moves: &[Vec3]) -> Option<Box<dyn Strain + 'a>> {
-        let carry = |brick: &Brick| brick.carry(self.material_of(brick), None, positions, moves);
         Some(Box::new(Predicted {
             block: self,
-            states: self.bricks.iter().map(carry).collect(),
+            states: self.carry(positions, None, moves),
         }))
     }
 }
@@ -129,28 +256,25 @@ struct Predicted<'a> {
 
 impl Strain for Predicted<'_> {
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {
-        let Self { block, states } = self;
-        block.each(
-            FORCE_BATCH,
-            |i, brick| brick.predicted_forces(block.material_of(brick), &states[i], positions),
-            |_, brick, corners| brick.add_to(&corners, forces),
-        );
+        self.block
+            .add_forces_of(positions, Some(&self.states), forces);
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
-        let Self { block, states } = self;
-        block.each(
-            STIFFNESS_BATCH,
-            |i, brick| brick.stiffness(block.material_of(brick), positions, Some(&states[i])),
-            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
-        );
+        self.visit_elements(positions, &mut |elements| {
+            elements
+                .iter()
+                .for_each(|(vertices, matrix)| visit(vertices, matrix));
+        });
+    }
+
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.block
+            .visit_elements_of(positions, Some(&self.states), visit);
     }
 
     fn carry(&mut self, positions: &[Vec3], moves: &[Vec3]) -> bool {
-        for (brick, state) in self.block.bricks.iter().zip(&mut self.states) {
-            let material = self.block.material_of(brick);
-            *state = brick.carry(material, Some(state), positions, moves);
-        }
+        self.states = self.block.carry(positions, Some(&self.states), moves);
         true
     }
 }

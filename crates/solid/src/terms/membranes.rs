@@ -1,13 +1,23 @@
+use serde::{Deserialize, Serialize};
+
 use super::{Strain, Term};
 use crate::assembly::{Visitor, add_product, add_row_sums};
 use crate::membrane::{Membrane, Plane};
 use crate::vector::Vec3;
 
 /// All membranes of a body.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Membranes(pub Vec<Membrane>);
 
 impl Membranes {
+    /// Says how stiff what is around each vertex is, in N/m.
+    pub(crate) fn set_behind(&mut self, behind: &[f64]) {
+        for membrane in &mut self.0 {
+            let around = membrane.vertices().map(|v| behind[v as usize]);
+            membrane.set_behind(around.into_iter().fold(f64::INFINITY, f64::min));
+        }
+    }
+
     /// Hands over the stiffness of every membrane where it is taut and hardly strained.
     fn visit_taut_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>) {
         for membrane in &self.0 {

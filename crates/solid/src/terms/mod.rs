@@ -17,10 +17,12 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ProblemError;
-use crate::assembly::{Visitor, add_product, add_row_sums, check_indices};
+use crate::assembly::{
+    Elements, ElementsVisitor, Visitor, add_product, add_row_sums, check_indices,
+};
 use crate::brick::Tangent;
 use crate::vector::Vec3;
+use crate::{Mirrored, ProblemError};
 
 pub use bricks::Bricks;
 pub(crate) use bricks::FORCE_BATCH;
@@ -71,6 +73,17 @@ pub trait Term: Debug + Send + Sync {
     /// Hands the stiffness in N/m, the Hessian of the energy, to `visit`, an element at a time.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
 
+    /// The same, as many elements at a time as suits.
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            visit(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices: matrix,
+            });
+        });
+    }
+
     /// The same with or without the stress that is there, which may make it indefinite.
     fn visit_tangent(&self, positions: &[Vec3], _tangent: Tangent, visit: Visitor<'_>) {
         self.visit_stiffness(positions, visit);
@@ -104,6 +117,26 @@ pub trait Term: Debug + Send + Sync {
 pub enum Attachment {
     /// Springs between places, or to fixed points.
     Springs(Springs),
+    /// Membranes that cross planes of symmetry.
+    MirroredMembranes(Mirrored<Membranes>),
+}
+
+impl Attachment {
+    /// Adds its masses in kg to those of the vertices.
+    pub(crate) fn add_masses(&self, masses: &mut [f64]) {
+        match self {
+            Self::Springs(_) => {}
+            Self::MirroredMembranes(membranes) => membranes.add_masses(masses),
+        }
+    }
+
+    /// Says how stiff what is around each vertex is, in N/m.
+    pub(crate) fn set_behind(&mut self, behind: &[f64]) {
+        match self {
+            Self::Springs(_) => {}
+            Self::MirroredMembranes(membranes) => membranes.set_behind(behind),
+        }
+    }
 }
 
 impl std::ops::Deref for Attachment {
@@ -112,6 +145,7 @@ impl std::ops::Deref for Attachment {
     fn deref(&self) -> &Self::Target {
         match self {
             Self::Springs(springs) => springs,
+            Self::MirroredMembranes(membranes) => membranes,
         }
     }
 }
@@ -123,6 +157,17 @@ pub trait Strain {
 
     /// Hands over the tangent at `positions` with the stress of these strains.
     fn visit_stiffness(&self, positions: &[Vec3], visit: Visitor<'_>);
+
+    /// The same, as many elements at a time as suits.
+    fn visit_elements(&self, positions: &[Vec3], visit: ElementsVisitor<'_>) {
+        self.visit_stiffness(positions, &mut |vertices, matrix| {
+            visit(Elements {
+                width: vertices.len(),
+                vertices,
+                matrices: matrix,
+            });
+        });
+    }
 
     /// Goes on by a step `moves` from `positions`; `false` where what [`Term::predict`] says there is all that there is
     /// to know.

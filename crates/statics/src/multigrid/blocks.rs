@@ -4,6 +4,7 @@ use voxsoft_solid::vector::Vec3;
 
 use super::cells::Interpolation;
 use super::parallel;
+use super::values::Values;
 
 /// A block, row-major.
 pub(crate) type Block = [f64; 9];
@@ -13,7 +14,7 @@ pub(crate) type Block = [f64; 9];
 pub(crate) struct BlockMatrix {
     pub starts: Vec<usize>,
     pub columns: Vec<u32>,
-    pub values: Vec<Block>,
+    pub values: Values,
     /// Where the diagonal of each row is.
     pub diagonals: Vec<usize>,
 }
@@ -30,7 +31,7 @@ impl BlockMatrix {
             })
             .collect();
         Self {
-            values: vec![[0.0; 9]; columns.len()],
+            values: Values::zeros(columns.len()),
             starts,
             columns,
             diagonals,
@@ -66,31 +67,16 @@ impl BlockMatrix {
         (start, &self.columns[start..end])
     }
 
-    /// Where the block of a row and a column of its pattern is.
-    #[inline(always)]
-    pub fn place(&self, row: usize, column: u32) -> usize {
-        let (start, columns) = self.row(row);
-        start + columns.partition_point(|&c| c < column)
-    }
-
     /// `y = A x`.
     pub fn multiply(&self, x: &[Vec3], y: &mut [Vec3]) {
         parallel::for_each(y, |row, y| {
-            *y = self.product(self.starts[row]..self.starts[row + 1], |column| x[column]);
+            let mut sum = [0.0; 4];
+            for place in self.starts[row]..self.starts[row + 1] {
+                let x = x[self.columns[place] as usize];
+                self.values.add_product(place, x, &mut sum);
+            }
+            *y = [sum[0], sum[1], sum[2]];
         });
-    }
-
-    /// The sum of the given blocks of one row times what `value` says for their columns.
-    #[inline(always)]
-    pub fn product(&self, places: std::ops::Range<usize>, value: impl Fn(usize) -> Vec3) -> Vec3 {
-        let mut sum = [0.0; 3];
-        for (block, &column) in self.values[places.clone()]
-            .iter()
-            .zip(&self.columns[places])
-        {
-            add_product(&mut sum, block, value(column as usize));
-        }
-        sum
     }
 
     /// The pattern of `Pᵀ A P`, with `fine_of`, the transpose of the interpolation `p`.
@@ -127,27 +113,31 @@ impl BlockMatrix {
             values,
             ..
         } = coarse;
-        let mut rows: Vec<&mut [Block]> = Vec::with_capacity(starts.len() - 1);
-        let mut left = values.as_mut_slice();
-        for ends in starts.windows(2) {
-            let (row, rest) = left.split_at_mut(ends[1] - ends[0]);
-            rows.push(row);
-            left = rest;
-        }
-        parallel::for_each(&mut rows, |row, blocks| {
+        let mut rows = values.parts(starts.windows(2).map(|ends| ends[1] - ends[0]));
+        let count = starts.len() - 1;
+        let scratch = || (vec![0u32; count], Vec::<Block>::new());
+        parallel::for_each_with(&mut rows, scratch, |(place_of, sums), row, blocks| {
             let columns = &columns[starts[row]..starts[row + 1]];
-            blocks.fill([0.0; 9]);
+            for (place, &column) in columns.iter().enumerate() {
+                place_of[column as usize] = place as u32;
+            }
+            sums.clear();
+            sums.resize(columns.len(), [0.0; 9]);
             for &(fine, weight) in fine_of.row(row) {
                 let (start, neighbors) = self.row(fine as usize);
-                for (block, &neighbor) in self.values[start..].iter().zip(neighbors) {
+                for (offset, &neighbor) in neighbors.iter().enumerate() {
+                    let block = self.values.block(start + offset);
+                    let weighted = block.map(|entry| weight * entry);
                     for &(column, share) in p.row(neighbor as usize) {
-                        let place = columns.partition_point(|&c| c < column);
-                        let factor = weight * share;
-                        for (sum, entry) in blocks[place].iter_mut().zip(block) {
-                            *sum += factor * entry;
+                        let sum = &mut sums[place_of[column as usize] as usize];
+                        for (sum, entry) in sum.iter_mut().zip(&weighted) {
+                            *sum += share * entry;
                         }
                     }
                 }
+            }
+            for (place, sum) in sums.iter().enumerate() {
+                blocks.set(place, sum);
             }
         });
     }
@@ -172,15 +162,6 @@ pub(crate) fn transposed(p: &Interpolation, count: usize) -> Interpolation {
         }
     }
     Interpolation { starts, entries }
-}
-
-/// `sum += block · x`.
-#[inline(always)]
-pub(crate) fn add_product(sum: &mut Vec3, block: &Block, x: Vec3) {
-    for axis in 0..3 {
-        sum[axis] +=
-            block[3 * axis] * x[0] + block[3 * axis + 1] * x[1] + block[3 * axis + 2] * x[2];
-    }
 }
 
 /// The inverse of a symmetric block on the axes that have stiffness, zero on the others: coordinates

@@ -1,4 +1,4 @@
-//! The V-cycle: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
+//! The V-cycle in single precision: colored Gauss–Seidel sweeps on each level, Galerkin products between them.
 //!
 //! Coarse spaces hold the trilinear functions of ever larger cubes, so rigid motions and uniform
 //! strains, the slow part of an error, are theirs exactly; coarse matrices are `Pᵀ A P`, so anything a
@@ -7,12 +7,13 @@
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::{Mat, MatMut, Side};
-use voxsoft_solid::vector::{Vec3, add, scale};
+use voxsoft_solid::vector::Vec3;
 
-use super::blocks::{Block, BlockMatrix, add_product, pseudo_inverse, transposed};
+use super::blocks::{BlockMatrix, pseudo_inverse, transposed};
 use super::cells::{Cell, Interpolation, coarsen};
 use super::color::{Coloring, color};
 use super::parallel;
+use super::values::Single;
 
 /// A level of no more nodes than this is solved directly, by a dense factor.
 const COARSEST: usize = 250;
@@ -29,27 +30,30 @@ pub(crate) struct Hierarchy {
     colorings: Vec<Coloring>,
     /// Of levels 1, 2, …; the finest belongs to the caller.
     patterns: Vec<BlockMatrix>,
+    /// The inverses of the diagonals of all levels.
+    inverses: Vec<Vec<Inverse>>,
 }
 
-/// What a hierarchy keeps of the matrices of one tangent: inverse diagonals, and the factor of the
-/// coarsest.
-pub(crate) struct Factors {
-    inverses: Vec<Vec<Block>>,
-    last: Option<Llt<f64>>,
-}
+/// The inverse of a block on the diagonal, by columns; three places more fill a register.
+type Inverse = [f32; 12];
+
+/// The factor of the coarsest matrix, where it has one.
+pub(crate) struct Coarsest(Option<Llt<f64>>);
 
 /// A V-cycle.
 pub(crate) struct Preconditioner<'a> {
     hierarchy: &'a Hierarchy,
     finest: &'a BlockMatrix,
-    factors: &'a Factors,
+    coarsest: &'a Coarsest,
 }
 
 /// Vectors of every level.
 pub(crate) struct Workspace {
-    sides: Vec<Vec<Vec3>>,
-    answers: Vec<Vec<Vec3>>,
-    residuals: Vec<Vec<Vec3>>,
+    sides: Vec<Vec<Single>>,
+    answers: Vec<Vec<Single>>,
+    residuals: Vec<Vec<Single>>,
+    /// Of the coarsest level, which is solved in double precision.
+    last: Vec<Vec3>,
 }
 
 impl Hierarchy {
@@ -61,6 +65,7 @@ impl Hierarchy {
             up: Vec::new(),
             colorings: vec![coloring],
             patterns: Vec::new(),
+            inverses: Vec::new(),
         };
         loop {
             let finer = hierarchy.patterns.last().unwrap_or(matrix);
@@ -87,40 +92,45 @@ impl Hierarchy {
             hierarchy.patterns.push(pattern);
             cells = coarse;
         }
+        let levels = std::iter::once(matrix).chain(&hierarchy.patterns);
+        hierarchy.inverses = levels
+            .map(|matrix| vec![[0.0; 12]; matrix.rows()])
+            .collect();
         hierarchy
     }
 
-    /// Fills the coarse matrices.
-    pub fn project(&mut self, finest: &BlockMatrix) {
+    /// Fills the matrices of all levels; the factor of the coarsest comes along.
+    pub fn project(&mut self, finest: &BlockMatrix) -> Coarsest {
         for level in 0..self.patterns.len() {
             let (finer, coarser) = self.patterns.split_at_mut(level);
             let fine = finer.last().unwrap_or(finest);
             fine.project(&self.down[level], &self.up[level], &mut coarser[0]);
         }
-    }
-
-    /// The factors of a matrix that [`Hierarchy::project`] has seen.
-    pub fn factors(&self, finest: &BlockMatrix) -> Factors {
         let levels = std::iter::once(finest).chain(&self.patterns);
-        let last = self.patterns.last().unwrap_or(finest);
-        Factors {
-            inverses: levels.map(inverses_of).collect(),
-            last: (last.rows() <= LARGEST_DENSE)
-                .then(|| dense_factor(last))
-                .flatten(),
+        for (inverses, matrix) in self.inverses.iter_mut().zip(levels) {
+            parallel::for_each(inverses, |row, inverse| {
+                let block = pseudo_inverse(&matrix.values.block(matrix.diagonals[row]));
+                for k in 0..9 {
+                    // Symmetric: by rows is by columns.
+                    inverse[k] = block[k] as f32;
+                }
+            });
         }
+        let last = self.patterns.last().unwrap_or(finest);
+        let small = last.rows() <= LARGEST_DENSE;
+        Coarsest(small.then(|| dense_factor(last)).flatten())
     }
 
-    /// The preconditioner with the factors of a matrix.
+    /// The preconditioner of the matrix that [`Hierarchy::project`] has seen last.
     pub fn preconditioner<'a>(
         &'a self,
         finest: &'a BlockMatrix,
-        factors: &'a Factors,
+        coarsest: &'a Coarsest,
     ) -> Preconditioner<'a> {
         Preconditioner {
             hierarchy: self,
             finest,
-            factors,
+            coarsest,
         }
     }
 
@@ -129,69 +139,80 @@ impl Hierarchy {
         let vectors = || {
             std::iter::once(finest)
                 .chain(&self.patterns)
-                .map(|m| vec![[0.0; 3]; m.rows()])
+                .map(|m| vec![[0.0; 4]; m.rows()])
                 .collect()
         };
+        let last = self.patterns.last().unwrap_or(finest);
         Workspace {
             sides: vectors(),
             answers: vectors(),
             residuals: vectors(),
+            last: vec![[0.0; 3]; last.rows()],
         }
     }
 }
 
 impl Workspace {
-    /// What [`Preconditioner::apply`] found.
-    pub fn answer(&self) -> &[Vec3] {
-        &self.answers[0]
+    /// What [`Preconditioner::apply`] found for a row.
+    #[inline(always)]
+    pub fn answer(&self, row: usize) -> Vec3 {
+        widened(self.answers[0][row])
     }
 }
 
 impl Preconditioner<'_> {
     /// About `A⁻¹ side`.
     pub fn apply(&self, side: &[Vec3], work: &mut Workspace) {
-        work.sides[0].copy_from_slice(side);
+        parallel::for_each(&mut work.sides[0], |row, own| *own = rounded(side[row]));
         self.cycle(0, work);
     }
 
-    fn matrix(&self, level: usize) -> &BlockMatrix {
-        if level == 0 {
-            self.finest
-        } else {
-            &self.hierarchy.patterns[level - 1]
+    fn level(&self, level: usize) -> Level<'_> {
+        Level {
+            pattern: if level == 0 {
+                self.finest
+            } else {
+                &self.hierarchy.patterns[level - 1]
+            },
+            coloring: &self.hierarchy.colorings[level],
+            inverses: &self.hierarchy.inverses[level],
         }
     }
 
     fn cycle(&self, level: usize, work: &mut Workspace) {
-        let matrix = self.matrix(level);
-        let coloring = &self.hierarchy.colorings[level];
-        let inverses = &self.factors.inverses[level];
+        let own = self.level(level);
         if level == self.hierarchy.down.len() {
             let (side, x) = (&work.sides[level], &mut work.answers[level]);
-            if let Some(factor) = &self.factors.last {
-                x.copy_from_slice(side);
-                let flat = x.as_flattened_mut();
+            if let Some(factor) = &self.coarsest.0 {
+                for (wide, side) in work.last.iter_mut().zip(side) {
+                    *wide = widened(*side);
+                }
+                let flat = work.last.as_flattened_mut();
                 let size = flat.len();
                 factor.solve_in_place(MatMut::from_column_major_slice_mut(flat, size, 1));
+                for (x, wide) in x.iter_mut().zip(&work.last) {
+                    *x = rounded(*wide);
+                }
             } else {
-                forward_from_zero(matrix, coloring, inverses, side, x);
-                backward(matrix, coloring, inverses, side, x);
+                own.forward_from_zero(side, x);
+                own.backward(side, x);
             }
             return;
         }
         let (down, up) = (&self.hierarchy.down[level], &self.hierarchy.up[level]);
         let x = &mut work.answers[level];
-        forward_from_zero(matrix, coloring, inverses, &work.sides[level], x);
+        own.forward_from_zero(&work.sides[level], x);
         // A sweep from zero leaves the residual of what it has not looked at: −U x.
         let residual = &mut work.residuals[level];
         parallel::for_each(residual, |row, r| {
-            let after = matrix.diagonals[row] + 1..matrix.starts[row + 1];
-            *r = scale(-1.0, matrix.product(after, |column| x[column]));
+            let after = own.pattern.diagonals[row] + 1..own.pattern.starts[row + 1];
+            let seen = own.product(after, |column| &x[column]);
+            *r = minus([0.0; 4], seen);
         });
         parallel::for_each(&mut work.sides[level + 1], |row, side| {
-            *side = [0.0; 3];
+            *side = [0.0; 4];
             for &(fine, weight) in up.row(row) {
-                *side = add(*side, scale(weight, residual[fine as usize]));
+                *side = plus(*side, weight as f32, residual[fine as usize]);
             }
         });
         self.cycle(level + 1, work);
@@ -200,68 +221,95 @@ impl Preconditioner<'_> {
         let correction = &coarser[0];
         parallel::for_each(x, |row, x| {
             for &(coarse, weight) in down.row(row) {
-                *x = add(*x, scale(weight, correction[coarse as usize]));
+                *x = plus(*x, weight as f32, correction[coarse as usize]);
             }
         });
-        backward(matrix, coloring, inverses, &work.sides[level], x);
+        own.backward(&work.sides[level], x);
     }
 }
 
-fn inverses_of(matrix: &BlockMatrix) -> Vec<Block> {
-    let diagonals = &matrix.diagonals;
-    let mut inverses = vec![[0.0; 9]; diagonals.len()];
-    parallel::for_each(&mut inverses, |row, inverse| {
-        *inverse = pseudo_inverse(&matrix.values[diagonals[row]]);
-    });
-    inverses
+/// A level of the V-cycle.
+struct Level<'a> {
+    pattern: &'a BlockMatrix,
+    coloring: &'a Coloring,
+    inverses: &'a [Inverse],
 }
 
-/// Gauss–Seidel through the colors, from zero.
-fn forward_from_zero(
-    matrix: &BlockMatrix,
-    coloring: &Coloring,
-    inverses: &[Block],
-    side: &[Vec3],
-    x: &mut [Vec3],
-) {
-    for range in coloring.ranges() {
-        let first = range.start;
-        let (before, rest) = x.split_at_mut(first);
-        parallel::for_each(&mut rest[..range.len()], |place, x| {
-            let row = first + place;
-            let seen = matrix.starts[row]..matrix.diagonals[row];
-            let known = matrix.product(seen, |column| before[column]);
-            *x = [0.0; 3];
-            add_product(x, &inverses[row], add(side[row], scale(-1.0, known)));
-        });
+impl Level<'_> {
+    /// The given blocks of one row times what `value` says for their columns.
+    #[inline(always)]
+    fn product<'a>(
+        &self,
+        places: std::ops::Range<usize>,
+        value: impl Fn(usize) -> &'a Single,
+    ) -> Single {
+        let values = &self.pattern.values;
+        values.rounded_product(&self.pattern.columns, places, value)
     }
-}
 
-/// Gauss–Seidel back through the colors.
-fn backward(
-    matrix: &BlockMatrix,
-    coloring: &Coloring,
-    inverses: &[Block],
-    side: &[Vec3],
-    x: &mut [Vec3],
-) {
-    for range in coloring.ranges().rev() {
-        let (before, rest) = x.split_at_mut(range.start);
-        let (own, after) = rest.split_at_mut(range.len());
-        parallel::for_each(own, |place, x| {
-            let row = range.start + place;
-            let diagonal = matrix.diagonals[row];
-            let below = matrix.product(matrix.starts[row]..diagonal, |column| before[column]);
-            let above = matrix.product(diagonal + 1..matrix.starts[row + 1], |column| {
-                after[column - range.end]
+    /// Gauss–Seidel through the colors, from zero.
+    fn forward_from_zero(&self, side: &[Single], x: &mut [Single]) {
+        let Self {
+            pattern, inverses, ..
+        } = self;
+        for range in self.coloring.ranges() {
+            let first = range.start;
+            let (before, rest) = x.split_at_mut(first);
+            parallel::for_each(&mut rest[..range.len()], |place, x| {
+                let row = first + place;
+                let seen = pattern.starts[row]..pattern.diagonals[row];
+                let known = self.product(seen, |column| &before[column]);
+                *x = solved(&inverses[row], minus(side[row], known));
             });
-            let left = add(side[row], scale(-1.0, add(below, above)));
-            let mut new = [0.0; 3];
-            add_product(&mut new, &inverses[row], left);
-            // Axes without stiffness keep their value, which is zero.
-            *x = new;
-        });
+        }
     }
+
+    /// Gauss–Seidel back through the colors.
+    fn backward(&self, side: &[Single], x: &mut [Single]) {
+        let Self {
+            pattern, inverses, ..
+        } = self;
+        for range in self.coloring.ranges().rev() {
+            let (before, rest) = x.split_at_mut(range.start);
+            let (own, after) = rest.split_at_mut(range.len());
+            parallel::for_each(own, |place, x| {
+                let row = range.start + place;
+                let diagonal = pattern.diagonals[row];
+                let below = self.product(pattern.starts[row]..diagonal, |column| &before[column]);
+                let above = self.product(diagonal + 1..pattern.starts[row + 1], |column| {
+                    &after[column - range.end]
+                });
+                *x = solved(&inverses[row], minus(minus(side[row], below), above));
+            });
+        }
+    }
+}
+
+/// An inverse times a vector. Axes without stiffness get zero.
+#[inline(always)]
+fn solved(inverse: &Inverse, x: Single) -> Single {
+    std::array::from_fn(|i| inverse[i] * x[0] + (inverse[3 + i] * x[1] + inverse[6 + i] * x[2]))
+}
+
+#[inline(always)]
+fn rounded(x: Vec3) -> Single {
+    [x[0] as f32, x[1] as f32, x[2] as f32, 0.0]
+}
+
+#[inline(always)]
+fn widened(x: Single) -> Vec3 {
+    [f64::from(x[0]), f64::from(x[1]), f64::from(x[2])]
+}
+
+#[inline(always)]
+fn minus(a: Single, b: Single) -> Single {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+/// `a + factor b`.
+#[inline(always)]
+fn plus(a: Single, factor: f32, b: Single) -> Single {
+    std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
 /// The dense Cholesky factor of the coarsest matrix, lifted on its diagonal as far as it must be.
@@ -270,7 +318,8 @@ fn dense_factor(matrix: &BlockMatrix) -> Option<Llt<f64>> {
     let mut dense = Mat::<f64>::zeros(size, size);
     for row in 0..matrix.rows() {
         let (start, columns) = matrix.row(row);
-        for (block, &column) in matrix.values[start..].iter().zip(columns) {
+        for (offset, &column) in columns.iter().enumerate() {
+            let block = matrix.values.block(start + offset);
             for i in 0..3 {
                 for j in 0..3 {
                     dense[(3 * row + i, 3 * column as usize + j)] = block[3 * i + j];

@@ -5,9 +5,11 @@ mod cells;
 mod color;
 mod hierarchy;
 mod parallel;
+mod values;
 
 pub(crate) use blocks::BlockMatrix;
 pub(crate) use cells::cells_of;
 pub(crate) use color::color;
-pub(crate) use hierarchy::{Factors, Hierarchy, Workspace};
-pub(crate) use parallel::{for_each, sum};
+pub(crate) use hierarchy::{Coarsest, Hierarchy, Workspace};
+pub(crate) use parallel::{for_each, for_each_large, sum};
+pub(crate) use values::Part;

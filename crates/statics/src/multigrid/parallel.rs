@@ -21,6 +21,40 @@ pub(crate) fn for_each<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + 
     items.chunks_mut(CHUNK).enumerate().for_each(run);
 }
 
+/// The same with something to write on, made by `scratch` for some items at a time.
+pub(crate) fn for_each_with<T: Send, W>(
+    items: &mut [T],
+    scratch: impl Fn() -> W + Sync,
+    each: impl Fn(&mut W, usize, &mut T) + Sync,
+) {
+    let run = |(chunk, items): (usize, &mut [T])| {
+        let mut own = scratch();
+        for (place, item) in items.iter_mut().enumerate() {
+            each(&mut own, chunk * CHUNK + place, item);
+        }
+    };
+    #[cfg(feature = "threads")]
+    if items.len() > CHUNK {
+        items.par_chunks_mut(CHUNK).enumerate().for_each(run);
+        return;
+    }
+    items.chunks_mut(CHUNK).enumerate().for_each(run);
+}
+
+/// Calls `each(index, item)` for few items that are much work each.
+pub(crate) fn for_each_large<T: Send>(items: &mut [T], each: impl Fn(usize, &mut T) + Sync) {
+    #[cfg(feature = "threads")]
+    items
+        .par_iter_mut()
+        .enumerate()
+        .for_each(|(index, item)| each(index, item));
+    #[cfg(not(feature = "threads"))]
+    items
+        .iter_mut()
+        .enumerate()
+        .for_each(|(index, item)| each(index, item));
+}
+
 /// The sum of `each(index)` over `0..count`, always added in the same order.
 pub(crate) fn sum(count: usize, each: impl Fn(usize) -> f64 + Sync) -> f64 {
     let chunks = count.div_ceil(CHUNK);

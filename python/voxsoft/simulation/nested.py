@@ -1,0 +1,88 @@
+"""Where to begin on fine voxels: from an equilibrium on voxels twice as large."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.mesh import Mesh
+from voxsoft.simulation.result import Result
+from voxsoft.simulation.sector_setup import SectorSetup
+from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.start import Start
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: How far vertices may be from the lattice of the larger voxels, in halves of these: rounding.
+_OFF = 1e-6
+
+
+def nested(coarse: Result, setup: Setup) -> Start | None:
+    """Carry an equilibrium to voxels half as large.
+
+    Displacements are trilinear in the large voxels. The small ones bulge by that as no equilibrium
+    does, and their bulk modulus makes pressures of it that are far too large; they take that of the
+    large voxel around them instead, which the first step of Newton's method begins with.
+
+    Parameters
+    ----------
+    coarse
+        An equilibrium.
+    setup
+        What is to be solved: the same body, or a sector of it.
+
+    Returns
+    -------
+    Start or None
+        None where the small voxels do not fill the large ones, or bodies and objects touch.
+    """
+    whole = setup.whole if isinstance(setup, SectorSetup) else setup
+    large, small = coarse.mesh, whole.mesh
+    if whole.touching is not None or large.bodies or small.bodies:
+        return None
+    if large.voxel_size is None or small.voxel_size is None:
+        return None
+    low = large.vertices.min(axis=0)
+    half = large.voxel_size / 2.0
+    places = (small.vertices - low) / half
+    keys = np.rint(places).astype(np.int64)
+    if abs(small.voxel_size - half) > _OFF * half or np.abs(places - keys).max() > _OFF:
+        return None
+    at = _Vertices(large, low)
+    moved = np.zeros_like(small.vertices)
+    for corner in np.ndindex(2, 2, 2):
+        # Half way between two vertices of the lattice, or on one, which then counts twice.
+        found = at.find(np.where(corner, (keys + 1) // 2, keys // 2))
+        if (found < 0).any():
+            return None
+        moved += coarse.displacements[found] / 8.0
+    own = Setup(coarse.design, coarse.mesh)
+    around = own.problem.pressures(coarse.positions)
+    pressures = np.full(len(keys), np.nan)
+    parents = at.find(keys // 2)
+    inside = parents >= 0
+    pressures[inside] = around[parents[inside]]
+    positions = small.vertices + moved
+    if isinstance(setup, SectorSetup):
+        kept = setup.sector.vertices
+        return Start(positions[kept] - setup.origin, pressures[kept])
+    return Start(positions, pressures)
+
+
+class _Vertices:
+    """The vertices of a mesh of voxels, by whole numbers from a corner on."""
+
+    def __init__(self, mesh: Mesh, low: Floats) -> None:
+        assert mesh.voxel_size is not None  # asked for by the caller
+        keys = np.rint((mesh.vertices - low) / mesh.voxel_size).astype(np.int64)
+        self._shape = keys.max(axis=0) + 1
+        self._numbers = np.full(tuple(self._shape), -1, dtype=np.int64)
+        self._numbers[tuple(keys.T)] = np.arange(len(keys))
+
+    def find(self, keys: Ints) -> Ints:
+        """Their numbers, -1 where there is none."""
+        inside = ((keys >= 0) & (keys < self._shape)).all(axis=1)
+        found = np.full(len(keys), -1, dtype=np.int64)
+        found[inside] = self._numbers[tuple(keys[inside].T)]
+        return found

@@ -1,0 +1,151 @@
+"""A part of a symmetric body made ready for a solver, and its result as that of the whole body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft.metrics import Place
+from voxsoft.simulation.materials import core_materials
+from voxsoft.simulation.result import Recording, Result
+from voxsoft.simulation.sector import Sector
+from voxsoft.simulation.setup import Setup, core_problem
+
+Floats = NDArray[np.float64]
+
+_SHARES: Final = {2: "a half", 4: "a quarter", 8: "an eighth"}
+
+
+@dataclass(frozen=True, repr=False)
+class SectorSetup(Setup):
+    """What of a symmetric body is solved: its mesh is that of the sector.
+
+    Attributes
+    ----------
+    whole
+        The whole body.
+    sector
+        Its part that is solved.
+    """
+
+    whole: Setup = field(kw_only=True)
+    sector: Sector = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        """Nothing: the layers and chambers are those of the whole body."""
+
+    @classmethod
+    def part_of(cls, whole: Setup) -> Self | None:
+        """Return what is solved of a body; None for one without planes of symmetry."""
+        sector = whole.sector
+        if sector is None:
+            return None
+        return cls(whole.design, sector.mesh, whole=whole, sector=sector)
+
+    @property
+    def origin(self) -> Floats:
+        """Where the solver's origin is, (3,), m: on all planes."""
+        return self.sector.origin
+
+    @cached_property
+    def problem(self) -> _core.Problem:
+        """The problem of the sector, held at its planes."""
+        parts = self.whole.sector_parts
+        return core_problem(self.mesh, core_materials(self.design, self.materials), parts)
+
+    @cached_property
+    def clamped(self) -> list[NDArray[np.uint32]]:
+        """The vertices of each clamp that are in the sector."""
+        return [self.sector.restricted(each[:, None])[:, 0] for each in self.whole.clamped]
+
+    @cached_property
+    def places(self) -> dict[str, Place]:
+        """What each probe averages over in each part of the body, as places of the sector."""
+        return {
+            f"{name}/{number}": place
+            for name in self.whole.places
+            for number, (_, place) in enumerate(self._parts_of(name))
+        }
+
+    def _parts_of(self, name: str) -> list[tuple[Floats, Place]]:
+        """By what the vectors of each part of a probe are multiplied, and its place."""
+        place, source = self.whole.places[name], self.sector.source
+        found = []
+        for sign, here in self.sector.patterns():
+            mine = here[place.vertices]
+            if mine.any():
+                at = source[place.vertices[mine]].astype(np.uint32)
+                found.append((sign, Place(at, place.weights[mine])))
+        return found
+
+    def unfolded(self, result: Result) -> Result:
+        """The result of the whole body, of that of the sector."""
+        sector, count = self.sector, self.sector.count
+        reactions = self._reactions(result.reactions)
+        positions = sector.places(result.positions)
+        load, load_moment = self._loads(result)
+        recording = result.recording
+        probes = {
+            name: sum(
+                (
+                    sign * recording.probes[f"{name}/{number}"]
+                    for number, (sign, _) in enumerate(self._parts_of(name))
+                ),
+                start=np.zeros((len(recording.times), 3)),
+            )
+            for name in self.whole.places
+        }
+        frames = recording.frames
+        return replace(
+            result,
+            mesh=self.whole.mesh,
+            places=self.whole.places,
+            message=f"{result.message}; solved for {_SHARES[count]} of the body",
+            positions=positions,
+            velocities=sector.unfolded(result.velocities),
+            reactions=reactions,
+            reaction=_triple(reactions.sum(axis=0)),
+            reaction_moment=_triple(np.cross(positions, reactions).sum(axis=0)),
+            load=load,
+            load_moment=load_moment,
+            elastic_energy=count * result.elastic_energy,
+            mass=count * result.mass,
+            solver={**result.solver, "symmetry": [plane.plane for plane in sector.planes]},
+            recording=Recording(
+                times=recording.times,
+                probes=probes,
+                frames=sector.places(frames) if len(frames) else frames,
+            ),
+            # What breaks the symmetry is not seen in the sector.
+            stable=None if result.stable else result.stable,
+        )
+
+    def _reactions(self, reactions: Floats) -> Floats:
+        """Support forces on the whole: what is on a plane has them from all sides, along it."""
+        sector = self.sector
+        found = sector.unfolded(reactions)
+        for axis, on in zip(sector.axes, sector.on_planes.T, strict=True):
+            found[on] *= 2.0
+            found[on, axis] = 0.0
+        return found
+
+    def _loads(self, result: Result) -> tuple[tuple[float, float, float], ...]:
+        """The sum of all loads and of their moments about the origin, over all parts."""
+        force, own = np.array(result.load), np.array(result.load_moment)
+        total, moment = np.zeros(3), np.zeros(3)
+        for sign, _ in self.sector.patterns():
+            image = sign * force
+            total += image
+            # A mirror image turns the other way round.
+            moment += np.prod(sign) * sign * own + np.cross(self.sector.origin, image)
+        return _triple(total), _triple(moment)
+
+
+def _triple(vector: Floats) -> tuple[float, float, float]:
+    x, y, z = vector.tolist()
+    return x, y, z

@@ -1,0 +1,24 @@
+"""Where the search for an equilibrium begins."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Start(NamedTuple):
+    """Positions of the vertices of a body, and the pressures in its hyperelastic voxels.
+
+    Attributes
+    ----------
+    positions
+        In m, (n, 3).
+    pressures
+        In Pa, positive in tension, on the vertices at the lowest corners of voxels, (n,); NaN on
+        others.
+    """
+
+    positions: NDArray[np.float64]
+    pressures: NDArray[np.float64]
