@@ -79,7 +79,7 @@ impl Warping {
 
     /// The parts of each pair of axes.
     pub(crate) fn parts(&self) -> [[f64; 2]; 3] {
-        self.0
+        self.parts
     }
 
     /// That of a full voxel of isotropic rubber.
