@@ -61,13 +61,13 @@ pub(super) struct Frame<S: Simd> {
     pub sound: Number<S>,
 }
 
-/// Whether a voxel has a kernel in lanes: an energy of the first invariant, no fibers, and no clamp beside it.
-pub(super) fn has_lanes(brick: &Brick, material: &HyperelasticMaterial) -> bool {
+/// Whether a material has a kernel in lanes: an energy of the first invariant, and no fibers.
+pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
     let simple = matches!(
         material.model(),
         Model::NeoHookean { .. } | Model::Yeoh { .. } | Model::Gent { .. }
     );
-    simple && material.fibers().is_empty() && brick.warping.clamped.is_none()
+    simple && material.fibers().is_empty()
 }
 
 /// A number of each voxel of a group.

@@ -1,7 +1,7 @@
 //! Several voxels at once, one in each lane of the processor: forces, stiffness and carried strains.
 //!
 //! The formulas are those of [`crate::brick`], which stays the measure and answers for what is rare: materials
-//! without a form in invariants, fibers, voxels at a clamp and those that are inside out, pressed flat or blown up tenfold. Groups are those of the
+//! without a form in invariants, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out, pressed flat or blown up tenfold. Groups are those of the
 //! list of voxels, whatever the number of threads. As in [`crate::lanes`] everything is inlined by force into the one
 //! function that the processor was chosen for.
 
@@ -41,6 +41,10 @@ pub(crate) struct Together<'a> {
 impl<'a> Together<'a> {
     fn material(&self, brick: &Brick) -> &'a HyperelasticMaterial {
         &self.materials[brick.material as usize]
+    }
+
+    fn has_lanes(&self, brick: &Brick) -> bool {
+        brick.warping.clamped.is_none() && has_lanes(self.material(brick))
     }
 
     /// Sets the stiffness matrix of each voxel, see [`Brick::stiffness`].
@@ -97,7 +101,7 @@ impl<Q: Question> WithSimd for Run<'_, Q> {
             let count = S::F64_LANES.min(bricks.len() - first);
             let mut sound = [0.0; MOST_LANES];
             let own = &bricks[first..first + count];
-            if own.iter().any(|brick| has_lanes(brick, together.material(brick))) {
+            if own.iter().any(|brick| together.has_lanes(brick)) {
                 // The last group repeats its last voxel.
                 let mut lanes = [&own[count - 1]; MOST_LANES];
                 for (lane, brick) in lanes.iter_mut().zip(own) {
@@ -115,8 +119,7 @@ impl<Q: Question> WithSimd for Run<'_, Q> {
                 question.in_lanes(&group, first, count, &mut sound);
             }
             for lane in 0..count {
-                let brick = &own[lane];
-                let right = sound[lane] > 0.0 && has_lanes(brick, together.material(brick));
+                let right = sound[lane] > 0.0 && together.has_lanes(&own[lane]);
                 if !right {
                     question.plainly(&together, first + lane);
                 }
