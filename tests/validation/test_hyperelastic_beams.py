@@ -9,7 +9,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 #: Mean errors in mm that were hoped for: one modulus; one modulus and one scale.
 ALONE = {"00-20": 4.7, "00-30": 4.5, "00-50": 2.2}
-#: Seen are 1.52, 1.15 and 0.80: a beam theory reaches 1.3, 1.0 and 0.7.
+#: Seen are 1.57, 1.20 and 0.83: a beam theory reaches 1.3, 1.0 and 0.7.
 SCALED = {"00-20": 1.6, "00-30": 1.2, "00-50": 0.85}
 
 
@@ -32,9 +32,9 @@ def accuracy():
 
 
 def test_elements_of_5_mm_already_beat_the_paper(paper):
-    """With its singular clamp at 5 mm a beam fits 0.3 mm worse than when extrapolated."""
+    """Voxels of 5 mm alone fit as well as two sizes, extrapolated: 2.16 and 2.18 mm."""
     found = paper.fit("00-50", free_scale=False, extrapolate=False)
-    assert 1e3 * found.error < 2.6 < paper.PAPER["00-50"]
+    assert 1e3 * found.error < 2.4 < paper.PAPER["00-50"]
     assert found.scale == 1.0
 
 

@@ -45,27 +45,38 @@ fn materials() -> Vec<HyperelasticMaterial> {
 }
 
 /// A voxel of a kind, with places of its corners around those of a cube.
-fn voxel() -> impl Strategy<Value = (usize, bool, bool, f64, [Vec3; 8], [Vec3; 8])> {
+fn voxel() -> impl Strategy<Value = (usize, bool, Warping, f64, [Vec3; 8], [Vec3; 8])> {
     let corners = |size: f64| prop::array::uniform8(prop::array::uniform3(-size..size));
     (
         0..6usize,
         any::<bool>(),
-        any::<bool>(),
+        prop::sample::select(warpings()),
         prop::sample::select(vec![0.05, 0.2, 1.0]),
         corners(1.0),
         corners(0.2),
     )
 }
 
-fn brick(first: u32, material: u32, cut: bool, free: bool) -> Brick {
+/// Inside, at the surface, and at a clamp.
+fn warpings() -> Vec<Warping> {
+    let free = Faces {
+        free: [[true, false], [false, true], [false, false]],
+        ..Faces::default()
+    };
+    let held = [[false; 2], [false; 2], [true, false]];
+    let clamped = Faces {
+        stiff: held,
+        held,
+        ..free
+    };
+    vec![Warping::NONE, Warping::of(&free), Warping::of(&clamped)]
+}
+
+fn brick(first: u32, material: u32, cut: bool, warping: Warping) -> Brick {
     let filling = Filling {
         shift: [0.3, -0.1, 0.0],
         spread: [0.6, 0.9, 1.0],
         products: [0.05, -0.1, 0.02],
-    };
-    let faces = Faces {
-        free: [[true, false], [false, true], [false, false]],
-        ..Faces::default()
     };
     Brick {
         vertices: std::array::from_fn(|corner| first + corner as u32),
@@ -73,11 +84,7 @@ fn brick(first: u32, material: u32, cut: bool, free: bool) -> Brick {
         side: 0.01,
         fraction: if cut { 0.6 } else { 1.0 },
         filling: if cut { filling } else { Filling::FULL },
-        warping: if free {
-            Warping::of(&faces)
-        } else {
-            Warping::NONE
-        },
+        warping,
     }
 }
 
@@ -94,8 +101,8 @@ proptest! {
     fn lanes_give_what_one_voxel_after_the_other_gives(voxels in prop::collection::vec(voxel(), 1..=TOGETHER)) {
         let materials = materials();
         let (mut bricks, mut positions, mut moves) = (Vec::new(), Vec::new(), Vec::new());
-        for (kind, cut, free, size, corners, steps) in voxels {
-            bricks.push(brick(positions.len() as u32, kind as u32, cut, free));
+        for (kind, cut, warping, size, corners, steps) in voxels {
+            bricks.push(brick(positions.len() as u32, kind as u32, cut, warping));
             for corner in 0..8 {
                 let at = |axis: usize| 0.01 * ((corner >> (2 - axis) & 1) as f64);
                 positions.push(std::array::from_fn(|k| at(k) + 0.01 * size * corners[corner][k]));
