@@ -43,6 +43,14 @@ pub(crate) struct IterativeSystem {
     hierarchy: Hierarchy,
 }
 
+/// What is to be solved with the tangent.
+struct Equation<'a> {
+    side: &'a [f64],
+    /// Where the answer may be.
+    guess: Option<&'a [f64]>,
+    border: Option<Border<'a>>,
+}
+
 /// `factor` times the product of a vector with itself, which is added to the tangent.
 struct Border<'a> {
     vector: &'a [Vec3],
@@ -186,7 +194,24 @@ impl IterativeSystem {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        let (answer, end) = self.iterate(factor, side, None, tolerance, stop);
+        self.solve_from(factor, side, None, tolerance, stop)
+    }
+
+    /// The same from a guess at the answer.
+    pub fn solve_from(
+        &self,
+        factor: &IterativeFactor,
+        side: &mut [f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        let equation = Equation {
+            side,
+            guess,
+            border: None,
+        };
+        let (answer, end) = self.iterate(factor, equation, tolerance, stop);
         for (vertex, &place) in self.places.iter().enumerate() {
             side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
         }
@@ -222,8 +247,13 @@ impl IterativeSystem {
             vector,
             factor: *factor,
         });
+        let equation = Equation {
+            side: &side,
+            guess: None,
+            border,
+        };
         let end = self
-            .iterate(&factor, &side, border, DEFINITE_TOLERANCE, &mut || false)
+            .iterate(&factor, equation, DEFINITE_TOLERANCE, &mut || false)
             .1;
         end != End::NegativeCurvature
     }
@@ -241,13 +271,12 @@ impl IterativeSystem {
     fn iterate(
         &self,
         factor: &IterativeFactor,
-        side: &[f64],
-        border: Option<Border<'_>>,
+        equation: Equation<'_>,
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> (Vec<Vec3>, End) {
         let count = self.places.len();
-        let mut residual = self.by_rows(side);
+        let mut residual = self.by_rows(equation.side);
         let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
         let mut answer = vec![[0.0; 3]; count];
         let mut image = vec![[0.0; 3]; count];
@@ -256,12 +285,18 @@ impl IterativeSystem {
             .hierarchy
             .preconditioner(&self.matrix, &factor.coarsest);
         preconditioner.apply(&residual, &mut work);
-        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
-        let mut gain = inner(&residual, &direction);
         // The energy of the error, as the preconditioner sees it: residual forces would say little about
         // soft bending modes, which carry most of a slender body's displacement.
-        let goal = tolerance * tolerance * gain;
-        if gain == 0.0 {
+        let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
+        if let Some(guess) = equation.guess {
+            answer = self.by_rows(guess);
+            self.matrix.multiply(&answer, &mut image);
+            for_each(&mut residual, |row, r| axpy(r, -1.0, image[row]));
+            preconditioner.apply(&residual, &mut work);
+        }
+        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
+        let mut gain = inner(&residual, &direction);
+        if gain == 0.0 || gain.abs() < goal {
             return (answer, End::Converged);
         }
         for iteration in 0..MAX_ITERATIONS {
@@ -269,7 +304,7 @@ impl IterativeSystem {
                 return (answer, End::Cancelled);
             }
             self.matrix.multiply(&direction, &mut image);
-            if let Some(Border { vector, factor }) = &border {
+            if let Some(Border { vector, factor }) = &equation.border {
                 let part = factor * inner(vector, &direction);
                 for_each(&mut image, |row, image| axpy(image, part, vector[row]));
             }
