@@ -401,8 +401,9 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         ];
         let (equilibrium, observer) = (&*self.equilibrium, &mut *self.observer);
         let mut stop = || {
-            let told = equilibrium.tell(&now.positions, seen.point, relative, observer);
-            told.is_err()
+            equilibrium
+                .tell(&now.positions, seen.point, relative, observer)
+                .is_err()
         };
         let (a, b) = sides.solve(equilibrium, factor, tolerances, &mut stop)?;
         self.equilibrium.by_load = Some(b.clone());
