@@ -251,10 +251,11 @@ impl Sides {
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         let (mut a, mut b) = (self.residual.clone(), self.direction.clone());
-        for (side, tolerance) in [&mut a, &mut b].into_iter().zip(tolerances) {
-            let system = &equilibrium.system;
-            system.solve(factor, side, false, tolerance, stop)?;
-        }
+        let system = &equilibrium.system;
+        system.solve(factor, &mut a, false, tolerances[0], stop)?;
+        let guess = equilibrium.by_load.as_deref();
+        let guess = guess.filter(|guess| guess.len() == b.len());
+        system.solve_from(factor, &mut b, guess, tolerances[1], stop)?;
         if a.iter().chain(&b).all(|x| x.is_finite()) {
             Ok((a, b))
         } else {
@@ -400,10 +401,12 @@ impl<C: Constraint> Newton<'_, '_, '_, C> {
         ];
         let (equilibrium, observer) = (&*self.equilibrium, &mut *self.observer);
         let mut stop = || {
-            let told = equilibrium.tell(&now.positions, seen.point, relative, observer);
-            told.is_err()
+            equilibrium
+                .tell(&now.positions, seen.point, relative, observer)
+                .is_err()
         };
         let (a, b) = sides.solve(equilibrium, factor, tolerances, &mut stop)?;
+        self.equilibrium.by_load = Some(b.clone());
         let (across, along) = self.constraint.gradient(self.equilibrium, &now.positions);
         let compliance = product(&across, &b) + along;
         let change = (seen.missing.size - product(&across, &a)) / compliance;

@@ -99,6 +99,8 @@ pub(crate) struct Equilibrium<'a> {
     pub precision: f64,
     /// The farthest that a clamp carries a vertex.
     pub largest_motion: f64,
+    /// The displacements by the unknown load factor that were found last, near which the next ones are.
+    pub by_load: Option<Vec<f64>>,
     /// Whether rigid objects move freely: how far they go says nothing of what is rounding in their stiff springs.
     pub has_loose: bool,
 }
@@ -162,6 +164,7 @@ impl<'a> Equilibrium<'a> {
             negligible: 0.0,
             precision: 1.0,
             largest_motion: largest_motion(problem),
+            by_load: None,
             has_loose: false,
         })
     }

@@ -13,6 +13,7 @@ use crate::multigrid::{
     sum,
 };
 use crate::rank::rank;
+use crate::row_pattern::pattern;
 use crate::system::{FactorError, Means};
 
 /// What a vertex takes: 27 blocks of 76 bytes, an eighth more for coarser levels, and patterns, strains and
@@ -41,6 +42,14 @@ pub(crate) struct IterativeSystem {
     /// By what part of itself the diagonal has been lifted.
     lifted: f64,
     hierarchy: Hierarchy,
+}
+
+/// What is to be solved with the tangent.
+struct Equation<'a> {
+    side: &'a [f64],
+    /// Where the answer may be.
+    guess: Option<&'a [f64]>,
+    border: Option<Border<'a>>,
 }
 
 /// `factor` times the product of a vector with itself, which is added to the tangent.
@@ -186,7 +195,24 @@ impl IterativeSystem {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        let (answer, end) = self.iterate(factor, side, None, tolerance, stop);
+        self.solve_from(factor, side, None, tolerance, stop)
+    }
+
+    /// The same from a guess at the answer.
+    pub fn solve_from(
+        &self,
+        factor: &IterativeFactor,
+        side: &mut [f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        let equation = Equation {
+            side,
+            guess,
+            border: None,
+        };
+        let (answer, end) = self.iterate(factor, equation, tolerance, stop);
         for (vertex, &place) in self.places.iter().enumerate() {
             side[3 * vertex..3 * vertex + 3].copy_from_slice(&answer[place as usize]);
         }
@@ -222,8 +248,13 @@ impl IterativeSystem {
             vector,
             factor: *factor,
         });
+        let equation = Equation {
+            side: &side,
+            guess: None,
+            border,
+        };
         let end = self
-            .iterate(&factor, &side, border, DEFINITE_TOLERANCE, &mut || false)
+            .iterate(&factor, equation, DEFINITE_TOLERANCE, &mut || false)
             .1;
         end != End::NegativeCurvature
     }
@@ -241,13 +272,12 @@ impl IterativeSystem {
     fn iterate(
         &self,
         factor: &IterativeFactor,
-        side: &[f64],
-        border: Option<Border<'_>>,
+        equation: Equation<'_>,
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> (Vec<Vec3>, End) {
         let count = self.places.len();
-        let mut residual = self.by_rows(side);
+        let mut residual = self.by_rows(equation.side);
         let inner = |a: &[Vec3], b: &[Vec3]| sum(count, |row| dot(a[row], b[row]));
         let mut answer = vec![[0.0; 3]; count];
         let mut image = vec![[0.0; 3]; count];
@@ -256,12 +286,18 @@ impl IterativeSystem {
             .hierarchy
             .preconditioner(&self.matrix, &factor.coarsest);
         preconditioner.apply(&residual, &mut work);
-        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
-        let mut gain = inner(&residual, &direction);
         // The energy of the error, as the preconditioner sees it: residual forces would say little about
         // soft bending modes, which carry most of a slender body's displacement.
-        let goal = tolerance * tolerance * gain;
-        if gain == 0.0 {
+        let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
+        if let Some(guess) = equation.guess {
+            answer = self.by_rows(guess);
+            self.matrix.multiply(&answer, &mut image);
+            for_each(&mut residual, |row, r| axpy(r, -1.0, image[row]));
+            preconditioner.apply(&residual, &mut work);
+        }
+        let mut direction: Vec<Vec3> = (0..count).map(|row| work.answer(row)).collect();
+        let mut gain = inner(&residual, &direction);
+        if gain == 0.0 || gain.abs() < goal {
             return (answer, End::Converged);
         }
         for iteration in 0..MAX_ITERATIONS {
@@ -269,7 +305,7 @@ impl IterativeSystem {
                 return (answer, End::Cancelled);
             }
             self.matrix.multiply(&direction, &mut image);
-            if let Some(Border { vector, factor }) = &border {
+            if let Some(Border { vector, factor }) = &equation.border {
                 let part = factor * inner(vector, &direction);
                 for_each(&mut image, |row, image| axpy(image, part, vector[row]));
             }
@@ -415,67 +451,4 @@ impl Target<'_> {
 struct Rows<'a> {
     range: std::ops::Range<usize>,
     values: Part<'a>,
-}
-
-/// The vertices of elements, one after the other.
-#[derive(Default)]
-struct Pieces {
-    vertices: Vec<u32>,
-    ends: Vec<usize>,
-}
-
-impl Pieces {
-    fn push(&mut self, vertices: &[u32]) {
-        self.vertices.extend_from_slice(vertices);
-        self.ends.push(self.vertices.len());
-    }
-
-    fn get(&self, index: usize) -> &[u32] {
-        let start = index.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.vertices[start..self.ends[index]]
-    }
-}
-
-/// The columns of each vertex: the corners of its voxels, and what membranes and pressures join.
-fn pattern(problem: &Problem) -> BlockMatrix {
-    let body = problem.body();
-    let count = body.rest().len();
-    let mut elements = Pieces::default();
-    body.voxels().iter().for_each(|v| elements.push(v));
-    for term in body.terms_beyond_voxels() {
-        term.visit_pattern(&mut |vertices| elements.push(vertices));
-    }
-    problem.visit_load_pattern(&mut |vertices| elements.push(vertices));
-    // The elements at each vertex, then the vertices of those elements.
-    let mut starts = vec![0u32; count + 1];
-    for &vertex in &elements.vertices {
-        starts[vertex as usize + 1] += 1;
-    }
-    for vertex in 0..count {
-        starts[vertex + 1] += starts[vertex];
-    }
-    let mut next = starts.clone();
-    let mut at = vec![0u32; starts[count] as usize];
-    for index in 0..elements.ends.len() {
-        for &vertex in elements.get(index) {
-            at[next[vertex as usize] as usize] = index as u32;
-            next[vertex as usize] += 1;
-        }
-    }
-    let mut row_starts = Vec::with_capacity(count + 1);
-    row_starts.push(0);
-    let mut columns = Vec::with_capacity(27 * count);
-    let mut row: Vec<u32> = Vec::new();
-    for vertex in 0..count {
-        row.clear();
-        row.push(vertex as u32);
-        for &index in &at[starts[vertex] as usize..starts[vertex + 1] as usize] {
-            row.extend_from_slice(elements.get(index as usize));
-        }
-        row.sort_unstable();
-        row.dedup();
-        columns.extend_from_slice(&row);
-        row_starts.push(columns.len());
-    }
-    BlockMatrix::with_pattern(row_starts, columns)
 }

@@ -52,6 +52,7 @@ mod ordering;
 mod path;
 mod point;
 mod rank;
+mod row_pattern;
 mod sensitivity;
 mod settings;
 mod settle;

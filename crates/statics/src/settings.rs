@@ -52,8 +52,8 @@ pub struct Settings {
     pub least_step: f64,
     /// How the path is followed.
     pub control: Control,
-    /// How linear systems are solved. Arc length and volume control take the direct way: past a limit
-    /// the tangent is indefinite.
+    /// How linear systems are solved. Arc length, and volume control with contact, take the direct way: past a limit the
+    /// tangent is indefinite, and where contact goes astray is told from the signs of its pivots.
     pub linear: LinearSolver,
     /// The bytes that the tangent may take.
     pub memory: u64,

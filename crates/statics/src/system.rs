@@ -167,6 +167,23 @@ impl System {
         }
     }
 
+    /// The same from a guess at the answer, which only an iteration takes.
+    pub fn solve_from(
+        &self,
+        factor: &Factor,
+        side: &mut [f64],
+        guess: Option<&[f64]>,
+        tolerance: f64,
+        stop: &mut dyn FnMut() -> bool,
+    ) -> Result<(), FactorError> {
+        match (self, factor) {
+            (Self::Iterative(system), Factor::Iterative(factor)) => {
+                system.solve_from(factor, side, guess, tolerance, stop)
+            }
+            _ => self.solve(factor, side, false, tolerance, stop),
+        }
+    }
+
     /// Whether the tangent is positive among all directions across `gradient`, where its inverse gives `gradient` a negative
     /// `compliance` by itself: it has one negative eigenvalue then.
     pub fn is_held_across(&mut self, factor: &Factor, gradient: &[f64], compliance: f64) -> bool {

@@ -8,7 +8,7 @@ use voxsoft_solid::{
     Body, Clamp, History, HyperelasticMaterial, LatticeMaterial, Load, Material, Membrane,
     MembraneMaterial, Motion, Pressure, Problem,
 };
-use voxsoft_statics::{AdjointError, Answer, LinearSolver, Settings, Status, adjoint};
+use voxsoft_statics::{AdjointError, Answer, Control, LinearSolver, Settings, Status, adjoint};
 use voxsoft_voxel::{Grid, tet_mesh};
 
 fn with(linear: LinearSolver) -> Settings {
@@ -74,6 +74,29 @@ fn chambers(material: impl Into<Material>, film: bool) -> Problem {
         }),
     ];
     Problem::new(body, vec![Clamp::fixed(wall)], loads, None).unwrap()
+}
+
+/// A hollow cube with walls one voxel thick.
+fn balloon() -> Problem {
+    let (side, across) = (0.004, 8);
+    let mut grid = Grid::empty([across; 3], [0.0; 3], side, u64::MAX).unwrap();
+    let corner = |cell: usize| [cell as f64 * side; 3];
+    grid.fill_box(corner(0), corner(across), 1);
+    grid.fill_box(corner(1), corner(across - 1), 0);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let cavities = tets.cavities.iter().flat_map(|cavity| &cavity.triangles);
+    let triangles = cavities
+        .map(|triangle| triangle.map(|v| v as u32))
+        .collect();
+    let mesh = mesh_of(&grid);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let foot = vertices_where(&mesh, |x| x[2] < 1e-9);
+    let pressure = Load::constant(Pressure {
+        triangles,
+        voids: vec![],
+        pressure: 2e3,
+    });
+    Problem::new(body, vec![Clamp::fixed(foot)], vec![pressure], None).unwrap()
 }
 
 /// Two leaves on a common foot with a slit of one voxel between them, pulled apart by motions of their
@@ -218,5 +241,31 @@ fn what_does_not_fit_is_refused_with_an_estimate() {
         };
         // 225 vertices: the factor has about as many entries as the tangent, 27 blocks a vertex at most.
         assert!((100_000..2_000_000).contains(&bytes), "{linear:?}: {bytes}");
+    }
+}
+
+#[test]
+fn a_balloon_is_blown_up_past_its_limit_either_way() {
+    let problem = balloon();
+    let control = Control::Volume {
+        ratio: 6.0,
+        steps: 6,
+    };
+    let [direct, iterative] = [LinearSolver::Direct, LinearSolver::Iterative].map(|way| {
+        let settings = Settings {
+            control,
+            ..with(way)
+        };
+        settled(&problem, &settings)
+    });
+    assert_eq!(direct.status, Status::AtRest);
+    assert_eq!(iterative.status, Status::AtRest);
+    assert_eq!(direct.path.len(), iterative.path.len());
+    // Only its volume holds it in the end.
+    assert!(!direct.stable);
+    for (a, b) in direct.path.iter().zip(&iterative.path) {
+        assert_eq!(a.stable, b.stable);
+        // Both are within 1e-8 of the load of an equilibrium whose stiffness against the load is not near zero.
+        assert!((a.factor - b.factor).abs() < 1e-6, "{a:?} {b:?}");
     }
 }

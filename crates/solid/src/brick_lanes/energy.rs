@@ -3,6 +3,8 @@
 //!
 //! The mean of `det` over two points `S ± r Ĥ` is `det S + r² S : cof Ĥ` without remainder, so that the change of volume
 //! needs no points.
+//!
+//! Long because gradient and Hessian are one derivation, part by part of the energy.
 
 use pulp::Simd;
 
