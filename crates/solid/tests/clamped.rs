@@ -61,7 +61,7 @@ fn width(voxel: &Brick, material: &HyperelasticMaterial, along: f64) -> f64 {
 }
 
 /// The patch test. With a small strain it holds for any material, and without compression at any stretch; what is left then is of the
-/// order of G/K, 2e-4. Without compression each voxel has the width that frees it: pressures follow widths that differ by as little.
+/// order of G/K, 2e-4. At large strain each voxel has the width that frees it: pressures follow widths that differ by as little.
 #[test]
 fn a_voxel_that_is_drawn_out_uniformly_pulls_as_without_a_clamp() {
     let cases = [
@@ -72,8 +72,7 @@ fn a_voxel_that_is_drawn_out_uniformly_pulls_as_without_a_clamp() {
         (0.4999, 0.6, 3e-4),
         (0.4999, 1.6, 3e-4),
         (0.4999, 2.0, 5e-4),
-        // G/K is 0.02, and half of it what fading leaves.
-        (0.49, 1.3, 1e-2),
+        (0.49, 1.3, 3e-3),
     ];
     for free in FREE {
         for (poisson, along, tolerance) in cases {
@@ -81,7 +80,11 @@ fn a_voxel_that_is_drawn_out_uniformly_pulls_as_without_a_clamp() {
             let (plain, clamped) = (voxel(&[], false), voxel(free, true));
             assert_ne!(clamped.warping, Warping::NONE);
             let [expected, found] = [plain, clamped].map(|brick| {
-                let freed = if poisson > 0.499 { &brick } else { &plain };
+                let freed = if f64::abs(along - 1.0) > 0.1 {
+                    &brick
+                } else {
+                    &plain
+                };
                 let across = width(freed, &material, along);
                 let drawn = corners(|x| [along * x[0], across * x[1], across * x[2]]);
                 brick.forces(&material, &drawn)
