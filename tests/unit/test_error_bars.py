@@ -95,11 +95,11 @@ def test_a_wall_of_one_voxel_may_hide_a_quarter():
 
 
 def test_an_accuracy_takes_as_many_sizes_as_it_takes():
-    found = vs.error_bars(vs.simulate(beam(accuracy="1.5 %")))
+    found = vs.error_bars(vs.simulate(beam(accuracy="0.8 %")))
     assert len(found.voxel_sizes) > 2
     moved = [found.probes["tip"][axis] for axis in (0, 2)]
     size = math.hypot(*(bar.estimate for bar in moved))
-    assert math.hypot(*(bar.error for bar in moved)) <= 0.015 * size
+    assert math.hypot(*(bar.error for bar in moved)) <= 0.008 * size
 
 
 def test_an_accuracy_that_is_out_of_reach_says_so(monkeypatch):

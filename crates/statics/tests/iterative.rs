@@ -95,6 +95,7 @@ fn balloon() -> Problem {
         triangles,
         voids: vec![],
         pressure: 2e3,
+        closed: false,
     });
     Problem::new(body, vec![Clamp::fixed(foot)], vec![pressure], None).unwrap()
 }
