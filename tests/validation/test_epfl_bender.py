@@ -51,7 +51,7 @@ def test_angles_are_compared_where_both_are_known(bender):
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 def test_the_first_bending_is_predicted_and_the_transition_comes_late(bender):
-    """Up to 30 kPa 0.08 degrees off on average were seen with true silk; 3 degrees come 0.3 kPa late.
+    """Up to 30 kPa 0.08 degrees off on average were seen; 3 degrees come 0.3 kPa late.
 
     The whole path to 62 kPa, 11 degrees off, takes a minute; `docs/validation.md` has it.
     """

@@ -44,6 +44,7 @@ mod brick_energy;
 mod brick_lanes;
 mod brick_thickness;
 mod clamp;
+mod clamp_drivers;
 mod clamped;
 mod color;
 pub mod conformance;
