@@ -207,8 +207,8 @@ def test_a_side_of_an_object_that_goes_through_samples_is_there():
     """The plate's faces are samples of a grid of 3 mm; it had neither top nor bottom."""
     found = simulate(pressed(voxel_size=3 * mm))
     (contact,) = found.contacts
-    # Coarser voxels are stiffer by some percent: 4 mm give 2.34 N, 2.4 mm 2.29 N.
-    assert contact.force[2] == pytest.approx(-2.31, abs=0.02)
+    # With voxels of 4, 2.4 and 2 mm it is 2.249, 2.249 and 2.247 N.
+    assert contact.force[2] == pytest.approx(-2.248, abs=0.005)
     surface = surface_of(found.design.objects[0], found.design, "objects[0]")
     ends = np.sort(surface.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     assert (np.unique(ends, axis=0, return_counts=True)[1] == 2).all()  # closed

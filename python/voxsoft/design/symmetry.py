@@ -35,7 +35,7 @@ class Symmetry(Record):
     >>> Symmetry(plane="w")
     Traceback (most recent call last):
     ...
-    voxsoft.errors.DesignError: plane: 'w' is not possible. Try: one of 'x', 'y', 'z'
+    voxsoft.errors.DesignError: plane: "w" came; expected "x", "y" or "z"
     """
 
     plane: Literal["x", "y", "z"]
