@@ -39,7 +39,6 @@ export default function ViewPane() {
             <Hover />
             <Picked />
             <Banner />
-            <OverlapBanner />
             <ContactBanner />
           </>
         ) : (
@@ -181,7 +180,8 @@ function Picked() {
 function Banner() {
   const diverged = useShown((shown) => shown.diverged);
   const stat = useStudio((state) => state.stat);
-  if (!diverged && stat?.state !== "diverged") return null;
+  // Walls that a diverged body has in each other are no news.
+  if (!diverged && stat?.state !== "diverged") return <OverlapBanner />;
   return (
     <div className="view-banner" role="alert" data-testid="diverged">
       <p>
