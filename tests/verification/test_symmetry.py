@@ -9,8 +9,11 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.design import Contact, Layer, Symmetry
+from voxsoft.design.discretize import mesh_of
 from voxsoft.errors import DesignError
 from voxsoft.simulation import Setup
+from voxsoft.simulation.freedom import moves_freely
+from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.units import kPa, mm
 
 #: Both systems are solved to a residual of 1e-8, which Newton's last step squares.
@@ -97,6 +100,26 @@ def test_an_eighth_needs_no_clamp() -> None:
     assert part.solver["way"] == "load"
     assert np.abs(part.positions - whole.positions).max() <= SOLVED * 20 * mm
     assert np.abs(part.reactions).max() == 0.0
+
+
+def test_half_a_bar_lies_on_its_floor() -> None:
+    whole = BAR.replace(floor=vs.Floor(), loads=[vs.Gravity()])
+    half = whole.replace(symmetry=ALONG)
+    part, its = vs.simulate(half), vs.simulate(whole)
+    require_same(part, its, SOLVED)
+    # Without the floor the end hangs lower.
+    assert vs.simulate(half.replace(floor=None)).probes["end"][2] < 2 * part.probes["end"][2]
+
+
+def test_planes_hold_what_they_cut() -> None:
+    planes = [Symmetry(plane=plane) for plane in "xyz"]
+    free = ball("binary", clamps=[])
+    assert moves_freely(Setup(free, mesh_of(free)))
+    for count, held in ((2, False), (3, True)):
+        cut = free.replace(symmetry=planes[:count])
+        part = SectorSetup.part_of(Setup(cut, mesh_of(cut)))
+        assert part is not None
+        assert moves_freely(part) is not held
 
 
 def test_half_a_bar_moves_as_the_bar_does() -> None:

@@ -34,6 +34,9 @@ def moves_freely(setup: Setup) -> bool:
     held = np.zeros((len(setup.mesh.vertices), 3), dtype=bool)
     for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
         held[vertices] |= [axis in clamp.axes for axis in "xyz"]
+    if (sector := setup.sector) is not None:
+        here = sector.vertices if setup.mesh is sector.mesh else slice(None)
+        held[:, sector.axes] |= sector.on_planes[here]
     return any(_freedoms(setup.mesh.vertices[p], held[p]) > 0 for p in _joined(setup))
 
 

@@ -196,6 +196,9 @@ class Setup:
         spanning = [np.zeros((0, 3), np.int32), *(layer.spanning for layer in self.layers)]
         parts = SectorParts(self.sector, np.concatenate(spanning))
         self._give_to(parts)
+        if self.design.floor is not None:
+            parts.where = "floor"
+            parts.floor(self.design.floor.z)
         parts.hold_planes()
         return parts.kept
 
