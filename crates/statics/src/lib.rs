@@ -38,6 +38,7 @@
 //! ```
 
 mod adjoint;
+mod along;
 mod bordered;
 mod control;
 mod direct;

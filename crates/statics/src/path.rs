@@ -5,6 +5,7 @@ use std::sync::Arc;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Observer, Problem, Progress, Status, Term};
 
+use crate::along::Along;
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
@@ -60,24 +61,6 @@ impl Ending {
     }
 }
 
-/// What grows under load control.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Along {
-    /// All loads and motions.
-    All,
-    /// All but pressures, which volume control goes on with.
-    Dead,
-}
-
-impl Along {
-    fn at(self, factor: f64) -> Point {
-        match self {
-            Self::All => Point::all(factor),
-            Self::Dead => Point::of(factor, 0.0),
-        }
-    }
-}
-
 /// A path under way.
 pub(crate) struct Path<'a, 'b> {
     pub equilibrium: Equilibrium<'a>,
@@ -109,7 +92,7 @@ pub fn solve(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let loose = match settings.control {
-        Control::Load | Control::Volume { .. } => Loose::find(problem),
+        Control::Load | Control::Time { .. } | Control::Volume { .. } => Loose::find(problem),
         // What is loose goes to rest under a load, which past a limit nothing is stable under.
         Control::ArcLength { .. } => None,
     };
@@ -133,7 +116,7 @@ fn follow(
     let rest = problem.body().rest();
     let positions = start.map_or(rest, |start| &start.positions).to_vec();
     let solver = match settings.control {
-        Control::Load => settings.linear,
+        Control::Load | Control::Time { .. } => settings.linear,
         // Where contact goes astray is told from the signs of pivots.
         Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
@@ -142,7 +125,9 @@ fn follow(
         solver,
         memory: settings.memory,
     };
-    if let Some(contact) = problem.contact() {
+    let along = Along::of(settings.control);
+    let goes_on = matches!(along, Along::Time { .. });
+    if let Some(contact) = problem.contact().filter(|_| !goes_on) {
         contact.start(&positions);
     }
     let equilibrium = match Equilibrium::new(problem, means) {
@@ -159,14 +144,17 @@ fn follow(
             ..equilibrium
         },
         positions,
-        point: Point::all(0.0),
+        point: along.at(0.0),
         points: Vec::new(),
         snaps: Vec::new(),
         observer,
         looking: false,
     };
     let ending = match settings.control {
-        Control::Load => path.follow_load(settings, Along::All, start.is_some(), loose),
+        Control::Load | Control::Time { .. } => {
+            let warm = start.is_some() && !goes_on;
+            path.follow_load(settings, along, warm, loose)
+        }
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
             let growth = (ratio, steps);
@@ -189,6 +177,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
         },
         factor: 0.0,
         dead_factor: 0.0,
+        time: f64::INFINITY,
         reached: 0.0,
         residual: f64::INFINITY,
         iterations: 0,
@@ -213,7 +202,9 @@ impl Path<'_, '_> {
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
         // Load and volume control have asked at each point; a point of an arc knows only whether the load has turned.
         let stable = match (self.points.last(), settings.control) {
-            (Some(last), Control::Load | Control::Volume { .. }) => last.stable,
+            (Some(last), Control::Load | Control::Time { .. } | Control::Volume { .. }) => {
+                last.stable
+            }
             _ => self.equilibrium.is_stable(&self.positions, self.point),
         };
         let residual = self
@@ -224,6 +215,7 @@ impl Path<'_, '_> {
             status: ending.status,
             factor: self.point.pressure,
             dead_factor: self.point.dead,
+            time: self.point.time,
             reached: ending.reached,
             residual,
             iterations: self.equilibrium.iterations,
@@ -284,8 +276,9 @@ impl Path<'_, '_> {
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
-        let longest = match contact {
-            Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
+        let longest = match (contact, settings.control) {
+            (Some(contact), Control::Time { longest, .. }) if contact.depends_on_way() => longest,
+            (Some(contact), _) if contact.depends_on_way() => LONGEST_OF_WAY,
             _ => 1.0,
         };
         let easy = if contact.is_some() {
@@ -296,9 +289,9 @@ impl Path<'_, '_> {
         let mut length = StepLength::new(first, longest);
         let mut cuts = 0;
         let mut last = f64::INFINITY;
+        let mut now = 0.0;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
-            let now = self.point.dead;
             let step = length.get();
             let next = if now + LAST * step < 1.0 {
                 now + step
@@ -324,7 +317,9 @@ impl Path<'_, '_> {
                     if stable || cuts == UNSTABLE_CUTS {
                         // Under dead loads alone only the end is a point of the path.
                         self.looking = match along {
-                            Along::All => loose.is_some() && next == 1.0,
+                            Along::All { .. } | Along::Time { .. } => {
+                                loose.is_some() && next == 1.0
+                            }
                             Along::Dead => next < 1.0,
                         };
                         self.accept(trial, point, found.iterations, found.residual);
@@ -332,6 +327,7 @@ impl Path<'_, '_> {
                             point.stable = stable;
                         }
                         last = next - now;
+                        now = next;
                         if next == 1.0 {
                             return self.end(along, loose, settings);
                         }
@@ -375,14 +371,15 @@ impl Path<'_, '_> {
                 {
                     length.set(SNAP);
                     last = f64::INFINITY;
-                    if self.point.dead < 1.0 {
+                    now = (now + SNAP).min(1.0);
+                    if now < 1.0 {
                         continue;
                     }
                     return self.end(along, loose, settings);
                 }
                 // Contact makes corners in the path, which no tangent foresees.
-                let limit = match (contact, along) {
-                    (None, Along::All) => self.look_ahead(settings),
+                let limit = match contact {
+                    None if along.has_factor() => self.look_ahead(settings),
                     _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.
@@ -399,7 +396,7 @@ impl Path<'_, '_> {
     /// The end of load control, where all that grows is there.
     fn end(&mut self, along: Along, loose: Option<&Loose>, settings: &Settings) -> Ending {
         match (along, loose) {
-            (Along::All, Some(loose)) => {
+            (Along::All { .. } | Along::Time { .. }, Some(loose)) => {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
@@ -407,7 +404,9 @@ impl Path<'_, '_> {
                 };
                 self.release(loose, &mut search, settings)
             }
-            (Along::All, None) => Ending::new(Status::AtRest, None, 1.0),
+            (Along::All { .. } | Along::Time { .. }, None) => {
+                Ending::new(Status::AtRest, None, 1.0)
+            }
             (Along::Dead, _) => {
                 self.looking = false;
                 let before = self.points.len().saturating_sub(1);

@@ -5,8 +5,10 @@ from voxsoft.simulation.check import CheckReport, check
 from voxsoft.simulation.choice import check_solver
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.gradient import gradient
+from voxsoft.simulation.load_path import LoadPath, follow
 from voxsoft.simulation.many import Ensemble, Settled, simulate_many
 from voxsoft.simulation.observation import ChamberState, Observation
+from voxsoft.simulation.over import Over
 from voxsoft.simulation.penetration import Overlap, Penetration, find_penetration
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
@@ -19,7 +21,9 @@ __all__ = [
     "CheckReport",
     "Diagnostic",
     "Ensemble",
+    "LoadPath",
     "Observation",
+    "Over",
     "Overlap",
     "Penetration",
     "Place",
@@ -35,6 +39,7 @@ __all__ = [
     "check_solver",
     "check_targets",
     "find_penetration",
+    "follow",
     "gradient",
     "named_regions",
     "relax",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Final, Literal
+from typing import Any, ClassVar, Final, Literal, NamedTuple
 
 from voxsoft import _core
 from voxsoft._core import Status
@@ -90,6 +90,35 @@ class VolumeControl(Statics):
         return super().solve(setup, watch)
 
 
+class Stretch(NamedTuple):
+    """The way from one instant of all histories to another, as if nothing had mass.
+
+    Attributes
+    ----------
+    since
+        The instant in s of the equilibrium that it begins with, of which contact goes on too; None
+        at the beginning, where loads grow from nothing.
+    until
+        The instant in s of the equilibrium that is looked for.
+    longest
+        The longest step where the answer depends on the way, as a part of this one.
+    """
+
+    since: float | None
+    until: float
+    longest: float
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the core calls them."""
+        return {
+            "control": "time",
+            "from_time": self.since,
+            "to_time": self.until,
+            "longest": self.longest,
+        }
+
+
 def find_equilibrium(
     setup: Setup,
     statics: Statics,
@@ -98,10 +127,11 @@ def find_equilibrium(
     *,
     frames: bool = False,
     start: Start | None = None,
+    stretch: Stretch | None = None,
 ) -> Answer:
     """Solve a setup by statics, or a variant of its problem; `frames` keeps all of the path.
 
-    Without a start it begins at rest.
+    Without a start it begins at rest. A stretch of time takes the place of the control.
 
     Returns
     -------
@@ -120,7 +150,7 @@ def find_equilibrium(
         **asked,
         start=None if start is None else start.positions,
         pressures=None if start is None else start.pressures,
-        control=statics.control,
+        **({"control": statics.control} if stretch is None else stretch.settings),
         memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         frames=frames,
