@@ -111,7 +111,7 @@ if TYPE_CHECKING:
         Union,
         voxelize,
     )
-    from voxsoft.simulation import LoadPath, Result, Simulator, follow, simulate, simulate_many
+    from voxsoft.simulation import Result, Simulator, follow, modes, simulate, simulate_many
     from voxsoft.simulation.check import check
     from voxsoft.simulation.gradient import gradient
     from voxsoft.study import Study
@@ -182,12 +182,12 @@ _HOMES = {
         "voxelize",
     ),
     "voxsoft.simulation": (
-        "LoadPath",
         "Result",
         "Simulator",
         "check",
         "follow",
         "gradient",
+        "modes",
         "simulate",
         "simulate_many",
     ),

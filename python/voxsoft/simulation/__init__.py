@@ -15,6 +15,7 @@ from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
 from voxsoft.simulation.simulator import Simulator
 from voxsoft.simulation.targets import check_targets
+from voxsoft.simulation.vibration import Modes, modes
 
 __all__ = [
     "ChamberState",
@@ -22,6 +23,7 @@ __all__ = [
     "Diagnostic",
     "Ensemble",
     "LoadPath",
+    "Modes",
     "Observation",
     "Over",
     "Overlap",
@@ -41,6 +43,7 @@ __all__ = [
     "find_penetration",
     "follow",
     "gradient",
+    "modes",
     "named_regions",
     "relax",
     "simulate",

@@ -205,6 +205,7 @@ class Result(Shown):
         name: str,
         *,
         probe: str | None = None,
+        base: str | None = None,
         axis: Literal["x", "y", "z"] | None = None,
         cavity: int | str | None = None,
         percentile: float | None = None,
@@ -218,6 +219,8 @@ class Result(Shown):
             A key of :data:`voxsoft.metrics.METRICS`, which says what each needs and takes.
         probe
             Where, for a metric that needs it; may be left out if there is one probe.
+        base
+            Another probe, where the line of a chord begins; may be left out if there are two.
         axis
             The component of a vector; default: its magnitude.
         cavity
@@ -237,6 +240,7 @@ class Result(Shown):
         target = Objective(
             maximize=name,
             probe=probe,
+            base=base,
             axis=axis,
             cavity=cavity,
             percentile=percentile,
@@ -256,7 +260,9 @@ class Result(Shown):
         """The design's objectives and constraints by name, or everything that needs no choice."""
         asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
         values = {name: self._value(target) for name, target in asked.items()}
-        free = {name for name, metric in METRICS.items() if not metric.needs}
+        free = {
+            name for name, metric in METRICS.items() if not metric.needs and not metric.is_costly
+        }
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
 
     @cached_property
@@ -285,6 +291,24 @@ class Result(Shown):
             return float(self.positions[:, 2].min()) - self.design.floor.z
         surface = posed_surface(self.design, name, self.objects.get(name))
         return distance_between(self.mesh, self.positions, surface)
+
+    def compliance_at(self, place: Place) -> NDArray[np.float64]:
+        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N.
+
+        Raises
+        ------
+        SimulationError
+            The tangent is singular there, or does not fit in memory.
+        """
+        from voxsoft.simulation.compliance import compliance  # needs a setup, which makes results
+
+        return compliance(self.design, self.mesh, self.positions, place)
+
+    def natural_frequency(self) -> float:
+        """That of the slowest small vibration, Hz; errors as those of :func:`voxsoft.modes`."""
+        from voxsoft.simulation.vibration import modes  # of results
+
+        return float(modes(self, 1).frequencies[0])
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:

@@ -67,6 +67,7 @@ class Kind:
 
 _ALL: Final = (
     Kind("length", Dimension(1), ("mm", "m", "um")),
+    Kind("curvature", Dimension(-1), ("1/m", "1/mm")),
     Kind("area", Dimension(2), ("mm^2", "m^2")),
     Kind("volume", Dimension(3), ("mL", "mm^3", "m^3")),
     Kind("pressure", Dimension(-1, 1, -2), ("kPa", "Pa", "MPa")),
