@@ -70,6 +70,8 @@ if TYPE_CHECKING:
         Rotation,
         Solver,
         Spring,
+        Strain,
+        Swelling,
         Symmetry,
         Traction,
     )
@@ -140,6 +142,8 @@ _HOMES = {
         "Rotation",
         "Solver",
         "Spring",
+        "Strain",
+        "Swelling",
         "Symmetry",
         "Traction",
     ),

@@ -200,6 +200,7 @@ class Material:
     def with_fibers(self, fibers: Sequence[Fiber]) -> Material:
         """The same with these fibers in place of any others; a lattice has none."""
 
+    def with_swelling(self, stretch: float) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
         """The same with these branches: share of the instantaneous modulus, time in s."""
 

@@ -145,7 +145,7 @@ class BrickModel:
         ------
         SimulationError
             A mesh that is not made of full voxels, or what no outside code is given: a floor,
-            layers, springs, fibers, objects that are free or turn, bonds.
+            layers, springs, fibers, activations, objects that are free or turn, bonds.
 
         Examples
         --------
@@ -168,6 +168,10 @@ class BrickModel:
         for where, _ in attachments_of(setup.design):
             raise SimulationError(
                 where, "cannot be given to an outside code", "compare the design without it"
+            )
+        if setup.design.activations:
+            raise SimulationError(
+                "activations", "cannot be given to an outside code", "compare without them"
             )
         for index, part in enumerate(setup.design.parts):
             if part.fibers:

@@ -1,5 +1,6 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
+from voxsoft.design.activation import Strain, Swelling
 from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
@@ -44,6 +45,8 @@ __all__ = [
     "Rotation",
     "Solver",
     "Spring",
+    "Strain",
+    "Swelling",
     "Symmetry",
     "Traction",
     "require_design",

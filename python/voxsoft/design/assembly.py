@@ -62,7 +62,7 @@ class Assembly:
             What cannot be said in the frame of the design, such as a clamp along an axis that is
             turned.
         """
-        lists = ("layers", "springs", "clamps", "loads")
+        lists = ("layers", "springs", "activations", "clamps", "loads")
         tables = ("shapes", "chambers", "probes")
         found = cls({key: [*getattr(design, key)] for key in lists})
         found.entries |= {key: dict(getattr(design, key)) for key in tables}
@@ -216,6 +216,8 @@ class _Included:
         self._extend(found, "clamps", [self._clamp(*each) for each in enumerate(self.inner.clamps)])
         springs = [self._attachment(*each) for each in enumerate(self.inner.springs)]
         self._extend(found, "springs", springs)
+        activations = [each.replace(part=self._name(each.part)) for each in self.inner.activations]
+        self._extend(found, "activations", activations)
         loads = [(i, load) for i, load in enumerate(self.inner.loads) if _is_of_a_place(load)]
         placed = [self._load(*each) for each in loads]
         self._extend(found, "loads", placed, [index for index, _ in loads])

@@ -21,6 +21,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticSerializationError
 
+from voxsoft.design.activation import AnyActivation
 from voxsoft.design.assembly import (
     Assembly,
     body_problems,
@@ -98,6 +99,8 @@ class Design(Record):
         Thin layers of fabric, film or paper bonded to the body.
     springs
         Springs between places of the body, or to fixed points.
+    activations
+        Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
     symmetry
@@ -149,6 +152,7 @@ class Design(Record):
     bodies: tuple[Body, ...] = Field((), max_length=250)
     layers: tuple[Layer, ...] = Field((), max_length=250)
     springs: tuple[Spring, ...] = ()
+    activations: tuple[AnyActivation, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None

@@ -57,11 +57,17 @@ def dangling_references(
     probes = {*_table(document, "probes"), *known.probes}
     for table in ("objectives", "constraints"):
         for key, target in _table(document, table).items():
-            probe = entry_of(target, "probe")
-            if isinstance(probe, str) and probe not in probes and (included or "." not in probe):
-                yield _unknown((table, key, "probe"), "probe", probe, probes)
+            for option in ("probe", "base"):
+                probe = entry_of(target, option)
+                if (
+                    isinstance(probe, str)
+                    and probe not in probes
+                    and (included or "." not in probe)
+                ):
+                    yield _unknown((table, key, option), "probe", probe, probes)
     if included is not None or not document.get("bodies"):
         yield from _objects(document, known)
+        yield from _activations(document)
     if included is not None:
         yield from _bodies(document, included)
 
@@ -135,6 +141,16 @@ def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorD
             name = entry_of(target, "object")
             if isinstance(name, str) and name not in known:
                 yield _unknown((table, key, "object"), "object", name, known)
+
+
+def _activations(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
+    """Parts that are to swell and are not there; designs of bodies look after their own."""
+    names = [entry_of(part, "name") or entry_of(part, "shape") for _, part in _parts(document)]
+    known = [name for name in names if isinstance(name, str)]
+    for path, activation in _list(document, "activations"):
+        name = entry_of(activation, "part")
+        if isinstance(name, str) and name not in known and "." not in name:
+            yield _unknown((*path, "part"), "part", name, known)
 
 
 def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:

@@ -12,6 +12,7 @@ from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.loads import readings
+from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.start import Start
@@ -23,6 +24,9 @@ DEFAULT_STEPS: Final = 20
 DEFAULT_ARC: Final = 0.2
 DEFAULT_VOLUME_RATIO: Final = 1.5
 
+
+#: In how many steps what swells too much for one does so.
+_SWELLING_STEPS: Final = (4, 16)
 
 #: What to try instead of a control that found no equilibrium, and of one that met a limit.
 _OTHER_WAYS: Final[Mapping[str, str]] = {
@@ -58,6 +62,29 @@ class LoadControl(Statics):
 
     control: Literal["load"] = "load"
     first_step: Share = 1.0
+
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Find the equilibrium under the final loads; what swells does so in steps if need be."""
+        found = super().solve(setup, watch)
+        if found[1].status != Status.NOT_CONVERGED or not setup.design.activations:
+            return found
+        steps = found[1].steps
+        for count in _SWELLING_STEPS:
+            start = None
+            for number in range(1, count + 1):
+                swollen = [each.share(number / count) for each in setup.design.activations]
+                design = setup.design.replace(activations=tuple(swollen))
+                problem = setup.problem.with_materials(core_materials(design, setup.materials))
+                used, report = find_equilibrium(
+                    setup, self, watch.progress, problem, frames=watch.frames, start=start
+                )
+                steps += report.steps
+                if report.status != Status.AT_REST:
+                    break
+                start = Start(report.answer.positions)
+            else:
+                return used, Report(report.answer, report.status, steps)
+        return found
 
 
 class ArcLengthControl(Statics):

@@ -21,12 +21,14 @@ from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation.choice import method_of
 from voxsoft.simulation.equilibrium import LoadControl, Stretch, find_equilibrium
+from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.over import TIME, Over
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.run import ProgressCallback, result_of
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.start import Start
+from voxsoft.simulation.touching import refuse_contact
 
 #: The longest step of a path on which the answer depends, as a part of all of it.
 _LONGEST: Final = 0.05
@@ -176,6 +178,9 @@ def follow(
     setup = Setup.of(timed, refine=solver.refine)
     part = SectorSetup.part_of(setup)
     solved = setup if part is None else part
+    swells = any(each.activations != given.activations for each in designs)
+    if swells:
+        refuse_contact(given, "a path of activations")
     method = method_of(given, solver)
     tolerance = {"tolerance": method.tolerance} if isinstance(method, LoadControl) else {}
     statics = LoadControl(**tolerance)
@@ -185,10 +190,12 @@ def follow(
     share = max(1, len(instants) - 1)
     for number, instant in enumerate(instants):
         started = time.perf_counter()
+        own = core_materials(designs[number], setup.materials) if swells else None
         used, report = find_equilibrium(
             solved,
             statics,
             progress,
+            None if own is None else solved.problem.with_materials(own),
             start=start,
             stretch=Stretch(before, instant, min(1.0, _LONGEST * share)),
         )
@@ -270,7 +277,7 @@ def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, l
     first = designs[0]
     for other in designs[1:]:
         for name in Design.model_fields:
-            if name in (*_ALONG, "parameters", "included"):
+            if name in (*_ALONG, "activations", "parameters", "included"):
                 continue
             if getattr(first, name) != getattr(other, name):
                 raise DesignError(
