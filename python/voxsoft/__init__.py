@@ -71,6 +71,7 @@ if TYPE_CHECKING:
         Solver,
         Spring,
         Symmetry,
+        Tendon,
         Traction,
     )
     from voxsoft.design.discretize import mesh_of, voxels_of
@@ -141,6 +142,7 @@ _HOMES = {
         "Solver",
         "Spring",
         "Symmetry",
+        "Tendon",
         "Traction",
     ),
     "voxsoft.design.discretize": ("mesh_of", "voxels_of"),

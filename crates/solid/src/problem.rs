@@ -148,6 +148,51 @@ impl Problem {
         }
     }
 
+    /// Adds the derivative of the external forces (N) by a number, by which the factors of the loads change as `slope_of`
+    /// says.
+    pub fn add_load_slopes(
+        &self,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+        slope_of: &dyn Fn(&Load) -> f64,
+        forces: &mut [Vec3],
+    ) {
+        let on = self.vertices(positions);
+        for load in &self.loads {
+            let (factor, slope) = (factor_of(load), slope_of(load));
+            load.kind.add_slopes(on, factor, slope, forces);
+        }
+    }
+
+    /// Loads forget the way to where the body was.
+    pub fn start_loads(&self) {
+        self.loads.iter().for_each(|load| load.kind.start());
+    }
+
+    /// Loads take `positions` as the state from which the way goes on.
+    pub fn accept_loads(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
+        let on = self.vertices(positions);
+        for load in &self.loads {
+            load.kind.accept(on, factor_of(load));
+        }
+    }
+
+    /// Whether the answer depends on the way to it.
+    pub fn depends_on_way(&self) -> bool {
+        let contact = self.contact().is_some_and(Contact::depends_on_way);
+        contact || self.loads.iter().any(|load| load.kind.depends_on_way())
+    }
+
+    /// The same where loads keep during a step what would leave them without a potential, if they can.
+    #[must_use]
+    pub fn with_held_loads(mut self) -> Self {
+        for load in &mut self.loads {
+            load.kind = load.kind.held();
+        }
+        self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
+        self
+    }
+
     fn vertices<'a>(&'a self, positions: &'a [Vec3]) -> Vertices<'a> {
         Vertices {
             rest: self.body.rest(),
@@ -160,8 +205,8 @@ impl Problem {
     /// dead loads: its derivative is minus the force, if the loads are conservative.
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
         let on = self.vertices(positions);
-        let work = |load: &Load| factor_of(load) * load.kind.work(on);
-        -self.loads.iter().map(work).sum::<f64>()
+        let potential = |load: &Load| load.kind.potential(on, factor_of(load));
+        self.loads.iter().map(potential).sum()
     }
 
     /// The work (J) of all pressures with a factor for each: what volume control prescribes.

@@ -145,6 +145,7 @@ fn follow(
     if let Some(contact) = problem.contact() {
         contact.start(&positions);
     }
+    problem.start_loads();
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
@@ -240,6 +241,8 @@ impl Path<'_, '_> {
         if let Some(contact) = self.equilibrium.problem.contact() {
             contact.accept(&positions);
         }
+        let problem = self.equilibrium.problem;
+        problem.accept_loads(&positions, &point.factor_of());
         self.positions = positions;
         self.point = point;
         self.points.push(PathPoint {
@@ -284,9 +287,10 @@ impl Path<'_, '_> {
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
-        let longest = match contact {
-            Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
-            _ => 1.0,
+        let longest = if self.equilibrium.problem.depends_on_way() {
+            LONGEST_OF_WAY
+        } else {
+            1.0
         };
         let easy = if contact.is_some() {
             EASY_WITH_CONTACT

@@ -18,6 +18,7 @@ from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.design.target import Constraint, Objective
+from voxsoft.design.tendon import Guide, Tendon
 
 __all__ = [
     "AnyLoad",
@@ -45,6 +46,7 @@ __all__ = [
     "Solver",
     "Spring",
     "Symmetry",
+    "Tendon",
     "Traction",
     "require_design",
     "set_values",
