@@ -21,7 +21,7 @@ use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
-use crate::tendon::{TendonPart, tendons};
+use crate::tendon::{PyTendon, TendonPart, tendons};
 use crate::touch::{BodyPart, BondPart, ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
@@ -559,18 +559,33 @@ impl PyProblem {
         Ok((energy, from_rows(py, &forces[..self.own()])))
     }
 
-    /// Elastic plus external force (N) on every vertex under the final values of all loads.
+    /// Elastic plus external force (N) on every vertex under the final values of all loads. Of tendons those that are `taut`
+    /// stay so.
+    #[pyo3(signature = (positions, taut=vec![]))]
     fn net_forces<'py>(
         &self,
         py: Python<'py>,
         positions: PyReadonlyArray2<'_, f64>,
+        taut: Vec<bool>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        self.problem
-            .add_loads(&positions, f64::INFINITY, &mut forces);
+        let problem = self.problem.with_taut_tendons(&taut);
+        problem.add_loads(&positions, f64::INFINITY, &mut forces);
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
         Ok(from_rows(py, &forces[..self.own()]))
+    }
+
+    /// The tendons at the given positions under the final values of all loads, if they had been pulled there at once.
+    fn tendons(
+        &self,
+        py: Python<'_>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Vec<Py<PyTendon>>> {
+        let positions = self.positions(&positions)?;
+        self.problem.start_loads();
+        let factor_of = |load: &Load| load.history.at(f64::INFINITY);
+        tendons(py, &self.problem, &positions, &factor_of)
     }
 
     /// A trial is a number of steps and the residual above which the run then ends.

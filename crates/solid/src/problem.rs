@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::assembly::{Visitor, check_indices};
@@ -162,6 +163,30 @@ impl Problem {
             let (factor, slope) = (factor_of(load), slope_of(load));
             load.kind.add_slopes(on, factor, slope, forces);
         }
+    }
+
+    /// Whether tendons pull.
+    pub fn has_tendons(&self) -> bool {
+        let mut loads = self.loads.iter();
+        loads.any(|load| matches!(load.kind, LoadKind::Tendon(_)))
+    }
+
+    /// The same where those of the tendons that are `taut` go on as they are where they would become slack; itself where none
+    /// is.
+    pub fn with_taut_tendons(&self, taut: &[bool]) -> Cow<'_, Self> {
+        if !taut.contains(&true) {
+            return Cow::Borrowed(self);
+        }
+        let mut problem = self.clone();
+        let kinds = problem.loads.iter_mut().map(|load| &mut load.kind);
+        let tendons = kinds.filter_map(|kind| match kind {
+            LoadKind::Tendon(tendon) => Some(tendon),
+            _ => None,
+        });
+        for (tendon, _) in tendons.zip(taut).filter(|(_, taut)| **taut) {
+            *tendon = tendon.taut();
+        }
+        Cow::Owned(problem)
     }
 
     /// Loads forget the way to where the body was.

@@ -27,6 +27,9 @@ class Guide(Record):
         The rigid object that carries the point.
     fixed
         A point in space that does not move: a pulley, an eyelet of the frame, the motor.
+    radius
+        Of a ball around a point of a body over which the pull is spread, as by a disc or a knot in
+        the rubber; default: none, as by a channel. An anchor that pulls hard needs one.
 
     Examples
     --------
@@ -42,6 +45,7 @@ class Guide(Record):
     body: Name | None = None
     object: Name | None = None
     fixed: Point | None = None
+    radius: PositiveLength | None = None
 
     @model_validator(mode="after")
     def _is_one_place(self) -> Self:
@@ -55,6 +59,9 @@ class Guide(Record):
         if self.fixed is not None and (self.body or self.object):
             what = 'is "fixed", and what moves carries it'
             raise DesignError("", what, 'write "point", or leave the body or object out')
+        if self.radius is not None and (self.fixed is not None or self.object is not None):
+            what = "is that of a place in a body, and this is rigid"
+            raise DesignError("radius", what, "leave it out")
         return self
 
 
@@ -70,6 +77,8 @@ Waypoint = Annotated[
 
 Drive = Literal["tension", "length", "shortening"]
 _DRIVES: Final[tuple[Drive, ...]] = ("tension", "length", "shortening")
+#: What says how it is pulled.
+PULLS: Final = (*_DRIVES, "history")
 
 
 class Tendon(Record):

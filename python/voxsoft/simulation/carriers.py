@@ -19,6 +19,8 @@ Integers = NDArray[np.int64]
 #: How far outside of its voxels a point may be, in voxels: a true surface lies up to half a voxel
 #: beyond the voxels that stand for it. It is carried by the nearest spot then.
 _REACH: Final = 0.5 * (1 + 1e-6)
+#: Points along the radius of a ball: 4,000 in all.
+_MOST_ACROSS: Final = 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,13 +45,36 @@ class Carrier(ABC):
         """How far a point is from the body [m], infinite where it is far."""
         return self.nearest(point)[2]
 
-    def place(self, point: Floats) -> tuple[Integers, Floats] | None:
-        """What carries a point [m], (3,); None for one that is outside."""
-        vertices, weights, distance = self.nearest(point)
-        if distance > _REACH * self.size:
+    def place(
+        self, point: Floats, radius: float | None = None
+    ) -> tuple[Integers, Floats] | None:
+        """What carries a point [m], (3,); None for one that is outside.
+
+        With a radius [m] it is the mean of what is in a ball around the point, and in the body.
+        """
+        found = [self.nearest(point)]
+        if found[0][2] > _REACH * self.size:
             return None
+        if radius is not None:
+            inside = [self.nearest(each) for each in self._ball(point, radius)]
+            found = [each for each in inside if each[2] == 0.0] or found
+        vertices, which = np.unique(
+            np.concatenate([vertices for vertices, _, _ in found]), return_inverse=True
+        )
+        weights = np.bincount(which, weights=np.concatenate([each[1] for each in found]))
         kept = np.abs(weights) > 1e-12
-        return vertices[kept], weights[kept]
+        return vertices[kept], weights[kept] / len(found)
+
+    def _ball(self, point: Floats, radius: float) -> Floats:
+        """Points evenly in a ball, as close as half an element or a quarter of the radius, (n, 3)."""
+        step = min(0.5 * self.size, 0.25 * radius)
+        count = int(radius / step)
+        if count > _MOST_ACROSS:
+            step, count = radius / _MOST_ACROSS, _MOST_ACROSS
+        along = step * np.arange(-count, count + 1)
+        grid = np.stack(np.meshgrid(along, along, along, indexing="ij"), axis=-1).reshape(-1, 3)
+        within: Floats = point + grid[np.linalg.norm(grid, axis=1) <= radius * (1 + 1e-9)]
+        return within
 
 
 @dataclass(frozen=True, eq=False)

@@ -227,14 +227,16 @@ class Setup:
 
     def _parts(self, *, touching: bool = True) -> _core.ProblemParts:
         parts = _core.ProblemParts()
-        self._give_to(parts)
+        self._give_to(parts, touching=touching)
         if self.touching is not None and touching:
             self.touching.give_to(parts)
         elif self.design.floor is not None:
             parts.floor(self.design.floor.z)
         return parts
 
-    def _give_to(self, parts: _core.ProblemParts | SectorParts) -> None:
+    def _give_to(
+        self, parts: _core.ProblemParts | SectorParts, *, touching: bool = False
+    ) -> None:
         """Hand layers, clamps, loads and what is attached to the problem of the core."""
         for where, layer, found in _numbered("layers", self.design.layers, self.layers):
             _say_where(parts, where)
@@ -259,7 +261,8 @@ class Setup:
             parts.attach(term, json.dumps(elements, allow_nan=False))
         for index, tendon in enumerate(self.tendons):
             _say_where(parts, f"tendons[{index}]")
-            parts.tendon(json.dumps(tendon.core, allow_nan=False), tendon.history)
+            core = tendon.core(objects=touching)
+            parts.tendon(json.dumps(core, allow_nan=False), tendon.history)
 
     @cached_property
     def touching(self) -> Touching | None:

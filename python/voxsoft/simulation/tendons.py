@@ -103,8 +103,31 @@ class ResolvedTendon:
         return float(self.lengths.sum())
 
     @property
-    def core(self) -> dict[str, Any]:
-        """The core's `Tendon`, by the names of its fields, as plain data."""
+    def size(self) -> float:
+        """Its tension [N], or by how much it is drawn in [m], without the history."""
+        return self._drawn_in[0]
+
+    @property
+    def final_factor(self) -> float:
+        """The factor on that in the end."""
+        history = self.history
+        return 1.0 if history is None else history[1][-1]
+
+    def scaled(self, factor: float) -> Tendon:
+        """The tendon of the design with so many times that, and no history."""
+        changes = {"tension": None, "length": None, "shortening": None, "history": None}
+        drive = "tension" if self.tendon.drive == "tension" else "shortening"
+        value = factor * self.final_factor * self.size
+        return self.tendon.replace(**{**changes, drive: value})
+
+    def core(self, *, objects: bool = True) -> dict[str, Any]:
+        """The core's `Tendon`, by the names of its fields, as plain data.
+
+        Parameters
+        ----------
+        objects
+            Whether there are objects that carry points; without them these do not move.
+        """
         drive: dict[str, Any]
         if self.tendon.drive == "tension":
             drive = {"tension": self.tendon.value}
@@ -112,7 +135,12 @@ class ResolvedTendon:
             stiffness = self.tendon.stiffness or STIFF
             drive = {"shortening": {"by": self._drawn_in[0], "stiffness": stiffness}}
         return {
-            "places": list(self.places),
+            "places": [
+                each
+                if objects or "object" not in each
+                else {"vertices": [], "weights": [], "offset": each["point"]}
+                for each in self.places
+            ],
             "lengths": self.lengths.tolist(),
             "drive": drive,
             "friction": self.tendon.friction,
@@ -178,6 +206,7 @@ class _Stop:
     own: Floats
     body: int | None = None
     object: int | None = None
+    radius: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,6 +223,8 @@ class _Way:
             self._stop(guide_of(at), f"{self.where}.through[{index}]")
             for index, at in enumerate(self.tendon.through)
         ]
+        for stop in stops:
+            self._place(stop)  # before what is between them
         self._check_crossing(stops)
         places, points = [], []
         for stop in self._laid_out(stops):
@@ -217,13 +248,14 @@ class _Way:
             return _Stop(where, point, point, object=names.index(guide.object))
         if guide.body is not None:
             number = [body.name for body, _ in self.carriers].index(guide.body)
-            return _Stop(where, self.carriers[number][0].placed(point[None])[0], point, number)
+            placed = self.carriers[number][0].placed(point[None])[0]
+            return _Stop(where, placed, point, number, radius=guide.radius)
         nearest = [
             carrier.distance(body.own(point[None])[0]) for body, carrier in self.carriers
         ]
         number = int(np.argmin(nearest))
         own = self.carriers[number][0].own(point[None])[0]
-        return _Stop(where, point, own, number)
+        return _Stop(where, point, own, number, radius=guide.radius)
 
     def _laid_out(self, stops: Sequence[_Stop]) -> Iterator[_Stop]:
         """All points, those in channels with one in about every voxel."""
@@ -252,7 +284,7 @@ class _Way:
             place = {"vertices": [], "weights": [], "offset": stop.position.tolist()}
             return place, stop.position
         body, carrier = self.carriers[stop.body]
-        found = carrier.place(stop.own)
+        found = carrier.place(stop.own, stop.radius)
         if found is None:
             shown = ", ".join(format_quantity(float(x), "length") for x in stop.own)
             if "] to " in stop.where:
@@ -300,7 +332,7 @@ class _Way:
         if self.tendon.drive == "tension":
             return
         factors = (1.0,) if found.history is None else found.history[1]
-        drawn = found.core["drive"]["shortening"]["by"]
+        drawn = found.size
         least = found.length - max(drawn * factor for factor in factors)
         spanned = sum(
             float(np.linalg.norm(b.position - a.position))
@@ -309,7 +341,8 @@ class _Way:
         )
         if least <= spanned:
             where = f"{self.where}.{self.tendon.drive}"
-            what = f"leaves {format_quantity(least, 'length')} of it"
+            shown = format_quantity(float(f"{least:.6g}"), "length")
+            what = f"leaves {shown if least > 1e-9 else 'nothing'} of it"
             if spanned > 0.0:
                 shown = format_quantity(spanned, "length")
                 what += f", and its fixed points are {shown} apart"

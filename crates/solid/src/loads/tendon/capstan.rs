@@ -1,46 +1,62 @@
 //! How the tension falls along a tendon: Coulomb friction at every bend, with a memory of what it was.
 //!
 //! At a bend of angle `θ` the tensions on both sides have a ratio between `e^{−μθ}` and `e^{μθ}` (Euler and Eytelwein).
-//! From the pulled end on, a segment keeps the tension that it had (the bend sticks) unless that leaves this cone; then
-//! the line slides over the bend, and the tension is on the side of the cone that is nearest. So a line that is pulled
-//! has `T₁ e^{−μΣθ}` along it, and one that is let go afterwards first loses its tension near the pulled end.
+//! As long as the line sticks at a bend, what is beyond it is a line of its own that stretches from the state that was
+//! accepted last. The tension that this gives is the tension after the bend unless it leaves the cone; then the line
+//! slides over the bend, and the tension is on the side of the cone that is nearest: a return mapping, from the pulled
+//! end on. So a line that is pulled, or whose way becomes shorter, has `T₁ e^{−μΣθ}` along it; one that is let go
+//! afterwards first loses its tension near the pulled end; and one whose way becomes longer has `T₁ e^{μΣθ}`.
+
+/// What the tension after a bend follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Hold {
+    /// The line slides: it is so many times the one before.
+    Slides(f64),
+    /// The line sticks: it follows what is beyond.
+    Sticks,
+    /// It has a ratio to the first one that does not change.
+    Fixed,
+}
 
 /// Tensions along a tendon, and what keeps each.
 #[derive(Debug)]
 pub(super) struct Tensions {
     /// Of each segment, from the pulled end on, in N.
     pub values: Vec<f64>,
-    /// For each bend by what the tension before it is multiplied to give the one after it; `None` where it sticks.
-    pub ratios: Vec<Option<f64>>,
+    /// What happens at each bend.
+    pub holds: Vec<Hold>,
     /// The derivative of each value by the first one.
     pub by_first: Vec<f64>,
 }
 
 impl Tensions {
-    /// From the tension at the pulled end, what the tensions were, and `e^{−μθ}` for each bend.
-    pub fn from_first(first: f64, before: &[f64], decays: &[f64]) -> Self {
+    /// From the tension at the pulled end, the tension that each segment would have if its bend stuck, and `e^{−μθ}` for
+    /// each bend.
+    pub fn from_first(first: f64, sticking: &[f64], decays: &[f64]) -> Self {
         let mut found = Self {
             values: vec![first],
-            ratios: Vec::with_capacity(decays.len()),
+            holds: Vec::with_capacity(decays.len()),
             by_first: vec![1.0],
         };
         let mut here = first;
         let mut slope = 1.0;
         for (bend, decay) in decays.iter().enumerate() {
             let (low, high) = (here * decay, here / decay);
-            let kept = before.get(bend + 1).copied().unwrap_or(0.0);
-            let ratio = if kept <= low {
-                Some(*decay)
+            let kept = sticking[bend + 1];
+            let hold = if kept <= low {
+                Hold::Slides(*decay)
             } else if kept >= high {
-                Some(1.0 / decay)
+                Hold::Slides(1.0 / decay)
             } else {
-                None
+                Hold::Sticks
             };
-            here = ratio.map_or(kept, |ratio| ratio * here);
-            slope *= ratio.unwrap_or(0.0);
+            (here, slope) = match hold {
+                Hold::Slides(ratio) => (ratio * here, ratio * slope),
+                _ => (kept, 0.0),
+            };
             found.values.push(here);
             found.by_first.push(slope);
-            found.ratios.push(ratio);
+            found.holds.push(hold);
         }
         found
     }
@@ -50,15 +66,20 @@ impl Tensions {
     ///
     /// All tensions grow with the first one, at the least as much as the first does, so that the stretch is a function
     /// that grows and is linear in pieces: Newton's method, kept between bounds, ends in one of them.
-    pub fn from_stretch(stretch: f64, compliances: &[f64], before: &[f64], decays: &[f64]) -> Self {
+    pub fn from_stretch(
+        stretch: f64,
+        compliances: &[f64],
+        sticking: &[f64],
+        decays: &[f64],
+    ) -> Self {
         let all = |tensions: &[f64]| -> f64 {
             let pairs = tensions.iter().zip(compliances);
             pairs.map(|(a, b)| a * b).sum()
         };
         let (mut low, mut high) = (0.0, stretch.max(0.0) / compliances[0]);
-        let mut first = before.first().copied().unwrap_or(0.0).clamp(low, high);
+        let mut first = sticking[0].clamp(low, high);
         loop {
-            let found = Self::from_first(first, before, decays);
+            let found = Self::from_first(first, sticking, decays);
             let missing = stretch - all(&found.values);
             if missing > 0.0 {
                 low = first;
@@ -80,6 +101,20 @@ impl Tensions {
     }
 }
 
+impl Tensions {
+    /// The same as if the line could push: the tensions go on as they are where it becomes slack.
+    pub fn taut(self, stretch: f64, compliances: &[f64], sticking: &[f64], decays: &[f64]) -> Self {
+        // Which way it slides there is seen at a tension of nearly nothing.
+        let first = self.values[0].max(f64::MIN_POSITIVE / f64::EPSILON);
+        let mut found = Self::from_first(first, sticking, decays);
+        let pairs = found.by_first.iter().zip(compliances);
+        let compliance: f64 = pairs.map(|(a, b)| a * b).sum();
+        let first = stretch / compliance;
+        found.values = found.by_first.iter().map(|slope| slope * first).collect();
+        found
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -94,7 +129,12 @@ mod tests {
         let found = Tensions::from_first(8.0, &[0.0; 5], &decays());
         let expected = 8.0 * libm::exp(-0.3 * 4.0 * std::f64::consts::FRAC_PI_6);
         assert!((found.values[4] / expected - 1.0).abs() < 1e-14);
-        assert!(found.ratios.iter().all(|ratio| *ratio == Some(decays()[0])));
+        assert!(
+            found
+                .holds
+                .iter()
+                .all(|hold| *hold == Hold::Slides(decays()[0]))
+        );
     }
 
     #[test]
@@ -102,10 +142,10 @@ mod tests {
         let pulled = Tensions::from_first(8.0, &[0.0; 5], &decays()).values;
         let eased = Tensions::from_first(6.0, &pulled, &decays());
         let ratio = decays()[0];
-        assert_eq!(eased.ratios[0], None);
+        assert_eq!(eased.holds[0], Hold::Sticks);
         assert_eq!(eased.values[1..], pulled[1..]);
         let more = Tensions::from_first(5.0, &pulled, &decays());
-        assert_eq!(more.ratios[..2], [Some(1.0 / ratio), None]);
+        assert_eq!(more.holds[..2], [Hold::Slides(1.0 / ratio), Hold::Sticks]);
         assert_eq!(more.values[2..], pulled[2..]);
         let again = Tensions::from_first(8.0, &more.values, &decays());
         for (a, b) in again.values.iter().zip(&pulled) {

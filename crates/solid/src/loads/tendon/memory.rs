@@ -12,8 +12,15 @@ impl Memory {
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    pub fn with_tensions<T>(&self, act: impl FnOnce(&[f64]) -> T) -> T {
-        self.look(|kept| act(&kept.0))
+    /// Those that were there; where nothing was accepted yet, none and the lengths at rest.
+    pub fn tensions_and_lengths(&self, rest: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        self.look(|(tensions, lengths)| {
+            if lengths.is_empty() {
+                (vec![0.0; rest.len()], rest.to_vec())
+            } else {
+                (tensions.clone(), lengths.clone())
+            }
+        })
     }
 
     pub fn keep(&self, tensions: Vec<f64>, lengths: Vec<f64>) {

@@ -16,7 +16,7 @@ use crate::ProblemError;
 use crate::assembly::{Visitor, check_indices};
 use crate::vector::{Vec3, axpy};
 
-use capstan::Tensions;
+use capstan::{Hold, Tensions};
 use memory::Memory;
 pub use polyline::Place;
 use polyline::Polyline;
@@ -53,7 +53,14 @@ pub struct Tendon {
     /// Whether ratios of tensions are those that were there.
     #[serde(skip)]
     held: bool,
+    /// Whether it goes on as it is where it would become slack.
+    #[serde(skip)]
+    taut: bool,
 }
+
+/// What sticks without a stiffness of its own stretches by a ten-thousandth under the whole tension: what it then moves
+/// before it slides is less than a tendon's length is known to.
+const STICK: f64 = 1e4;
 
 /// A tendon at some positions.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,6 +91,7 @@ impl Tendon {
             friction,
             memory: Memory::default(),
             held: false,
+            taut: false,
         }
     }
 
@@ -117,6 +125,14 @@ impl Tendon {
         }
     }
 
+    /// The same as if it could push where it would become slack, for differences around a state in which it is taut.
+    pub fn taut(&self) -> Self {
+        Self {
+            taut: true,
+            ..self.clone()
+        }
+    }
+
     fn has_friction(&self) -> bool {
         self.friction > 0.0
     }
@@ -143,15 +159,20 @@ impl Tendon {
     fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
         let decay = |angle: f64| libm::exp(-self.friction * angle);
         let decays: Vec<f64> = line.angles().into_iter().map(decay).collect();
-        self.memory.with_tensions(|before| match self.drive {
+        let sticking = self.sticking(line);
+        match self.drive {
             Drive::Tension(tension) => {
                 let first = (factor * tension).max(0.0);
-                (Tensions::from_first(first, before, &decays), 0.0)
+                (Tensions::from_first(first, &sticking, &decays), 0.0)
             }
             Drive::Shortening { by, stiffness } => {
                 let stretch = line.length() - self.material(by, factor);
                 let compliances = self.compliances(stiffness);
-                let found = Tensions::from_stretch(stretch, &compliances, before, &decays);
+                let found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                if self.taut {
+                    let taut = found.taut(stretch, &compliances, &sticking, &decays);
+                    return (taut, stiffness);
+                }
                 let elastic = if found.values[0] > 0.0 {
                     stiffness
                 } else {
@@ -159,7 +180,28 @@ impl Tendon {
                 };
                 (found, elastic)
             }
-        })
+        }
+    }
+
+    /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
+    /// the anchor has become longer since, over the compliance of the line that lies on it.
+    fn sticking(&self, line: &Polyline) -> Vec<f64> {
+        let (mut tensions, then) = self.memory.tensions_and_lengths(&self.lengths);
+        let (mut longer, mut material) = (0.0, 0.0);
+        for segment in (1..self.lengths.len()).rev() {
+            longer += line.lengths[segment] - then[segment];
+            material += self.lengths[segment];
+            tensions[segment] += self.stick_stiffness() / material * longer;
+        }
+        tensions
+    }
+
+    /// `EA` of what sticks, in N.
+    fn stick_stiffness(&self) -> f64 {
+        match self.drive {
+            Drive::Tension(tension) => STICK * tension,
+            Drive::Shortening { stiffness, .. } => stiffness,
+        }
     }
 
     /// With the ratios `r` that were there: `T₁ = EA (Σ r_j (l_j − l_j⁰) + L⁰ − M)/Σ r_j m_j`, which is that of
@@ -181,7 +223,7 @@ impl Tendon {
         };
         let found = Tensions {
             values: ratios.iter().map(|ratio| ratio * first).collect(),
-            ratios: vec![None; ratios.len() - 1],
+            holds: vec![Hold::Fixed; ratios.len() - 1],
             by_first: ratios,
         };
         (found, elastic)
@@ -229,18 +271,27 @@ impl Tendon {
         let width = 3 * self.places.len();
         // With the first tension as it is.
         let mut rows = vec![vec![0.0; width]];
-        for (bend, ratio) in tensions.ratios.iter().enumerate() {
+        for (bend, hold) in tensions.holds.iter().enumerate() {
             let mut row = vec![0.0; width];
-            if let Some(ratio) = ratio {
-                row.clone_from(&rows[bend]);
-                row.iter_mut().for_each(|x| *x *= ratio);
-                let sense = if *ratio > 1.0 { 1.0 } else { -1.0 };
-                let by_angle = sense * self.friction * tensions.values[bend + 1];
-                for (point, slope) in line.angle_slopes(bend).into_iter().enumerate() {
-                    for (axis, slope) in slope.into_iter().enumerate() {
-                        row[3 * (bend + point) + axis] += by_angle * slope;
+            match hold {
+                Hold::Slides(ratio) => {
+                    row.clone_from(&rows[bend]);
+                    row.iter_mut().for_each(|x| *x *= ratio);
+                    let sense = if *ratio > 1.0 { 1.0 } else { -1.0 };
+                    let by_angle = sense * self.friction * tensions.values[bend + 1];
+                    for (point, slope) in line.angle_slopes(bend).into_iter().enumerate() {
+                        for (axis, slope) in slope.into_iter().enumerate() {
+                            row[3 * (bend + point) + axis] += by_angle * slope;
+                        }
                     }
                 }
+                Hold::Sticks => {
+                    let beyond = bend + 1..self.lengths.len();
+                    let material: f64 = self.lengths[beyond.clone()].iter().sum();
+                    let weight = self.stick_stiffness() / material;
+                    beyond.for_each(|segment| line.add_length_slope(segment, weight, &mut row));
+                }
+                Hold::Fixed => {}
             }
             rows.push(row);
         }
@@ -250,16 +301,13 @@ impl Tendon {
         // The stretch Σ l_j − M stays Σ c_j T_j, of which the first tension takes what the others do not.
         let compliances = self.compliances(*elastic);
         let mut first = vec![0.0; width];
-        for (segment, along) in line.along.iter().enumerate() {
+        for segment in 0..self.lengths.len() {
             let weight = if self.held && self.has_friction() {
                 tensions.by_first[segment]
             } else {
                 1.0
             };
-            for axis in 0..3 {
-                first[3 * segment + axis] -= weight * along[axis];
-                first[3 * (segment + 1) + axis] += weight * along[axis];
-            }
+            line.add_length_slope(segment, weight, &mut first);
         }
         for (row, compliance) in rows.iter().zip(&compliances) {
             for (sum, x) in first.iter_mut().zip(row) {

@@ -78,6 +78,14 @@ impl Polyline {
         [before, sub(after, before), scale(-1.0, after)]
     }
 
+    /// Adds `weight` times the derivative of the length of a segment by all points.
+    pub fn add_length_slope(&self, segment: usize, weight: f64, row: &mut [f64]) {
+        for (axis, along) in self.along[segment].into_iter().enumerate() {
+            row[3 * segment + axis] -= weight * along;
+            row[3 * (segment + 1) + axis] += weight * along;
+        }
+    }
+
     /// `(1 − u uᵀ)/l` of a segment: the second derivative of its length by where one end is from the other.
     pub fn curvature(&self, segment: usize) -> [[f64; 3]; 3] {
         let (u, length) = (self.along[segment], self.lengths[segment]);
