@@ -73,6 +73,7 @@ if TYPE_CHECKING:
         Strain,
         Swelling,
         Symmetry,
+        Tendon,
         Traction,
     )
     from voxsoft.design.discretize import mesh_of, voxels_of
@@ -145,6 +146,7 @@ _HOMES = {
         "Strain",
         "Swelling",
         "Symmetry",
+        "Tendon",
         "Traction",
     ),
     "voxsoft.design.discretize": ("mesh_of", "voxels_of"),

@@ -226,3 +226,32 @@ def test_the_command_writes_the_table_and_the_picture(tmp_path):
     assert (folder / "path.png").stat().st_size > 1000
     shown = CliRunner().invoke(app, arguments)
     assert "Along loads[1].value[2]" in shown.output
+
+
+def test_tendons_pull_along_a_path_and_friction_makes_a_loop():
+    def arm(friction):
+        bends = [("40 mm", 0, "10 mm"), ("80 mm", 0, "10 mm")]
+        return vs.Design(
+            name="arm",
+            voxel_size=5 * mm,
+            parts=[vs.Part(shape=vs.Box(size=("80 mm", "10 mm", "10 mm")), material=RUBBER)],
+            clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+            tendons=[
+                vs.Tendon(
+                    name="flexor",
+                    through=[{"fixed": (0, 0, "10 mm")}, *bends],
+                    tension="0.2 N",
+                    friction=friction,
+                )
+            ],
+            probes={"tip": vs.Probe(x=("80 mm", "80 mm"))},
+        )
+
+    smooth = vs.follow(arm(0.0), "tendons[0].tension=0..0.2..0 N/9")
+    assert smooth.status == "ok", smooth.message
+    rise = np.array([result.probes["tip"][2] for result in smooth.results])
+    assert rise[4] == pytest.approx(vs.simulate(arm(0.0)).probes["tip"][2], rel=1e-5)
+    assert rise[2] == pytest.approx(rise[6], rel=1e-6)
+    rough = vs.follow(arm(0.5), "tendons[0].tension=0..0.2..0 N/9")
+    there, back = (rough.results[number].probes["tip"][2] for number in (2, 6))
+    assert there < 0.98 * rise[2] < 0.98 * back

@@ -5,6 +5,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{LiveStatus, Look, Status};
 
 use crate::contact_field::PyContactField;
+use crate::tendon::PyTendon;
 use crate::touch::{PyContact, PyObjectPose, PyTouchHistory};
 
 /// How a solution ended.
@@ -75,6 +76,8 @@ pub struct PyAnswer {
     pub objects: Vec<Py<PyObjectPose>>,
     /// What touched what, and where the objects were, at the times of the records.
     pub history: Option<Py<PyTouchHistory>>,
+    /// In the order of the design.
+    pub tendons: Vec<Py<PyTendon>>,
     /// Contact over the vertices of the body; none where the problem has none.
     pub contact_field: Option<Py<PyContactField>>,
 }

@@ -21,6 +21,7 @@ use crate::errors::to_python;
 use crate::gate;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
+use crate::tendon::{PyTendon, TendonPart, tendons};
 use crate::touch::{BodyPart, BondPart, ObjectPart, TouchParts, Touching, Way};
 use crate::watch::{Watch, collect_sensors};
 
@@ -89,6 +90,7 @@ pub struct PyProblemParts {
     block_axes: Vec<Mat3>,
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
+    tendons: Vec<(TendonPart, History)>,
 }
 
 #[pymethods]
@@ -174,6 +176,16 @@ impl PyProblemParts {
         let attachment = serde_json::from_str(&tagged)
             .map_err(|error| PyValueError::new_err(format!("{kind}: {error}")))?;
         self.attachments.push(attachment);
+        Ok(())
+    }
+
+    /// A tendon, as JSON; tendons come after all other loads.
+    #[pyo3(signature = (tendon, history=None))]
+    fn tendon(&mut self, tendon: &str, history: HistoryArgument) -> PyResult<()> {
+        let part = serde_json::from_str(tendon)
+            .map_err(|error| PyValueError::new_err(format!("tendon: {error}")))?;
+        let history = self::history(history).map_err(to_python)?;
+        self.tendons.push((part, history));
         Ok(())
     }
 
@@ -467,6 +479,7 @@ impl PyProblem {
             block_axes: Vec::new(),
             attachments: Vec::new(),
             touch: None,
+            tendons: Vec::new(),
         };
         let mut mesh = self.mesh.clone();
         let mut parts = parts;
@@ -546,18 +559,33 @@ impl PyProblem {
         Ok((energy, from_rows(py, &forces[..self.own()])))
     }
 
-    /// Elastic plus external force (N) on every vertex under the final values of all loads.
+    /// Elastic plus external force (N) on every vertex under the final values of all loads. Of tendons those that are `taut`
+    /// stay so.
+    #[pyo3(signature = (positions, taut=vec![]))]
     fn net_forces<'py>(
         &self,
         py: Python<'py>,
         positions: PyReadonlyArray2<'_, f64>,
+        taut: Vec<bool>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let positions = self.positions(&positions)?;
         let mut forces = vec![[0.0; 3]; positions.len()];
-        self.problem
-            .add_loads(&positions, f64::INFINITY, &mut forces);
+        let problem = self.problem.with_taut_tendons(&taut);
+        problem.add_loads(&positions, f64::INFINITY, &mut forces);
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
         Ok(from_rows(py, &forces[..self.own()]))
+    }
+
+    /// The tendons at the given positions under the final values of all loads, if they had been pulled there at once.
+    fn tendons(
+        &self,
+        py: Python<'_>,
+        positions: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Vec<Py<PyTendon>>> {
+        let positions = self.positions(&positions)?;
+        self.problem.start_loads();
+        let factor_of = |load: &Load| load.history.at(f64::INFINITY);
+        tendons(py, &self.problem, &positions, &factor_of)
     }
 
     /// A trial is a number of steps and the residual above which the run then ends.
@@ -644,11 +672,17 @@ impl PyProblem {
         parts: &PyProblemParts,
     ) -> PyResult<Self> {
         let materials: Vec<Material> = materials.into_iter().map(|given| given.0).collect();
-        let (mut clamps, loads, floor) = (parts.clamps.clone(), parts.loads.clone(), parts.floor);
+        let (mut clamps, mut loads, floor) =
+            (parts.clamps.clone(), parts.loads.clone(), parts.floor);
+        let first = mesh.vertices.len();
+        for (tendon, history) in parts.tendons.iter().cloned() {
+            let load = tendon.load(history, parts.touch.as_ref(), first);
+            let missing = || PyValueError::new_err("tendon: there is no such object");
+            loads.push(load.ok_or_else(missing)?);
+        }
         let touch = parts.touch.clone();
         gate::run_owned(py, move |_| {
             let mut mesh = mesh;
-            let first = mesh.vertices.len();
             if let Some(parts) = &touch {
                 parts.add_frames(&mut mesh, &mut clamps);
             }
@@ -776,6 +810,7 @@ impl PyProblem {
             contacts,
             objects,
             history: None,
+            tendons: tendons(py, &self.problem, positions, factor_of)?,
             contact_field,
         })
     }

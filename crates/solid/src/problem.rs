@@ -1,3 +1,4 @@
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::assembly::{Visitor, check_indices};
@@ -148,6 +149,75 @@ impl Problem {
         }
     }
 
+    /// Adds the derivative of the external forces (N) by a number, by which the factors of the loads change as `slope_of`
+    /// says.
+    pub fn add_load_slopes(
+        &self,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+        slope_of: &dyn Fn(&Load) -> f64,
+        forces: &mut [Vec3],
+    ) {
+        let on = self.vertices(positions);
+        for load in &self.loads {
+            let (factor, slope) = (factor_of(load), slope_of(load));
+            load.kind.add_slopes(on, factor, slope, forces);
+        }
+    }
+
+    /// Whether tendons pull.
+    pub fn has_tendons(&self) -> bool {
+        let mut loads = self.loads.iter();
+        loads.any(|load| matches!(load.kind, LoadKind::Tendon(_)))
+    }
+
+    /// The same where those of the tendons that are `taut` go on as they are where they would become slack; itself where none
+    /// is.
+    pub fn with_taut_tendons(&self, taut: &[bool]) -> Cow<'_, Self> {
+        if !taut.contains(&true) {
+            return Cow::Borrowed(self);
+        }
+        let mut problem = self.clone();
+        let kinds = problem.loads.iter_mut().map(|load| &mut load.kind);
+        let tendons = kinds.filter_map(|kind| match kind {
+            LoadKind::Tendon(tendon) => Some(tendon),
+            _ => None,
+        });
+        for (tendon, _) in tendons.zip(taut).filter(|(_, taut)| **taut) {
+            *tendon = tendon.taut();
+        }
+        Cow::Owned(problem)
+    }
+
+    /// Loads forget the way to where the body was.
+    pub fn start_loads(&self) {
+        self.loads.iter().for_each(|load| load.kind.start());
+    }
+
+    /// Loads take `positions` as the state from which the way goes on.
+    pub fn accept_loads(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
+        let on = self.vertices(positions);
+        for load in &self.loads {
+            load.kind.accept(on, factor_of(load));
+        }
+    }
+
+    /// Whether the answer depends on the way to it.
+    pub fn depends_on_way(&self) -> bool {
+        let contact = self.contact().is_some_and(Contact::depends_on_way);
+        contact || self.loads.iter().any(|load| load.kind.depends_on_way())
+    }
+
+    /// The same where loads keep during a step what would leave them without a potential, if they can.
+    #[must_use]
+    pub fn with_held_loads(mut self) -> Self {
+        for load in &mut self.loads {
+            load.kind = load.kind.held();
+        }
+        self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
+        self
+    }
+
     fn vertices<'a>(&'a self, positions: &'a [Vec3]) -> Vertices<'a> {
         Vertices {
             rest: self.body.rest(),
@@ -160,8 +230,8 @@ impl Problem {
     /// dead loads: its derivative is minus the force, if the loads are conservative.
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
         let on = self.vertices(positions);
-        let work = |load: &Load| factor_of(load) * load.kind.work(on);
-        -self.loads.iter().map(work).sum::<f64>()
+        let potential = |load: &Load| load.kind.potential(on, factor_of(load));
+        self.loads.iter().map(potential).sum()
     }
 
     /// The work (J) of all pressures with a factor for each: what volume control prescribes.

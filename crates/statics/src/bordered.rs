@@ -160,13 +160,15 @@ impl<C: Constraint> Search for Bordered<C> {
 pub(crate) fn load_direction(
     equilibrium: &Equilibrium<'_>,
     positions: &[Vec3],
+    point: Point,
     unknown: Unknown,
 ) -> Vec<f64> {
     let mut forces = vec![[0.0; 3]; positions.len()];
     let one = unknown.direction();
+    let (factor_of, slope_of) = (point.factor_of(), one.factor_of());
     equilibrium
         .problem
-        .add_scaled_loads(positions, &one.factor_of(), &mut forces);
+        .add_load_slopes(positions, &factor_of, &slope_of, &mut forces);
     equilibrium.system.gather(&forces)
 }
 
@@ -221,7 +223,7 @@ pub(crate) fn assemble(
     } = place;
     equilibrium.iterations += 1;
     let problem = equilibrium.problem;
-    let mut direction = load_direction(equilibrium, positions, unknown);
+    let mut direction = load_direction(equilibrium, positions, point, unknown);
     let mut residual = residual.to_vec();
     let velocity = clamp_velocity(problem, point, unknown);
     let (system, factor_of) = (&mut equilibrium.system, point.factor_of());

@@ -157,9 +157,10 @@ impl Walk {
         Self {
             unit: 0.05 * size * (equilibrium.system.size() as f64).sqrt(),
             length,
-            longest: match contact {
-                Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
-                _ => f64::INFINITY,
+            longest: if equilibrium.problem.depends_on_way() {
+                LONGEST_OF_WAY
+            } else {
+                f64::INFINITY
             },
             easy: contact.map_or(EASY, |_| EASY_WITH_CONTACT),
             highest: path.point.pressure,

@@ -84,7 +84,9 @@ impl IterativeSystem {
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
         let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.bricks().len();
-        let local = body.attached().all(Term::is_local);
+        let loads = problem.loads().iter();
+        let local = body.attached().all(Term::is_local)
+            && loads.map(|load| &load.kind).all(|kind| kind.is_local());
         if !whole || !local || !problem.is_conservative() {
             return Ok(None);
         }

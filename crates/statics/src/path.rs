@@ -130,6 +130,9 @@ fn follow(
     if let Some(contact) = problem.contact().filter(|_| !goes_on) {
         contact.start(&positions);
     }
+    if !goes_on {
+        problem.start_loads();
+    }
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
@@ -232,6 +235,8 @@ impl Path<'_, '_> {
         if let Some(contact) = self.equilibrium.problem.contact() {
             contact.accept(&positions);
         }
+        let problem = self.equilibrium.problem;
+        problem.accept_loads(&positions, &point.factor_of());
         self.positions = positions;
         self.point = point;
         self.points.push(PathPoint {
@@ -276,10 +281,10 @@ impl Path<'_, '_> {
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
-        let longest = match (contact, settings.control) {
-            (Some(contact), Control::Time { longest, .. }) if contact.depends_on_way() => longest,
-            (Some(contact), _) if contact.depends_on_way() => LONGEST_OF_WAY,
-            _ => 1.0,
+        let longest = match settings.control {
+            _ if !self.equilibrium.problem.depends_on_way() => 1.0,
+            Control::Time { longest, .. } => longest,
+            _ => LONGEST_OF_WAY,
         };
         let easy = if contact.is_some() {
             EASY_WITH_CONTACT

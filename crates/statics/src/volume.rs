@@ -46,8 +46,12 @@ impl Constraint for Volume {
     }
 
     fn gradient(&self, equilibrium: &Equilibrium<'_>, positions: &[Vec3]) -> (Vec<f64>, f64) {
-        // The gradient of the weighted volume is the load direction itself.
-        (load_direction(equilibrium, positions, self.unknown()), 0.0)
+        // The gradient of the weighted volume is the load direction itself, whatever the factor.
+        let one = Point::all(1.0);
+        (
+            load_direction(equilibrium, positions, one, self.unknown()),
+            0.0,
+        )
     }
 
     fn has_potential(&self, problem: &Problem) -> bool {
@@ -110,11 +114,11 @@ impl Growth {
     ) -> Ending {
         let contact = path.equilibrium.problem.contact();
         let (mut longest, mut scale) = (1.0 / f64::from(steps.max(1)), 1);
-        if let Some(contact) = contact {
+        if contact.is_some() {
             scale = WITH_CONTACT;
-            if contact.depends_on_way() {
-                longest = longest.min(LONGEST_OF_WAY);
-            }
+        }
+        if path.equilibrium.problem.depends_on_way() {
+            longest = longest.min(LONGEST_OF_WAY);
         }
         let shortest = match contact {
             Some(_) => settings.least_step.min(longest),
@@ -220,7 +224,7 @@ fn stability(equilibrium: &mut Equilibrium<'_>, positions: &[Vec3], point: Point
     let Ok(factor) = equilibrium.system.factor(0.0) else {
         return (false, false);
     };
-    let gradient = load_direction(equilibrium, positions, Unknown::Pressure);
+    let gradient = load_direction(equilibrium, positions, point, Unknown::Pressure);
     let mut along = gradient.clone();
     let solved =
         equilibrium

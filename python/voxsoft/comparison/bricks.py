@@ -165,7 +165,8 @@ class BrickModel:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
             )
-        for where, _ in attachments_of(setup.design):
+        tendons = [f"tendons[{index}]" for index in range(len(setup.design.tendons))]
+        for where in [*(where for where, _ in attachments_of(setup.design)), *tendons]:
             raise SimulationError(
                 where, "cannot be given to an outside code", "compare the design without it"
             )

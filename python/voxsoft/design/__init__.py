@@ -19,6 +19,7 @@ from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.design.target import Constraint, Objective
+from voxsoft.design.tendon import Guide, Tendon
 
 __all__ = [
     "AnyLoad",
@@ -48,6 +49,7 @@ __all__ = [
     "Strain",
     "Swelling",
     "Symmetry",
+    "Tendon",
     "Traction",
     "require_design",
     "set_values",

@@ -19,6 +19,7 @@ from voxsoft.design.mirrored import mirrored_part, mirrored_region
 from voxsoft.design.part import Part
 from voxsoft.design.references import operand_names
 from voxsoft.design.region import Region
+from voxsoft.design.tendon import Guide, Tendon
 from voxsoft.errors import DesignError, ErrorDetail, VoxSoftError
 from voxsoft.records import Record
 from voxsoft.shapes import Shape
@@ -62,7 +63,7 @@ class Assembly:
             What cannot be said in the frame of the design, such as a clamp along an axis that is
             turned.
         """
-        lists = ("layers", "springs", "activations", "clamps", "loads")
+        lists = ("layers", "springs", "tendons", "activations", "clamps", "loads")
         tables = ("shapes", "chambers", "probes")
         found = cls({key: [*getattr(design, key)] for key in lists})
         found.entries |= {key: dict(getattr(design, key)) for key in tables}
@@ -216,6 +217,8 @@ class _Included:
         self._extend(found, "clamps", [self._clamp(*each) for each in enumerate(self.inner.clamps)])
         springs = [self._attachment(*each) for each in enumerate(self.inner.springs)]
         self._extend(found, "springs", springs)
+        tendons = [self._tendon(*each) for each in enumerate(self.inner.tendons)]
+        self._extend(found, "tendons", tendons)
         activations = [each.replace(part=self._name(each.part)) for each in self.inner.activations]
         self._extend(found, "activations", activations)
         loads = [(i, load) for i, load in enumerate(self.inner.loads) if _is_of_a_place(load)]
@@ -321,6 +324,22 @@ class _Included:
             return x, y, z
 
         placed = attachment.placed(lambda region: self._region(region, f"springs[{index}]"), point)
+        return placed if placed.name is None else placed.replace(name=self._name(placed.name))
+
+    def _tendon(self, index: int, tendon: Tendon) -> Tendon:
+        where = f"tendons[{index}]"
+
+        def guide(at: Guide) -> Guide:
+            if at.object is not None:
+                what = f'{where}: runs over the object "{at.object}", and objects are left out'
+                raise DesignError(f"{self.where}.design", what, "write the tendon in this design")
+            if at.fixed is not None:
+                frame, position = self._frame
+                return at.replace(fixed=tuple((frame @ at.fixed + position).tolist()))
+            own = tuple((self._mirror @ np.array(at.point)).tolist())
+            return at.replace(body=self._of_body(at.body, where), point=own)
+
+        placed = tendon.placed(guide)
         return placed if placed.name is None else placed.replace(name=self._name(placed.name))
 
     def _load(self, index: int, load: Record) -> Record:

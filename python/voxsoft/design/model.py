@@ -52,6 +52,7 @@ from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.symmetry import Symmetry, symmetry_problems
 from voxsoft.design.target import Constraint, Objective
+from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, ErrorDetail, FormulaError, VoxSoftError
 from voxsoft.materials import AnyMaterial, Material, is_card_path, load_card
 from voxsoft.records import FrozenDict, Record, Table, plain_error, plain_values, problems_of
@@ -99,6 +100,8 @@ class Design(Record):
         Thin layers of fabric, film or paper bonded to the body.
     springs
         Springs between places of the body, or to fixed points.
+    tendons
+        Lines through the body that are pulled.
     activations
         Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
@@ -152,6 +155,7 @@ class Design(Record):
     bodies: tuple[Body, ...] = Field((), max_length=250)
     layers: tuple[Layer, ...] = Field((), max_length=250)
     springs: tuple[Spring, ...] = ()
+    tendons: tuple[Tendon, ...] = Field((), max_length=250)
     activations: tuple[AnyActivation, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()

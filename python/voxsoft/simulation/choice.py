@@ -115,7 +115,7 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
         return controlled
     if any(each.is_free for each in design.objects):
         return timed
-    if has_contact(design) and not dynamic:
+    if (has_contact(design) or design.tendons) and not dynamic:
         return LoadControl
     if dynamic:
         return timed
@@ -165,6 +165,8 @@ def unused_settings(
     kind = kind_of(design, solver)
     if has_contact(design):
         yield from _without_contact(design, solver, kind)
+    elif design.assembled.tendons:
+        yield from _without_tendons(solver, kind)
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
@@ -181,8 +183,7 @@ def unused_settings(
 def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
     """Find what a design with contact cannot be solved by."""
     if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
-        title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
-        what = f"means {title}, and contact is found by statics and by implicit dynamics"
+        what = f"means {_explicit(kind)}, and contact is found by statics and by implicit dynamics"
         hint = 'write method = "statics", or method = "dynamics"'
         yield ErrorDetail("solver", what, f"{hint}, or leave contact and objects out")
     if kind is ArcLengthControl:
@@ -196,10 +197,27 @@ def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iter
         if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:
             what = "relaxes, and implicit dynamics with contact knows no viscosity"
             yield ErrorDetail(f"parts[{index}].material", what, "leave prony out of it")
+    yield from _only_explicit(solver, kind, "contact")
+
+
+def _without_tendons(solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
+    """Find what a design with tendons cannot be solved by: each substep would be too short."""
+    if kind not in {*STATICS, *DYNAMICS} or solver.method == "xpbd":
+        what = f"means {_explicit(kind)}, and tendons are pulled by statics and implicit dynamics"
+        hint = 'write method = "statics", or method = "dynamics"'
+        yield ErrorDetail("solver", what, f"{hint}, or leave tendons out")
+    yield from _only_explicit(solver, kind, "tendons")
+
+
+def _explicit(kind: type[Method]) -> str:
+    return f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
+
+
+def _only_explicit(solver: Solver, kind: type[Method], what: str) -> Iterator[ErrorDetail]:
     for name in ("substeps", "iterations", "retardation"):
         if kind in DYNAMICS and getattr(solver, name) is not None:
-            what = "is a setting of explicit dynamics, which knows no contact"
-            yield ErrorDetail(f"solver.{name}", what, f"leave {name} out")
+            problem = f"is a setting of explicit dynamics, which knows no {what}"
+            yield ErrorDetail(f"solver.{name}", problem, f"leave {name} out")
 
 
 def check_solver(

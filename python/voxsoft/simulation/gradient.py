@@ -31,6 +31,8 @@ Floats = NDArray[np.float64]
 
 #: Clamped vertices may be this part of a voxel away from where the design wants them.
 _MISPLACED: Final = 1e-6
+#: A tendon that slides all along has the tensions of one pulled at once, but for rounding.
+_STUCK: Final = 1e-9
 
 
 def gradient(
@@ -99,8 +101,10 @@ def gradient(
         _check_slope(target)
     names = [parameters] if isinstance(parameters, str) else list(parameters)
     setup = Setup(result.design, result.mesh)
-    base = _State(setup, result.positions)
+    taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
+    base = _State(setup, result.positions, taut)
     _check_positions(base)
+    _check_way(setup, result)
     varied = [_variation(base, name) for name in names]
     if has_contact(result.design):
         with readable_errors(len(base.positions)):
@@ -129,7 +133,18 @@ def _slope(state: LoadedState, target: Target) -> Floats:
 
 @dataclass(frozen=True)
 class _State(LoadedState):
-    """A setup and positions at which its forces and metrics are looked at."""
+    """A setup and positions at which its forces and metrics are looked at.
+
+    A stiff tendon has stretched by so little that a difference would leave it slack: those that are
+    `taut` stay so.
+    """
+
+    taut: tuple[bool, ...] = ()
+
+    @cached_property
+    def net_forces(self) -> Floats:
+        """Elastic plus external force on every vertex [N], (n, 3)."""
+        return self.setup.problem.net_forces(self.positions, [*self.taut])
 
     @cached_property
     def _cut(self) -> CutVoxels:
@@ -221,7 +236,7 @@ def _state_with(base: _State, design: Design, name: str) -> _State:
             "move the ends of the clamp's region away from half a voxel",
         )
     shift = held_positions(setup) - held_positions(before)
-    return _State(setup, base.positions + np.where(held, shift, 0.0))
+    return _State(setup, base.positions + np.where(held, shift, 0.0), base.taut)
 
 
 def _shapes(design: Design) -> tuple[object, ...]:
@@ -285,6 +300,20 @@ def _check_state(result: Result) -> None:
         )
     if not has_contact(result.design):
         check_residual(result.residual)
+
+
+def _check_way(setup: Setup, result: Result) -> None:
+    """Tendons must slide all along: where one sticks, its tension depends on the way there."""
+    fresh = setup.problem.tendons(result.positions) if setup.tendons else ()
+    for tendon, found in zip(setup.tendons, fresh, strict=True):
+        came = result.tendons[tendon.name].tensions
+        if np.abs(came - found.tensions).max() > _STUCK * max(came.max(), *found.tensions):
+            raise SimulationError(
+                "gradient",
+                f'the tendon "{tendon.name}" sticks where it bends, and derivatives of what '
+                "depends on the way there are not known yet",
+                "set its friction to zero, or use a sampler without gradients",
+            )
 
 
 def _check_positions(state: _State) -> None:

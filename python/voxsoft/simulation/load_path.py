@@ -17,6 +17,7 @@ import numpy as np
 
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.history import History
+from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation.choice import method_of
@@ -33,7 +34,7 @@ from voxsoft.simulation.touching import refuse_contact
 #: The longest step of a path on which the answer depends, as a part of all of it.
 _LONGEST: Final = 0.05
 #: What may change along a path: the rest of the design says what is meshed.
-_ALONG: Final = ("loads", "clamps", "objects")
+_ALONG: Final = ("loads", "tendons", "clamps", "objects")
 #: Values are the same to this part of the largest.
 _SAME: Final = 1e-9
 
@@ -264,6 +265,7 @@ def _with_histories(
 
     return design.replace(
         loads=tuple(load.replace(history=of_load(load.history)) for load in design.loads),
+        tendons=tuple(each.replace(history=of_load(each.history)) for each in design.tendons),
         clamps=tuple(moved(clamp) for clamp in design.clamps),
         objects=tuple(moved(each) for each in design.objects),
     )
@@ -300,10 +302,14 @@ def _one_of(variants: list[Any], instants: list[float], where: str, over: Over) 
     """One load, clamp or object with the values of all variants as its history."""
     if all(each == variants[0] for each in variants):
         return _at_the_end(variants[0])
-    if hasattr(variants[0], "value"):
-        sizes = [np.atleast_1d(np.asarray(each.value, dtype=float)) for each in variants]
+    if not hasattr(variants[0], "motion"):
+        size = variants[0].drive if isinstance(variants[0], Tendon) else "value"
+        values = [getattr(each, size) for each in variants]
+        if any(value is None for value in values):
+            raise DesignError(over.key, f"changes how {where} is pulled", f"vary its {size}")
+        sizes = [np.atleast_1d(np.asarray(value, dtype=float)) for value in values]
         largest, factors = _factors(sizes, where, over)
-        same = [each.replace(value=variants[largest].value) for each in variants]
+        same = [each.replace(**{size: values[largest]}) for each in variants]
         history = _history(variants, factors, instants)
         joined = [each.replace(history=history) for each in same]
     else:

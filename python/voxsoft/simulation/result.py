@@ -27,6 +27,7 @@ from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
+from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState, Pose
 from voxsoft.simulation.warnings import warnings_at
 from voxsoft.units import format_percent, format_quantity
@@ -129,6 +130,8 @@ class Result(Shown):
         Where the rigid objects are, by name.
     contact_field
         Pressure, friction and gap at each vertex; None for a design without contact.
+    tendons
+        How hard each tendon pulls and how long it is, by name.
     """
 
     design: Design
@@ -159,6 +162,7 @@ class Result(Shown):
     contacts: tuple[ContactState, ...] = ()
     objects: Mapping[str, Pose] = field(default_factory=dict)
     contact_field: ContactField | None = field(default=None, repr=False)
+    tendons: Mapping[str, TendonState] = field(default_factory=dict)
 
     @property
     def history(self) -> NoReturn:
@@ -378,6 +382,7 @@ class Result(Shown):
             ],
             "contacts": [contact.summary() for contact in self.contacts],
             "objects": {name: pose.summary() for name, pose in self.objects.items()},
+            "tendons": {name: found.summary() for name, found in self.tendons.items()},
             "penetration": self.penetration.depth,
             "warnings": [warning.summary() for warning in self.warnings],
             "reaction": list(self.reaction),

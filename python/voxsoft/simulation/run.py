@@ -229,6 +229,10 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         contacts=() if touching is None else touching.contacts(answer.contacts),
         objects={} if touching is None else touching.poses(answer.objects),
         contact_field=ContactField.of(answer.contact_field),
+        tendons={
+            tendon.name: tendon.state(found)
+            for tendon, found in zip(setup.tendons, answer.tendons, strict=True)
+        },
     )
 
 

@@ -151,6 +151,10 @@ class SectorParts:
         """Refuse what is attached to the body."""
         self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
 
+    def tendon(self, _tendon: str, _history: CoreHistory) -> None:
+        """Refuse a tendon."""
+        self._refuse("is not known to planes of symmetry yet", "leave it out, or the planes")
+
     def _check_along_planes(self, vector: Floats, what: str) -> None:
         for plane in self._sector.planes:
             if abs(vector[plane.axis]) > _ROUNDING * max(float(np.abs(vector).max()), 1e-300):

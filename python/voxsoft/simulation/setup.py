@@ -38,6 +38,7 @@ from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.targets import check_targets
+from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (
     CoreHistory,
     Touching,
@@ -135,7 +136,7 @@ class Setup:
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
-        _ = self.places, self.attached
+        _ = self.places, self.attached, self.tendons
         if self.touching is not None:
             _ = self.touching.surfaces
         if self.sector is not None:
@@ -226,14 +227,14 @@ class Setup:
 
     def _parts(self, *, touching: bool = True) -> _core.ProblemParts:
         parts = _core.ProblemParts()
-        self._give_to(parts)
+        self._give_to(parts, touching=touching)
         if self.touching is not None and touching:
             self.touching.give_to(parts)
         elif self.design.floor is not None:
             parts.floor(self.design.floor.z)
         return parts
 
-    def _give_to(self, parts: _core.ProblemParts | SectorParts) -> None:
+    def _give_to(self, parts: _core.ProblemParts | SectorParts, *, touching: bool = False) -> None:
         """Hand layers, clamps, loads and what is attached to the problem of the core."""
         for where, layer, found in _numbered("layers", self.design.layers, self.layers):
             _say_where(parts, where)
@@ -256,6 +257,10 @@ class Setup:
         for term, elements in self.attached.items():
             _say_where(parts, term)
             parts.attach(term, json.dumps(elements, allow_nan=False))
+        for index, tendon in enumerate(self.tendons):
+            _say_where(parts, f"tendons[{index}]")
+            core = tendon.core(objects=touching)
+            parts.tendon(json.dumps(core, allow_nan=False), tendon.history)
 
     @cached_property
     def touching(self) -> Touching | None:
@@ -296,6 +301,17 @@ class Setup:
         for where, attachment in attachments_of(self.design):
             found.setdefault(attachment.term, []).append(attachment.element(self, where))
         return found
+
+    @cached_property
+    def tendons(self) -> tuple[ResolvedTendon, ...]:
+        """The tendons of the design on the mesh.
+
+        Raises
+        ------
+        DesignError
+            One that leaves the body, crosses itself, or is too short to reach its ends.
+        """
+        return resolve_tendons(self)
 
     def place(self, probe: Probe, where: str) -> Place:
         """What a point or region is on the mesh; `where` is the place an error names."""

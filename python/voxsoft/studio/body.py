@@ -32,6 +32,7 @@ from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
 from voxsoft.studio.objects import not_live, objects_of, touches_live
 from voxsoft.studio.surface import Surface
+from voxsoft.studio.tendons import pulled, tendon_attachments, tendon_loads
 from voxsoft.units import Point, format_quantity, parse
 from voxsoft.voxels import Voxels
 
@@ -120,7 +121,8 @@ class StudioBody:
     @cached_property
     def loads(self) -> list[events.BodyLoad]:
         """Each load with the range of its slider."""
-        return [_load(self.setup, index) for index in range(len(self.setup.design.loads))]
+        own = [_load(self.setup, index) for index in range(len(self.setup.design.loads))]
+        return own + tendon_loads(self.setup)
 
     @property
     def load_values(self) -> list[float]:
@@ -143,14 +145,15 @@ class StudioBody:
         return self.setup.problem if touches_live(self.setup) else self.setup.problem_alone
 
     def under(self, factors: Sequence[float]) -> Setup:
-        """The same body with each load so many times as large."""
+        """The same body with each load, and each tendon after them, so many times as large."""
         if all(factor == 1.0 for factor in factors):
             return self.setup
         design = self.setup.design
         loads = tuple(
-            scaled(load, factor) for load, factor in zip(design.loads, factors, strict=True)
+            scaled(load, factor) for load, factor in zip(design.loads, factors, strict=False)
         )
-        return Setup(design.replace(loads=loads), self.mesh)
+        tendons = pulled(self.setup, factors[len(loads) :])
+        return Setup(design.replace(loads=loads, tendons=tendons), self.mesh)
 
     def report(self) -> CheckReport:
         """What the checks report of it; slower than the mesh itself."""
@@ -197,7 +200,7 @@ class StudioBody:
             probes=self._probes(),
             parts=_parts(setup.design),
             layers=_layers(setup, self.surface),
-            attachments=_attachments(setup, self.surface),
+            attachments=_attachments(setup, self.surface) + tendon_attachments(setup, self.surface),
             objects=self.objects,
             not_live=self.not_live,
             touches=has_contact(setup.design),

@@ -7,6 +7,7 @@ from pathlib import Path
 import msgspec
 
 from voxsoft import files
+from voxsoft.design.tendon import PULLS
 from voxsoft.files.designs import read_document
 from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import DesignSource, RunSpec
@@ -48,13 +49,20 @@ def keep(shown: Shown, base: Path, folder: Path) -> str:
 
 
 def with_live_loads(shown: Shown) -> str:
-    """The text of the design with the loads as they are, where they were changed by hand."""
+    """The text of the design with loads and tendons as they are, where they were changed by hand."""
     text = shown.text
-    live = shown.body.under(shown.factors).design.document["loads"]
-    written = read_document(text, shown.name).get("loads", [])
-    for index, factor in enumerate(shown.factors):
-        if factor != 1.0 and index < len(written):
-            text = with_value(text, ["loads", index, "value"], live[index]["value"])
+    live = shown.body.under(shown.factors).design.document
+    written = read_document(text, shown.name)
+    loads, count = written.get("loads", []), len(shown.body.setup.design.loads)
+    for index, factor in enumerate(shown.factors[:count]):
+        if factor != 1.0 and index < len(loads):
+            text = with_value(text, ["loads", index, "value"], live["loads"][index]["value"])
+    tendons = written.get("tendons", [])
+    for index, factor in enumerate(shown.factors[count:]):
+        if factor != 1.0 and index < len(tendons):
+            table = live["tendons"][index]
+            for key in {*PULLS} & {*table, *tendons[index]}:
+                text = with_value(text, ["tendons", index, key], table.get(key))
     return text
 
 

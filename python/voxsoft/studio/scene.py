@@ -64,10 +64,13 @@ def _triple(point: NDArray[np.float64]) -> Triple:
 
 
 def _controls(body: StudioBody) -> list[tuple[float, list[int]]]:
-    """The value of each load of the design, and the core's loads that it became: one a cavity."""
+    """The value of each load and tendon, and the core's loads that it became: one a cavity."""
     controls, first = [], 0
-    for load, value in zip(body.setup.loads, body.load_values, strict=True):
+    for load, value in zip(body.setup.loads, body.load_values, strict=False):
         count = len(load.actions)
         controls.append((value, list(range(first, first + count))))
         first += count
+    for value in body.load_values[len(controls) :]:  # those of tendons, one load each
+        controls.append((value, [first]))
+        first += 1
     return controls

@@ -91,6 +91,23 @@ impl Check<'_> {
 
     fn proportion(&self) -> Outcome {
         let one = self.forces(self.on, 1.0);
+        let slopes = |factor| {
+            let mut slopes = vec![[0.0; 3]; self.on.positions.len()];
+            self.load.add_slopes(self.on, factor, 2.0, &mut slopes);
+            slopes
+        };
+        let change = plus(
+            &self.forces(self.on, 1.0 + STEP),
+            -1.0,
+            &self.forces(self.on, 1.0 - STEP),
+        );
+        let off = size(&plus(&slopes(1.0), -1.0 / STEP, &change));
+        let made_of = size(&one) + size(&slopes(1.0));
+        self.subject
+            .at_most(Law::Proportion, "slopes less forces", off, SLACK * made_of)?;
+        if !self.load.is_proportional() {
+            return Ok(());
+        }
         let off = size(&plus(&self.forces(self.on, -2.5), 2.5, &one));
         let allowed = ROUNDING * size(&one);
         self.subject

@@ -3,6 +3,7 @@
 mod gravity;
 mod point_forces;
 mod pressure;
+mod tendon;
 
 use std::fmt::Debug;
 
@@ -15,6 +16,7 @@ use crate::{History, Mirrored, ProblemError};
 pub use gravity::Gravity;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
+pub use tendon::{Drive, Place, Tendon, TendonState};
 
 /// The vertices that a load acts on: where they were at rest, where they are now, and what they weigh.
 #[derive(Debug, Clone, Copy)]
@@ -40,6 +42,37 @@ pub trait ExternalForce: Debug + Send + Sync {
     /// Minus the potential in J: its derivative by positions is the force, if the load is conservative.
     /// Dead loads have done no work on a body at rest.
     fn work(&self, on: Vertices<'_>) -> f64;
+
+    /// The potential in J under a factor, up to a constant.
+    fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
+        -factor * self.work(on)
+    }
+
+    /// Adds `weight` times the derivative of the forces by the factor, in N.
+    fn add_slopes(&self, on: Vertices<'_>, _factor: f64, weight: f64, forces: &mut [Vec3]) {
+        self.add_forces(on, weight, forces);
+    }
+
+    /// Whether the forces are the factor times those at a factor of one.
+    fn is_proportional(&self) -> bool {
+        true
+    }
+
+    /// Whether its stiffness joins vertices that are near each other, so that multigrid on the voxels converges with it.
+    fn is_local(&self) -> bool {
+        true
+    }
+
+    /// Whether the forces depend on the way to where the body is. What it remembers is that of all copies of a problem.
+    fn depends_on_way(&self) -> bool {
+        false
+    }
+
+    /// Forgets the way.
+    fn start(&self) {}
+
+    /// Takes a state as the one from which the way goes on.
+    fn accept(&self, _on: Vertices<'_>, _factor: f64) {}
 
     /// Whether the forces depend on where the body is. Those of a dead load do not.
     fn follows(&self) -> bool {
@@ -83,6 +116,18 @@ pub enum LoadKind {
     Forces(PointForces),
     /// A pressure on a surface that crosses planes of symmetry.
     MirroredPressure(Mirrored<Pressure>),
+    /// The pull of a tendon.
+    Tendon(Tendon),
+}
+
+impl LoadKind {
+    /// The same where what has no potential, but would if something of it stayed as it is, stays during a step.
+    pub(crate) fn held(&self) -> Self {
+        match self {
+            Self::Tendon(tendon) => Self::Tendon(tendon.held()),
+            other => other.clone(),
+        }
+    }
 }
 
 impl std::ops::Deref for LoadKind {
@@ -94,6 +139,7 @@ impl std::ops::Deref for LoadKind {
             Self::Pressure(pressure) => pressure,
             Self::Forces(forces) => forces,
             Self::MirroredPressure(pressure) => pressure,
+            Self::Tendon(tendon) => tendon,
         }
     }
 }
@@ -113,6 +159,12 @@ impl From<Pressure> for LoadKind {
 impl From<Mirrored<Pressure>> for LoadKind {
     fn from(pressure: Mirrored<Pressure>) -> Self {
         Self::MirroredPressure(pressure)
+    }
+}
+
+impl From<Tendon> for LoadKind {
+    fn from(tendon: Tendon) -> Self {
+        Self::Tendon(tendon)
     }
 }
 

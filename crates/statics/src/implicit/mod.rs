@@ -187,6 +187,7 @@ impl From<FactorError> for Failure {
 impl Implicit {
     /// Starts at the rest pose.
     pub fn new(problem: Problem, settings: ImplicitSettings) -> Self {
+        let problem = problem.with_held_loads();
         let state = State::at_rest(problem.body());
         Self {
             hands: Hands::new(&problem),
@@ -376,6 +377,7 @@ impl Implicit {
         if let Some(contact) = self.problem.contact() {
             contact.start(&self.state.positions);
         }
+        self.problem.start_loads();
         self.value = Value::default();
         self.carried.fill(false);
         if let Some(viscosity) = &mut self.viscosity {

@@ -1,7 +1,7 @@
 //! One step: its end is found, and taken if it is sound.
 
 use voxsoft_solid::vector::{Vec3, scale, sub};
-use voxsoft_solid::{Ask, Breakdown, Damping, State};
+use voxsoft_solid::{Ask, Breakdown, Damping, Load, State};
 
 use super::objective::{Goal, Value};
 use super::scheme::Start;
@@ -118,6 +118,8 @@ impl Implicit {
             self.go_back();
             return Err(Failure::Lost);
         }
+        let factor_of = |load: &Load| load.history.at(next.time);
+        self.problem.accept_loads(&next.positions, &factor_of);
         self.touching = touching;
         self.hands.follow(ANCHOR_SPEED * step * self.shortest_edge);
         if let Some(viscosity) = &mut self.viscosity {

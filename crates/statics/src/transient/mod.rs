@@ -27,7 +27,9 @@ use std::sync::Arc;
 
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Damping, Observer, Problem, Progress, Solution, Solver, State, Status, Term};
+use voxsoft_solid::{
+    Damping, Load, Observer, Problem, Progress, Solution, Solver, State, Status, Term,
+};
 
 use self::energy::Now;
 use crate::equilibrium::{Equilibrium, Failure};
@@ -106,6 +108,7 @@ impl Transient {
         if let Some(contact) = problem.contact() {
             contact.start(&start.positions);
         }
+        problem.start_loads();
         let means = Means {
             solver: LinearSolver::Auto,
             memory: self.memory,
@@ -304,6 +307,8 @@ impl Run<'_> {
         if let Some(contact) = self.problem.contact() {
             contact.accept(&next.positions);
         }
+        let factor_of = |load: &Load| load.history.at(next.time);
+        self.problem.accept_loads(&next.positions, &factor_of);
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }

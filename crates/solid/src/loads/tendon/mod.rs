@@ -1,0 +1,575 @@
+//! Tendons: lines that run through points of bodies, pulled at one end and anchored at the other.
+//!
+//! A tendon of length `L(x)` that is pulled by a tension `T` has the potential `T L`. One that is drawn in is a spring of
+//! the stiffness `EA` over its length without tension `M`, which the puller makes shorter: `EA (L − M)²/2M`, and nothing
+//! where it is slack. With friction the tension falls along it ([`capstan`]), and there is no potential; the tangent is
+//! exact, and not symmetric. Dynamics holds the ratios of the tensions during a step, between which there is a potential.
+
+mod capstan;
+mod memory;
+mod polyline;
+
+use serde::{Deserialize, Serialize};
+
+use super::{ExternalForce, Vertices, check_finite};
+use crate::ProblemError;
+use crate::assembly::{Visitor, check_indices};
+use crate::vector::{Vec3, axpy};
+
+use capstan::{Hold, Tensions};
+use memory::Memory;
+pub use polyline::Place;
+use polyline::Polyline;
+
+/// What pulls a tendon, at a factor of one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drive {
+    /// A tension in N.
+    Tension(f64),
+    /// It is drawn in by a length, and stretches.
+    Shortening {
+        /// In m; negative pays it out.
+        by: f64,
+        /// `EA` in N.
+        stiffness: f64,
+    },
+}
+
+/// A line through places, pulled at the first and anchored at the last.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tendon {
+    /// Two or more.
+    pub places: Vec<Place>,
+    /// The length of each segment without tension, before it is drawn in, in m.
+    pub lengths: Vec<f64>,
+    /// What pulls it.
+    pub drive: Drive,
+    /// `μ` at every bend.
+    pub friction: f64,
+    /// The tensions that were there, which friction remembers.
+    #[serde(skip)]
+    memory: Memory,
+    /// Whether ratios of tensions are those that were there.
+    #[serde(skip)]
+    held: bool,
+    /// Whether it goes on as it is where it would become slack.
+    #[serde(skip)]
+    taut: bool,
+}
+
+/// What sticks without a stiffness of its own stretches by a ten-thousandth under the whole tension: what it then moves
+/// before it slides is less than a tendon's length is known to.
+const STICK: f64 = 1e4;
+
+/// A tendon at some positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TendonState {
+    /// The tension in each segment, from the pulled end on, in N.
+    pub tensions: Vec<f64>,
+    /// Where it runs, in m.
+    pub length: f64,
+    /// How much longer it is than the way it runs, in m; zero for one that is taut.
+    pub slack: f64,
+}
+
+/// Positions, and the tensions there.
+struct Pulled {
+    line: Polyline,
+    tensions: Tensions,
+    /// How the tension of the first segment changes with all lengths and ratios: `EA`, or zero where it is given.
+    elastic: f64,
+}
+
+impl Tendon {
+    /// One that has not been pulled yet.
+    pub fn new(places: Vec<Place>, lengths: Vec<f64>, drive: Drive, friction: f64) -> Self {
+        Self {
+            places,
+            lengths,
+            drive,
+            friction,
+            memory: Memory::default(),
+            held: false,
+            taut: false,
+        }
+    }
+
+    /// The tensions at some positions, under a factor.
+    pub fn state(&self, positions: &[Vec3], factor: f64) -> TendonState {
+        let pulled = self.pulled(positions, factor);
+        let length = pulled.line.length();
+        TendonState {
+            slack: match self.drive {
+                Drive::Tension(_) => 0.0,
+                Drive::Shortening { by, .. } => (self.material(by, factor) - length).max(0.0),
+            },
+            length,
+            tensions: pulled.tensions.values,
+        }
+    }
+
+    /// Its points at some positions, in m.
+    pub fn points(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let points = self.places.iter().map(|place| place.position(positions));
+        points.collect()
+    }
+
+    /// The same, with a memory of its own, with the ratios of tensions held as they were accepted last: it has a potential
+    /// then.
+    pub fn held(&self) -> Self {
+        Self {
+            held: true,
+            memory: Memory::default(),
+            ..self.clone()
+        }
+    }
+
+    /// The same as if it could push where it would become slack, for differences around a state in which it is taut.
+    pub fn taut(&self) -> Self {
+        Self {
+            taut: true,
+            ..self.clone()
+        }
+    }
+
+    fn has_friction(&self) -> bool {
+        self.friction > 0.0
+    }
+
+    /// Its length in m without tension when it is drawn in.
+    fn material(&self, by: f64, factor: f64) -> f64 {
+        self.lengths.iter().sum::<f64>() - factor * by
+    }
+
+    fn pulled(&self, positions: &[Vec3], factor: f64) -> Pulled {
+        let line = Polyline::new(&self.places, positions);
+        let (tensions, elastic) = if self.held && self.has_friction() {
+            self.held_tensions(&line, factor)
+        } else {
+            self.tensions(&line, factor)
+        };
+        Pulled {
+            line,
+            tensions,
+            elastic,
+        }
+    }
+
+    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
+        let decay = |angle: f64| libm::exp(-self.friction * angle);
+        let decays: Vec<f64> = line.angles().into_iter().map(decay).collect();
+        let sticking = self.sticking(line);
+        match self.drive {
+            Drive::Tension(tension) => {
+                let first = (factor * tension).max(0.0);
+                (Tensions::from_first(first, &sticking, &decays), 0.0)
+            }
+            Drive::Shortening { by, stiffness } => {
+                let stretch = line.length() - self.material(by, factor);
+                let compliances = self.compliances(stiffness);
+                let found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                if self.taut {
+                    let taut = found.taut(stretch, &compliances, &sticking, &decays);
+                    return (taut, stiffness);
+                }
+                let elastic = if found.values[0] > 0.0 {
+                    stiffness
+                } else {
+                    0.0
+                };
+                (found, elastic)
+            }
+        }
+    }
+
+    /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
+    /// the anchor has become longer since, over the compliance of the line that lies on it.
+    fn sticking(&self, line: &Polyline) -> Vec<f64> {
+        let (mut tensions, then) = self.memory.tensions_and_lengths(&self.lengths);
+        let (mut longer, mut material) = (0.0, 0.0);
+        for segment in (1..self.lengths.len()).rev() {
+            longer += line.lengths[segment] - then[segment];
+            material += self.lengths[segment];
+            tensions[segment] += self.stick_stiffness() / material * longer;
+        }
+        tensions
+    }
+
+    /// `EA` of what sticks, in N.
+    fn stick_stiffness(&self) -> f64 {
+        match self.drive {
+            Drive::Tension(tension) => STICK * tension,
+            Drive::Shortening { stiffness, .. } => stiffness,
+        }
+    }
+
+    /// With the ratios `r` that were there: `T₁ = EA (Σ r_j (l_j − l_j⁰) + L⁰ − M)/Σ r_j m_j`, which is that of
+    /// [`Tensions::from_stretch`] at the lengths `l⁰` that were there.
+    fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
+        let (ratios, then) = self.memory.ratios_and_lengths(self.lengths.len());
+        let (first, elastic) = match self.drive {
+            Drive::Tension(tension) => ((factor * tension).max(0.0), 0.0),
+            Drive::Shortening { by, stiffness } => {
+                let then = then.unwrap_or_else(|| line.lengths.clone());
+                let mut stretch = then.iter().sum::<f64>() - self.material(by, factor);
+                for ((ratio, now), then) in ratios.iter().zip(&line.lengths).zip(&then) {
+                    stretch += ratio * (now - then);
+                }
+                let compliance = dot_of(&ratios, &self.compliances(stiffness));
+                let first = (stretch / compliance).max(0.0);
+                (first, if first > 0.0 { stiffness } else { 0.0 })
+            }
+        };
+        let found = Tensions {
+            values: ratios.iter().map(|ratio| ratio * first).collect(),
+            holds: vec![Hold::Fixed; ratios.len() - 1],
+            by_first: ratios,
+        };
+        (found, elastic)
+    }
+
+    fn compliances(&self, stiffness: f64) -> Vec<f64> {
+        self.lengths
+            .iter()
+            .map(|length| length / stiffness)
+            .collect()
+    }
+
+    /// Whether segments pull without knowing of each other.
+    fn is_in_pieces(&self) -> bool {
+        let free = !self.has_friction() || self.held;
+        free && matches!(self.drive, Drive::Tension(_))
+    }
+
+    /// The vertices of places, each once.
+    fn vertices_of(places: &[Place]) -> Vec<u32> {
+        let mut all: Vec<u32> = places.iter().flat_map(|p| &p.vertices).copied().collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn add_along(&self, pulled: &Pulled, pulls: &[f64], forces: &mut [Vec3]) {
+        let pairs = self.places.windows(2).zip(&pulled.line.along).zip(pulls);
+        for ((ends, along), pull) in pairs {
+            for (place, sign) in ends.iter().zip([1.0, -1.0]) {
+                for (vertex, weight) in place.vertices.iter().zip(&place.weights) {
+                    axpy(&mut forces[*vertex as usize], sign * weight * pull, *along);
+                }
+            }
+        }
+    }
+
+    /// The derivatives of all tensions by the points, a row of `3 points` for each segment.
+    fn tension_slopes(&self, pulled: &Pulled) -> Vec<Vec<f64>> {
+        let Pulled {
+            line,
+            tensions,
+            elastic,
+        } = pulled;
+        let width = 3 * self.places.len();
+        // With the first tension as it is.
+        let mut rows = vec![vec![0.0; width]];
+        for (bend, hold) in tensions.holds.iter().enumerate() {
+            let mut row = vec![0.0; width];
+            match hold {
+                Hold::Slides(ratio) => {
+                    row.clone_from(&rows[bend]);
+                    row.iter_mut().for_each(|x| *x *= ratio);
+                    let sense = if *ratio > 1.0 { 1.0 } else { -1.0 };
+                    let by_angle = sense * self.friction * tensions.values[bend + 1];
+                    for (point, slope) in line.angle_slopes(bend).into_iter().enumerate() {
+                        for (axis, slope) in slope.into_iter().enumerate() {
+                            row[3 * (bend + point) + axis] += by_angle * slope;
+                        }
+                    }
+                }
+                Hold::Sticks => {
+                    let beyond = bend + 1..self.lengths.len();
+                    let material: f64 = self.lengths[beyond.clone()].iter().sum();
+                    let weight = self.stick_stiffness() / material;
+                    beyond.for_each(|segment| line.add_length_slope(segment, weight, &mut row));
+                }
+                Hold::Fixed => {}
+            }
+            rows.push(row);
+        }
+        if *elastic == 0.0 {
+            return rows;
+        }
+        // The stretch Σ l_j − M stays Σ c_j T_j, of which the first tension takes what the others do not.
+        let compliances = self.compliances(*elastic);
+        let mut first = vec![0.0; width];
+        for segment in 0..self.lengths.len() {
+            let weight = if self.held && self.has_friction() {
+                tensions.by_first[segment]
+            } else {
+                1.0
+            };
+            line.add_length_slope(segment, weight, &mut first);
+        }
+        for (row, compliance) in rows.iter().zip(&compliances) {
+            for (sum, x) in first.iter_mut().zip(row) {
+                *sum -= compliance * x;
+            }
+        }
+        let all = dot_of(&tensions.by_first, &compliances);
+        for (row, slope) in rows.iter_mut().zip(&tensions.by_first) {
+            for (x, first) in row.iter_mut().zip(&first) {
+                *x += slope * first / all;
+            }
+        }
+        rows
+    }
+
+    /// The stiffness of all segments together, on their points.
+    fn stiffness(&self, pulled: &Pulled) -> Vec<f64> {
+        let width = 3 * self.places.len();
+        let mut matrix = vec![0.0; width * width];
+        let slopes = self.tension_slopes(pulled);
+        for (segment, row) in slopes.iter().enumerate() {
+            add_curvature(&mut matrix, width, 3 * segment, pulled, segment);
+            let along = pulled.line.along[segment];
+            for axis in 0..3 {
+                for (end, sign) in [(segment, -1.0), (segment + 1, 1.0)] {
+                    let start = (3 * end + axis) * width;
+                    for (entry, slope) in matrix[start..start + width].iter_mut().zip(row) {
+                        *entry += sign * along[axis] * slope;
+                    }
+                }
+            }
+        }
+        matrix
+    }
+}
+
+/// Adds `T ∇²l` of a segment whose first point has the rows from `at` on.
+fn add_curvature(matrix: &mut [f64], width: usize, at: usize, pulled: &Pulled, segment: usize) {
+    let tension = pulled.tensions.values[segment];
+    let block = pulled.line.curvature(segment);
+    for (i, row) in block.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            for (a, b, sign) in [(0, 0, 1.0), (0, 3, -1.0), (3, 0, -1.0), (3, 3, 1.0)] {
+                matrix[(at + a + i) * width + at + b + j] += sign * tension * entry;
+            }
+        }
+    }
+}
+
+/// Hands a matrix on points over as one on the vertices that carry them.
+fn visit_carried(places: &[Place], matrix: &[f64], visit: Visitor<'_>) {
+    let vertices = Tendon::vertices_of(places);
+    if vertices.is_empty() {
+        return;
+    }
+    let index = |vertex: &u32| vertices.partition_point(|other| other < vertex);
+    let carried: Vec<Vec<(usize, f64)>> = places
+        .iter()
+        .map(|place| {
+            let pairs = place.vertices.iter().zip(&place.weights);
+            pairs
+                .map(|(vertex, weight)| (index(vertex), *weight))
+                .collect()
+        })
+        .collect();
+    let (narrow, wide) = (3 * places.len(), 3 * vertices.len());
+    let mut rows = vec![0.0; narrow * wide];
+    for (row, out) in matrix.chunks(narrow).zip(rows.chunks_mut(wide)) {
+        for (point, on) in carried.iter().enumerate() {
+            for (vertex, weight) in on {
+                for axis in 0..3 {
+                    out[3 * vertex + axis] += weight * row[3 * point + axis];
+                }
+            }
+        }
+    }
+    let mut found = vec![0.0; wide * wide];
+    for (point, on) in carried.iter().enumerate() {
+        for (vertex, weight) in on {
+            for axis in 0..3 {
+                let from = &rows[(3 * point + axis) * wide..][..wide];
+                let to = &mut found[(3 * vertex + axis) * wide..][..wide];
+                for (x, y) in to.iter_mut().zip(from) {
+                    *x += weight * y;
+                }
+            }
+        }
+    }
+    visit(&vertices, &found);
+}
+
+fn dot_of(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl ExternalForce for Tendon {
+    fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+        let counts = [
+            (
+                "places of a tendon",
+                self.places.len(),
+                self.places.len().max(2),
+            ),
+            (
+                "lengths of a tendon",
+                self.lengths.len() + 1,
+                self.places.len(),
+            ),
+        ];
+        for place in &self.places {
+            check_indices("vertex of a tendon", &place.vertices, vertices)?;
+            check_finite(&place.weights)?;
+            check_finite(&place.offset)?;
+        }
+        let weights = self.places.iter().map(|place| {
+            let (got, expected) = (place.weights.len(), place.vertices.len());
+            ("weights of a tendon", got, expected)
+        });
+        for (what, got, expected) in counts.into_iter().chain(weights) {
+            if got != expected {
+                return Err(ProblemError::Length {
+                    what,
+                    got,
+                    expected,
+                });
+            }
+        }
+        let positive = |what, value: f64| {
+            let good = value > 0.0 && value.is_finite();
+            let error = ProblemError::NotPositive { what, value };
+            good.then_some(()).ok_or(error)
+        };
+        for length in &self.lengths {
+            positive("the length of a tendon in m", *length)?;
+        }
+        match self.drive {
+            Drive::Tension(tension) => check_finite(&[tension])?,
+            Drive::Shortening { by, stiffness } => {
+                check_finite(&[by])?;
+                positive("the stiffness of a tendon in N", stiffness)?;
+            }
+        }
+        if !(self.friction >= 0.0 && self.friction.is_finite()) {
+            let (what, value) = ("the friction of a tendon", self.friction);
+            return Err(ProblemError::NotPositive { what, value });
+        }
+        Ok(())
+    }
+
+    fn add_forces(&self, on: Vertices<'_>, factor: f64, forces: &mut [Vec3]) {
+        let pulled = self.pulled(on.positions, factor);
+        self.add_along(&pulled, &pulled.tensions.values, forces);
+    }
+
+    fn work(&self, on: Vertices<'_>) -> f64 {
+        -self.potential(on, 1.0)
+    }
+
+    /// With friction, which has none, that of tensions whose ratios stay.
+    fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
+        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
+        match self.drive {
+            Drive::Tension(_) => {
+                let ways = line.lengths.iter().zip(&self.lengths);
+                let pairs = tensions.values.iter().zip(ways);
+                pairs
+                    .map(|(tension, (now, rest))| tension * (now - rest))
+                    .sum()
+            }
+            Drive::Shortening { stiffness, .. } => {
+                let compliance = dot_of(&tensions.by_first, &self.compliances(stiffness));
+                0.5 * compliance * tensions.values[0].powi(2)
+            }
+        }
+    }
+
+    fn add_slopes(&self, on: Vertices<'_>, factor: f64, weight: f64, forces: &mut [Vec3]) {
+        let pulled = self.pulled(on.positions, factor);
+        let first = match self.drive {
+            Drive::Tension(tension) if factor >= 0.0 => tension,
+            Drive::Tension(_) => 0.0,
+            Drive::Shortening { .. } if pulled.elastic == 0.0 => 0.0,
+            Drive::Shortening { by, stiffness } => {
+                by / dot_of(&pulled.tensions.by_first, &self.compliances(stiffness))
+            }
+        };
+        let pulls: Vec<f64> = pulled
+            .tensions
+            .by_first
+            .iter()
+            .map(|x| weight * first * x)
+            .collect();
+        self.add_along(&pulled, &pulls, forces);
+    }
+
+    fn follows(&self) -> bool {
+        true
+    }
+
+    fn is_proportional(&self) -> bool {
+        false
+    }
+
+    fn is_conservative(&self) -> bool {
+        !self.has_friction() || self.held
+    }
+
+    fn is_local(&self) -> bool {
+        self.is_in_pieces()
+    }
+
+    fn depends_on_way(&self) -> bool {
+        self.has_friction()
+    }
+
+    fn start(&self) {
+        self.memory.forget();
+    }
+
+    fn accept(&self, on: Vertices<'_>, factor: f64) {
+        if self.has_friction() {
+            let line = Polyline::new(&self.places, on.positions);
+            let (found, _) = self.tensions(&line, factor);
+            self.memory.keep(found.values, line.lengths);
+        }
+    }
+
+    fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {
+        let pulled = self.pulled(positions, factor);
+        if !self.is_in_pieces() {
+            visit_carried(&self.places, &self.stiffness(&pulled), visit);
+            return;
+        }
+        for (segment, ends) in self.places.windows(2).enumerate() {
+            let mut matrix = vec![0.0; 36];
+            add_curvature(&mut matrix, 6, 0, &pulled, segment);
+            visit_carried(ends, &matrix, visit);
+        }
+    }
+
+    fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        if !self.is_in_pieces() {
+            visit(&Self::vertices_of(&self.places));
+            return;
+        }
+        for ends in self.places.windows(2) {
+            visit(&Self::vertices_of(ends));
+        }
+    }
+
+    fn renumbered(&self, number: &dyn Fn(u32) -> u32) -> Box<dyn ExternalForce> {
+        let mut other = self.clone();
+        for vertex in other
+            .places
+            .iter_mut()
+            .flat_map(|place| &mut place.vertices)
+        {
+            *vertex = number(*vertex);
+        }
+        Box::new(other)
+    }
+}
+
+#[cfg(test)]
+mod tests;
