@@ -40,6 +40,7 @@
 mod adjoint;
 mod bordered;
 mod control;
+mod coupled;
 mod direct;
 mod ensemble;
 mod equilibrium;

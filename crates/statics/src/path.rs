@@ -145,6 +145,9 @@ fn follow(
     if let Some(contact) = problem.contact() {
         contact.start(&positions);
     }
+    if let Some(fluid) = problem.fluid() {
+        fluid.start(rest, None);
+    }
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
@@ -239,6 +242,9 @@ impl Path<'_, '_> {
     pub fn accept(&mut self, positions: Vec<Vec3>, point: Point, iterations: u32, residual: f64) {
         if let Some(contact) = self.equilibrium.problem.contact() {
             contact.accept(&positions);
+        }
+        if let Some(fluid) = self.equilibrium.problem.fluid() {
+            fluid.take_rest(&positions, fluid.part(&point.factor_of()));
         }
         self.positions = positions;
         self.point = point;
@@ -380,9 +386,11 @@ impl Path<'_, '_> {
                     }
                     return self.end(along, loose, settings);
                 }
-                // Contact makes corners in the path, which no tangent foresees.
+                // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
+                // load, so that no direction leads ahead.
+                let fluid = self.equilibrium.problem.fluid();
                 let limit = match (contact, along) {
-                    (None, Along::All) => self.look_ahead(settings),
+                    (None, Along::All) if fluid.is_none() => self.look_ahead(settings),
                     _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.

@@ -48,8 +48,8 @@ class Dynamics(Method):
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Move the body from its unloaded state."""
         interval = watch.record_interval or max(DEFAULT_RECORD_INTERVAL, self.time_step or 0.0)
-        if setup.touching is not None:
-            return self._with_contact(setup, watch, interval)
+        if setup.touching is not None or setup.fluids is not None:
+            return self._by_implicit_steps(setup, watch, interval)
         rate, ends = self.rate, self.ends()
         asked: dict[str, Any] = {
             "time_step": self._step(interval),
@@ -71,8 +71,8 @@ class Dynamics(Method):
         used = {"method": "xpbd", "way": "dynamics", **asked, **ends, "substep": answer.substep}
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
-    def _with_contact(self, setup: Setup, watch: Watch, interval: float) -> Answer:
-        """The same by implicit steps, each of which ends with all contacts settled."""
+    def _by_implicit_steps(self, setup: Setup, watch: Watch, interval: float) -> Answer:
+        """The same by implicit steps, each of which ends with contacts and pressures settled."""
         rate, ends = self.rate, self.ends()
         step = self._step(interval)
         answer = _core.transient(

@@ -23,6 +23,7 @@ from voxsoft.metrics.contact import object_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState, Fluids
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -64,6 +65,9 @@ class Recording:
         loads as they are at that instant. Empty without contact.
     momentum
         In kg m/s, (f, 3). Empty without contact.
+    chambers
+        Pressure, volume, mass, flow, work and energy of each supply by name, each (f,); for statics
+        at each point of the load path.
     """
 
     times: NDArray[np.float64]
@@ -77,6 +81,7 @@ class Recording:
     kinetic_energy: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     load_potential: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     momentum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
+    chambers: Mapping[str, ChamberHistory] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, repr=False)
@@ -129,6 +134,9 @@ class Result(Shown):
         Where the rigid objects are, by name.
     contact_field
         Pressure, friction and gap at each vertex; None for a design without contact.
+    supplies
+        Pressure, volume, mass, flow, work and energy of each volume of gas or liquid: those of the
+        design's supplies in their order, then those that only a connection reaches.
     """
 
     design: Design
@@ -159,6 +167,7 @@ class Result(Shown):
     contacts: tuple[ContactState, ...] = ()
     objects: Mapping[str, Pose] = field(default_factory=dict)
     contact_field: ContactField | None = field(default=None, repr=False)
+    supplies: tuple[ChamberState, ...] = ()
 
     @property
     def history(self) -> NoReturn:
@@ -331,6 +340,10 @@ class Result(Shown):
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
         pressures = [self.load_factor * value for value in _pressures(self.design, self.mesh)]
+        if self.supplies:
+            for number, volume in enumerate(Fluids(self.design, self.mesh).volumes):
+                for index in volume.cavities:
+                    pressures[index] = self.supplies[number].pressure
         return {
             "status": self.status,
             "message": self.message,
@@ -353,6 +366,7 @@ class Result(Shown):
                 )
             ],
             "contacts": [contact.summary() for contact in self.contacts],
+            "supplies": [supply.summary() for supply in self.supplies],
             "objects": {name: pose.summary() for name, pose in self.objects.items()},
             "penetration": self.penetration.depth,
             "warnings": [warning.summary() for warning in self.warnings],

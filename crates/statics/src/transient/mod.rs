@@ -106,6 +106,9 @@ impl Transient {
         if let Some(contact) = problem.contact() {
             contact.start(&start.positions);
         }
+        if let Some(fluid) = problem.fluid() {
+            fluid.start(&start.positions, Some(start.time));
+        }
         let means = Means {
             solver: LinearSolver::Auto,
             memory: self.memory,
@@ -303,6 +306,9 @@ impl Run<'_> {
     fn accept(&mut self, next: State, found: Now) -> Result<(), Stop> {
         if let Some(contact) = self.problem.contact() {
             contact.accept(&next.positions);
+        }
+        if let Some(fluid) = self.problem.fluid() {
+            fluid.take_step(&next.positions);
         }
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
