@@ -29,6 +29,8 @@ const LARGEST_TURN: f64 = 1.0;
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
 pub(crate) const LONGEST_OF_WAY: f64 = 0.05;
+/// The longest step where fluids do work, which is added up by the trapezoidal rule: it is good to some parts in a thousand then.
+const LONGEST_OF_WORK: f64 = 0.125;
 /// How much of the load, or of the growth of a volume, comes on while the body snaps.
 pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
@@ -292,6 +294,7 @@ impl Path<'_, '_> {
         let contact = self.equilibrium.problem.contact();
         let longest = match contact {
             Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
+            _ if self.equilibrium.problem.fluid().is_some() => LONGEST_OF_WORK,
             _ => 1.0,
         };
         let easy = if contact.is_some() {

@@ -125,7 +125,7 @@ def _chambers(document: Mapping[str, Any], included: Included) -> Iterator[Error
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
             yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
     for path, user in (*_list(document, "supplies"), *_list(document, "connections")):
-        named = [(("chamber",), entry_of(user, "chamber"))]
+        named: list[tuple[Path, Any]] = [(("chamber",), entry_of(user, "chamber"))]
         chambers = entry_of(user, "chambers")
         if isinstance(chambers, (list, tuple)):
             named += [(("chambers", number), each) for number, each in enumerate(chambers)]

@@ -1,10 +1,10 @@
-"""What drives chambers: pressures, syringes, sealed gas, flow through a line; and what joins them."""
+"""What drives chambers: pressure, syringe, sealed gas, flow; and what joins them."""
 
 from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import ConfigDict, Field, JsonValue, model_validator
 
 from voxsoft import units
 from voxsoft.design.chamber import CavityChoice
@@ -106,7 +106,7 @@ def check_valve(valve: Valve | None, medium: Gas | Liquid, where: str) -> None:
         raise DesignError(where, what, 'give the area of its orifice, such as "0.5 mm^2"')
 
 
-def _example(**entries: object) -> ConfigDict:
+def _example(**entries: JsonValue) -> ConfigDict:
     return ConfigDict(json_schema_extra={"examples": [{"chamber": "all", **entries}]})
 
 

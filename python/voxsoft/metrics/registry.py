@@ -17,6 +17,7 @@ from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
 from voxsoft.metrics.stress import MAX_STRESS
 from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
+from voxsoft.metrics.supplies import CHAMBER_PRESSURE, SUPPLIED_ENERGY, SUPPLIED_WORK
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
@@ -43,6 +44,9 @@ _ALL: Final[dict[str, Metric]] = {
         GRIP_FORCE,
         HOLD_MARGIN,
         BLOCKED_FORCE,
+        CHAMBER_PRESSURE,
+        SUPPLIED_WORK,
+        SUPPLIED_ENERGY,
     )
 }
 

@@ -67,6 +67,8 @@ class ChamberState:
     ----------
     name
         Of the supply, or of its chambers.
+    cavities
+        The indices of its cavities in the mesh.
     pressure
         Gauge pressure [Pa].
     volume
@@ -83,6 +85,7 @@ class ChamberState:
     """
 
     name: str
+    cavities: tuple[int, ...]
     pressure: float
     volume: float
     mass: float
@@ -314,7 +317,7 @@ class Fluids:
         return {"ends": [{"chamber": number} for number in numbers], "line": line}
 
     def _chamber(self, volume: Volume) -> dict[str, Any]:
-        """What is put in, how warm it is and how much room there is outside, unloaded and in the end."""
+        """What is put in, how warm it is, the room outside: unloaded, and in the end."""
         supply = volume.supply
         inside = sum(float(self.mesh.cavities[index].volume) for index in volume.cavities)
         lines = 0.0 if supply is None else supply.line_volume
@@ -343,8 +346,8 @@ class Fluids:
 
     def states(self, numbers: NDArray[np.float64]) -> tuple[ChamberState, ...]:
         """What the core tells of each volume, (c, 6)."""
-        rows = zip(self.names, numbers.tolist(), strict=True)
-        return tuple(ChamberState(name, *row) for name, row in rows)
+        rows = zip(self.names, self.volumes, numbers.tolist(), strict=True)
+        return tuple(ChamberState(name, volume.cavities, *row) for name, volume, row in rows)
 
     def histories(self, numbers: NDArray[np.float64]) -> dict[str, ChamberHistory]:
         """What the core recorded of each volume, (f, c, 6)."""
@@ -354,7 +357,7 @@ class Fluids:
 
 
 def _walls(cavity: MeshCavity) -> Iterator[tuple[Any, Any, float]]:
-    """The ways in which the surface of a cavity is cut, with their weights; voids are there once."""
+    """The ways in which a surface is cut, with their weights; voids are there once."""
     splits = cavity.splits
     for triangles, weight in splits:
         parts = (len(splits) * weight) * cavity.void_parts

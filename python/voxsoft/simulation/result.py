@@ -23,7 +23,7 @@ from voxsoft.metrics.contact import object_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.fluids import ChamberHistory, ChamberState, Fluids
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -199,6 +199,15 @@ class Result(Shown):
         return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
 
     @cached_property
+    def cavity_pressures(self) -> tuple[float, ...]:
+        """Gauge pressure in each cavity in Pa, in the order of the mesh's cavities."""
+        pressures = [self.load_factor * value for value in pressures_of(self.design, self.mesh)]
+        for supplied in self.supplies:
+            for index in supplied.cavities:
+                pressures[index] = supplied.pressure
+        return tuple(pressures)
+
+    @cached_property
     def fields(self) -> Fields:
         """Stress and strain in each voxel, and averaged on the vertices."""
         return fields_of(self.design, self.mesh, self.positions)
@@ -339,11 +348,6 @@ class Result(Shown):
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
-        pressures = [self.load_factor * value for value in _pressures(self.design, self.mesh)]
-        if self.supplies:
-            for number, volume in enumerate(Fluids(self.design, self.mesh).volumes):
-                for index in volume.cavities:
-                    pressures[index] = self.supplies[number].pressure
         return {
             "status": self.status,
             "message": self.message,
@@ -362,7 +366,7 @@ class Result(Shown):
                     "pressure": pressure,
                 }
                 for volume, cavity, pressure in zip(
-                    self.cavity_volumes, self.mesh.cavities, pressures, strict=True
+                    self.cavity_volumes, self.mesh.cavities, self.cavity_pressures, strict=True
                 )
             ],
             "contacts": [contact.summary() for contact in self.contacts],
@@ -395,8 +399,8 @@ def moved_in_words(name: str, moved: NDArray[np.float64]) -> str:
     return f"{name}: moved ({shown}) mm"
 
 
-def _pressures(design: Design, mesh: Mesh) -> list[float]:
-    """The final pressure in Pa in each cavity."""
+def pressures_of(design: Design, mesh: Mesh) -> list[float]:
+    """The final pressure in Pa of all loads in each cavity."""
     pressures = [0.0] * len(mesh.cavities)
     for number, load in enumerate(readings(design)):
         if load.cavity is not None:

@@ -62,6 +62,8 @@ struct State {
     exchanged: Vec<f64>,
     before: Vec<f64>,
     last: Option<Last>,
+    /// The largest pressure so far, of either sign, Pa.
+    largest: f64,
     /// Work on the walls and energy given so far, J, for each chamber.
     work: Vec<f64>,
     energy: Vec<f64>,
@@ -375,6 +377,7 @@ impl Fluid {
         *self.state() = State {
             step: None,
             carried: None,
+            largest: 0.0,
             exchanged: vec![0.0; n],
             before: vec![0.0; n],
             work: vec![0.0; n],
@@ -473,7 +476,7 @@ impl Fluid {
         }
     }
 
-    /// Whether pressures have come to rest, up to a part of the largest one, if volumes stay.
+    /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
     pub fn is_at_rest(&self, tolerance: f64) -> bool {
         let state = self.state();
         let (Some(last), Some(step)) = (&state.last, &state.step) else {
@@ -485,11 +488,7 @@ impl Fluid {
         let Some(settled) = settled else { return false };
         let pairs = settled.iter().zip(&last.pressures);
         let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let size = settled
-            .iter()
-            .chain(&last.pressures)
-            .fold(0.0f64, |m, p| m.max(p.abs()));
-        off <= tolerance * size
+        off <= tolerance * state.largest
     }
 
     /// Every chamber where the vertices are at `positions`.
@@ -553,6 +552,8 @@ impl State {
                 self.energy[chamber] += put_in[chamber] + held[chamber] + step * power;
             }
         }
+        let sizes = now.pressures.iter().map(|p| p.abs());
+        self.largest = sizes.fold(self.largest, f64::max);
         self.last = Some(now);
     }
 }
