@@ -255,6 +255,19 @@ class ProblemParts:
         pressure: float,
         history: _History = None,
     ) -> None: ...
+    def fluid(
+        self,
+        network: str,
+        walls: Sequence[
+            Sequence[
+                tuple[
+                    NDArray[np.uint32],
+                    tuple[NDArray[np.uint32], NDArray[np.float64]] | None,
+                    float,
+                ]
+            ]
+        ],
+    ) -> None: ...
     def floor(self, z: float) -> None: ...
     def attach(self, kind: str, elements: str) -> None: ...
     def tendon(self, tendon: str, history: _History = None) -> None: ...
@@ -457,6 +470,14 @@ class Answer:
     def load_moment(self) -> list[float]: ...
     @property
     def elastic_energy(self) -> float: ...
+    @property
+    def chambers(self) -> NDArray[np.float64]:
+        """Pressure, volume, mass, flow, work and energy of each chamber with a fluid, (c, 6)."""
+
+    @property
+    def chamber_records(self) -> NDArray[np.float64]:
+        """The same at each record, (f, c, 6)."""
+
     @property
     def record_times(self) -> NDArray[np.float64]: ...
     @property

@@ -131,7 +131,7 @@ pub fn equilibrium(
         positions,
         pressures,
     });
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(inner);
     let problem_of_work = Arc::clone(inner);
     let (answer, watch) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);

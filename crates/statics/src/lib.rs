@@ -41,6 +41,7 @@ mod adjoint;
 mod along;
 mod bordered;
 mod control;
+mod coupled;
 mod direct;
 mod ensemble;
 mod equilibrium;

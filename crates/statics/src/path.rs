@@ -30,6 +30,8 @@ const LARGEST_TURN: f64 = 1.0;
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
 pub(crate) const LONGEST_OF_WAY: f64 = 0.05;
+/// The longest step where fluids do work, which is added up by the trapezoidal rule: it is good to some parts in a thousand then.
+const LONGEST_OF_WORK: f64 = 0.125;
 /// How much of the load, or of the growth of a volume, comes on while the body snaps.
 pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
@@ -132,6 +134,9 @@ fn follow(
     }
     if !goes_on {
         problem.start_loads();
+        if let Some(fluid) = problem.fluid() {
+            fluid.start(rest, None);
+        }
     }
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
@@ -237,6 +242,9 @@ impl Path<'_, '_> {
         }
         let problem = self.equilibrium.problem;
         problem.accept_loads(&positions, &point.factor_of());
+        if let Some(fluid) = self.equilibrium.problem.fluid() {
+            fluid.take_rest(&positions, fluid.part(&point.factor_of()));
+        }
         self.positions = positions;
         self.point = point;
         self.points.push(PathPoint {
@@ -285,6 +293,10 @@ impl Path<'_, '_> {
             _ if !self.equilibrium.problem.depends_on_way() => 1.0,
             Control::Time { longest, .. } => longest,
             _ => LONGEST_OF_WAY,
+        };
+        let longest = match self.equilibrium.problem.fluid() {
+            Some(_) => f64::min(longest, LONGEST_OF_WORK),
+            None => longest,
         };
         let easy = if contact.is_some() {
             EASY_WITH_CONTACT
@@ -382,9 +394,11 @@ impl Path<'_, '_> {
                     }
                     return self.end(along, loose, settings);
                 }
-                // Contact makes corners in the path, which no tangent foresees.
+                // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
+                // load, so that no direction leads ahead.
+                let fluid = self.equilibrium.problem.fluid();
                 let limit = match contact {
-                    None if along.has_factor() => self.look_ahead(settings),
+                    None if fluid.is_none() && along.has_factor() => self.look_ahead(settings),
                     _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.

@@ -24,6 +24,7 @@ from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.loads import LoadReceiver
 from voxsoft.simulation.touching import refuse_bodies
 
@@ -161,6 +162,7 @@ class BrickModel:
             )
         refuse_bodies(setup.design, "outside codes")
         check_contact(setup)
+        refuse_supplies(setup.design, "outside codes")
         if setup.design.layers:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"

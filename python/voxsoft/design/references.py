@@ -130,6 +130,17 @@ def _chambers(document: Mapping[str, Any], included: Included) -> Iterator[Error
             hint = closest(choice, map(str, known))
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
             yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
+    for path, user in (*_list(document, "supplies"), *_list(document, "connections")):
+        named: list[tuple[Path, Any]] = [(("chamber",), entry_of(user, "chamber"))]
+        chambers = entry_of(user, "chambers")
+        if isinstance(chambers, (list, tuple)):
+            named += [(("chambers", number), each) for number, each in enumerate(chambers)]
+        for key, choice in named:
+            of_a_body = isinstance(choice, str) and "." in choice
+            if isinstance(choice, str) and choice not in ("all", *known) and not of_a_body:
+                hint = closest(choice, map(str, known))
+                hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
+                yield ErrorDetail(place((*path, *key)), f'there is no chamber "{choice}"', hint)
 
 
 def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:

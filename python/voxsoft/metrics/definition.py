@@ -83,6 +83,22 @@ class Touch(Protocol):
         """The part of the pressure under which the surfaces slip, 0 to 1."""
 
 
+class Supplied(Protocol):
+    """A volume of gas or liquid; :class:`~voxsoft.simulation.fluids.ChamberState` says more."""
+
+    @property
+    def cavities(self) -> tuple[int, ...]:
+        """The indices of its cavities."""
+
+    @property
+    def work(self) -> float:
+        """Done on the walls, J."""
+
+    @property
+    def energy(self) -> float:
+        """That this took, J."""
+
+
 class State(Protocol):
     """What the value of a metric may look at: a body where it is now.
 
@@ -137,6 +153,14 @@ class State(Protocol):
 
     def natural_frequency(self) -> float:
         """That of the slowest small vibration, Hz."""
+
+    @property
+    def cavity_pressures(self) -> Sequence[float]:
+        """The gauge pressure in each cavity of the mesh, Pa."""
+
+    @property
+    def supplies(self) -> Sequence[Supplied]:
+        """The volumes of gas and liquid."""
 
 
 class SlopeState(State, Protocol):

@@ -18,6 +18,7 @@ from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
 from voxsoft.metrics.stress import MAX_STRESS
 from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
+from voxsoft.metrics.supplies import CHAMBER_PRESSURE, SUPPLIED_ENERGY, SUPPLIED_WORK
 from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
@@ -50,6 +51,9 @@ _ALL: Final[dict[str, Metric]] = {
         GRIP_FORCE,
         HOLD_MARGIN,
         BLOCKED_FORCE,
+        CHAMBER_PRESSURE,
+        SUPPLIED_WORK,
+        SUPPLIED_ENERGY,
     )
 }
 

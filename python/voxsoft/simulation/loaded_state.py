@@ -23,6 +23,7 @@ from voxsoft.simulation.motion import moved_by
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
+from voxsoft.simulation.result import pressures_of
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import ContactState
 from voxsoft.simulation.vibration import modes_of
@@ -111,6 +112,16 @@ class LoadedState:
         if touching is None:
             return ()
         return touching.contacts(_core.contacts_at(self.setup.problem, self.positions))
+
+    @property
+    def cavity_pressures(self) -> tuple[float, ...]:
+        """The final pressure in each cavity, Pa, that of loads: slopes know no supplies."""
+        return tuple(pressures_of(self.design, self.mesh))
+
+    @property
+    def supplies(self) -> tuple[()]:
+        """None: slopes know no supplies."""
+        return ()
 
     def gap_to(self, name: str) -> float:
         """The smallest distance of the body and an object, m."""

@@ -23,6 +23,7 @@ from voxsoft.metrics.contact import object_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -65,6 +66,9 @@ class Recording:
         loads as they are at that instant. Empty without contact.
     momentum
         In kg m/s, (f, 3). Empty without contact.
+    chambers
+        Pressure, volume, mass, flow, work and energy of each supply by name, each (f,); for statics
+        at each point of the load path.
     """
 
     times: NDArray[np.float64]
@@ -78,6 +82,7 @@ class Recording:
     kinetic_energy: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     load_potential: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     momentum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
+    chambers: Mapping[str, ChamberHistory] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +137,9 @@ class Result(Shown):
         Pressure, friction and gap at each vertex; None for a design without contact.
     tendons
         How hard each tendon pulls and how long it is, by name.
+    supplies
+        Pressure, volume, mass, flow, work and energy of each volume of gas or liquid: those of the
+        design's supplies in their order, then those that only a connection reaches.
     """
 
     design: Design
@@ -163,6 +171,7 @@ class Result(Shown):
     objects: Mapping[str, Pose] = field(default_factory=dict)
     contact_field: ContactField | None = field(default=None, repr=False)
     tendons: Mapping[str, TendonState] = field(default_factory=dict)
+    supplies: tuple[ChamberState, ...] = ()
 
     @property
     def history(self) -> NoReturn:
@@ -192,6 +201,15 @@ class Result(Shown):
         Those of named chambers are in :attr:`chamber_volumes`.
         """
         return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
+
+    @cached_property
+    def cavity_pressures(self) -> tuple[float, ...]:
+        """Gauge pressure in each cavity in Pa, in the order of the mesh's cavities."""
+        pressures = [self.load_factor * value for value in pressures_of(self.design, self.mesh)]
+        for supplied in self.supplies:
+            for index in supplied.cavities:
+                pressures[index] = supplied.pressure
+        return tuple(pressures)
 
     @cached_property
     def fields(self) -> Fields:
@@ -358,7 +376,6 @@ class Result(Shown):
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
-        pressures = [self.load_factor * value for value in _pressures(self.design, self.mesh)]
         return {
             "status": self.status,
             "message": self.message,
@@ -377,10 +394,11 @@ class Result(Shown):
                     "pressure": pressure,
                 }
                 for volume, cavity, pressure in zip(
-                    self.cavity_volumes, self.mesh.cavities, pressures, strict=True
+                    self.cavity_volumes, self.mesh.cavities, self.cavity_pressures, strict=True
                 )
             ],
             "contacts": [contact.summary() for contact in self.contacts],
+            "supplies": [supply.summary() for supply in self.supplies],
             "objects": {name: pose.summary() for name, pose in self.objects.items()},
             "tendons": {name: found.summary() for name, found in self.tendons.items()},
             "penetration": self.penetration.depth,
@@ -410,8 +428,8 @@ def moved_in_words(name: str, moved: NDArray[np.float64]) -> str:
     return f"{name}: moved ({shown}) mm"
 
 
-def _pressures(design: Design, mesh: Mesh) -> list[float]:
-    """The final pressure in Pa in each cavity."""
+def pressures_of(design: Design, mesh: Mesh) -> list[float]:
+    """The final pressure in Pa of all loads in each cavity."""
     pressures = [0.0] * len(mesh.cavities)
     for number, load in enumerate(readings(design)):
         if load.cavity is not None:
