@@ -23,6 +23,7 @@ from scipy.optimize import least_squares
 import voxsoft as vs
 from voxsoft.geometry import mean_displacement, mean_rotation_vector
 from voxsoft.plot.style import SERIES, empty_figure, plain_axes, plain_legend
+from voxsoft.scoreboard import Prediction
 from voxsoft.units import kPa, mm
 
 Floats = NDArray[np.float64]
@@ -38,6 +39,10 @@ STEMS = {
 }
 #: Tensions [N] of the cases that the modulus is fitted to, of the first tendon.
 FITTED = (3.077, 6.154)
+#: Of the whole tentacle [m].
+LENGTH = 360 * mm
+#: Standard deviations of the middle 90 % of a normal distribution.
+NINETY = 1.645
 #: Values of the path to the largest tension: Newton's method needs no more.
 STEPS = 10
 
@@ -110,6 +115,57 @@ def fitted(cases: list[Case], voxel: float) -> float:
         return (found - seen).ravel() / mm
 
     return float(np.exp(least_squares(misfit, [np.log(300 * kPa)], diff_step=0.01, xtol=1e-3).x[0]))
+
+
+def predictions() -> list[Prediction]:
+    """Heights of the third marker and the tip, and how far they go towards the tendon.
+
+    Material: what the two fitted cases say of the modulus, each alone. Geometry, and what one
+    modulus cannot say: what the fit leaves in each coordinate of the fitted cases, root of the mean
+    square, times 1.645. Numerics: what voxels of 2.5 mm change, at most 1 mm. How well the
+    measurement repeats is not published.
+    """
+    voxel, cases = 4 * mm, measured()
+    known = [case for case in cases if case.motor == 1 and case.tension in FITTED]
+    young = fitted(known, voxel)
+    apart = abs(np.log(fitted(known[:1], voxel) / fitted(known[1:], voxel)))
+    seen = np.array([_plane(case, case.markers) for case in known])
+    here = predicted(young, 1, [case.tension for case in known], voxel)
+    left = [_plane(case, place) - real for case, place, real in zip(known, here, seen, strict=True)]
+    rest = NINETY * np.sqrt(np.mean(np.square(left), axis=0))
+    found = []
+    for motor in (1, 2):
+        own = [case for case in cases if case.motor == motor]
+        tensions = [case.tension for case in own]
+        middle = predicted(young, motor, tensions, voxel)
+        softer = predicted(young * np.exp(-0.5 * apart), motor, tensions, voxel)
+        for case, place, other in zip(own, middle, softer, strict=True):
+            if motor == 1 and case.tension in FITTED:
+                continue
+            real, at = _plane(case, case.markers), _plane(case, place)
+            moved = 2.0 * np.abs(_plane(case, other) - at)
+            for marker, words in ((2, "third marker"), (3, "tip")):
+                for axis, way in enumerate(("towards the tendon", "height")):
+                    found.append(
+                        Prediction(
+                            "tentacle",
+                            f"tendon {motor}, {case.tension:.1f} N, {words}, {way}",
+                            "length",
+                            float(real[marker, axis]),
+                            float(at[marker, axis]),
+                            material=float(moved[marker, axis]),
+                            geometry=float(rest[marker, axis]),
+                            numerics=1 * mm,
+                            scale=LENGTH,
+                        )
+                    )
+    return found
+
+
+def _plane(case: Case, markers: Floats) -> Floats:
+    """How far markers are towards the tendon that pulls, and their height, (4, 2), m."""
+    aside = np.array([0.5, np.sqrt(0.75) * (1 if case.motor == 1 else -1), 0])
+    return np.column_stack((markers @ aside, markers[:, 2]))
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ from voxsoft.cli.new import new
 from voxsoft.cli.run import run
 from voxsoft.cli.studio import studio
 from voxsoft.cli.study import optimize, sweep
+from voxsoft.cli.verify import verify
 
 app = typer.Typer(
     name="voxsoft",
@@ -28,7 +29,11 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
     pretty_exceptions_show_locals=False,
 )
-for command in (new, check, mesh, run, calibrate, sweep, optimize, compare, again, export, studio):
+_COMMANDS = (
+    *(new, check, mesh, run, calibrate, sweep, optimize),
+    *(compare, verify, again, export, studio),
+)
+for command in _COMMANDS:
     app.command()(command)
 app.add_typer(material)
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     )
     from voxsoft.plot.coupon import plot_coupons
     from voxsoft.plot.path import plot_path
+    from voxsoft.plot.scoreboard import plot_scoreboard
     from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
@@ -47,6 +48,7 @@ __all__ = [
     "plot_path",
     "plot_profiles",
     "plot_scatter",
+    "plot_scoreboard",
     "plot_shape",
     "plot_shapes",
     "plot_times",
@@ -66,6 +68,7 @@ _HOMES = {
     "plot_pareto": "voxsoft.plot.study",
     "plot_profiles": "voxsoft.plot.calibration",
     "plot_scatter": "voxsoft.plot.study",
+    "plot_scoreboard": "voxsoft.plot.scoreboard",
     "plot_shape": "voxsoft.plot.calibration",
     "plot_shapes": "voxsoft.plot.comparison",
     "plot_times": "voxsoft.plot.comparison",

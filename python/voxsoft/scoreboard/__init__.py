@@ -1,0 +1,7 @@
+"""The scoreboard of measured robots: predictions with their intervals beside what was measured."""
+
+from voxsoft.scoreboard.board import Scoreboard, read_scores, score
+from voxsoft.scoreboard.prediction import Prediction
+from voxsoft.scoreboard.scripts import predictions_in
+
+__all__ = ["Prediction", "Scoreboard", "predictions_in", "read_scores", "score"]
