@@ -5,7 +5,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.design import Body, Contact, Objective
+from voxsoft.design import Body, Contact, Objective, Strain, Swelling
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, gradient
 from voxsoft.units import kPa, mm
@@ -32,7 +32,7 @@ def bilayer(value, ratio=1.0, layers=2, **changes):
             vs.Part(name="upper", shape=strip(THICK), material=rubber(ratio * YOUNG)),
             vs.Part(name="lower", shape=strip(0.0), material=rubber(YOUNG)),
         ],
-        activations=[vs.Strain(part="upper", value=value)],
+        activations=[Strain(part="upper", value=value)],
         clamps=[
             vs.Clamp(region=vs.Region(x=(0, 0)), axes="x"),
             vs.Clamp(region=vs.Region(y=(THICK / 2, THICK / 2)), axes="y"),
@@ -69,7 +69,7 @@ def test_what_is_free_swells_without_stress():
         parts=[
             vs.Part(name="gel", shape=vs.Box(size=("10 mm",) * 3), material=rubber(YOUNG, 0.49))
         ],
-        activations=[vs.Swelling(part="gel", value=0.728)],
+        activations=[Swelling(part="gel", value=0.728)],
         clamps=[vs.Clamp(region=vs.Region(**{axis: (0, 0)}), axes=axis) for axis in "xyz"],
         probes={"corner": vs.Probe(point=(10 * mm,) * 3)},
     )
@@ -89,7 +89,7 @@ def test_what_is_held_all_round_is_pressed_by_its_bulk_modulus():
         parts=[
             vs.Part(name="a", shape=vs.Box(size=("10 mm",) * 3), material=rubber(YOUNG, poisson))
         ],
-        activations=[vs.Strain(part="a", value=strain)],
+        activations=[Strain(part="a", value=strain)],
         clamps=[
             vs.Clamp(region=vs.Region(**{axis: (side, side)}), axes=axis)
             for axis in "xyz"
@@ -133,7 +133,7 @@ def test_the_derivative_by_a_strain():
 
 def test_two_activations_of_a_part_multiply():
     once = vs.simulate(bilayer(1.01 * 1.02 - 1))
-    both = [vs.Strain(part="upper", value=0.01), vs.Strain(part="upper", value=0.02)]
+    both = [Strain(part="upper", value=0.01), Strain(part="upper", value=0.02)]
     twice = vs.simulate(bilayer(0.0, activations=both))
     assert twice.positions == pytest.approx(once.positions, abs=1e-9)
 
@@ -155,7 +155,7 @@ def test_a_part_of_a_body_of_its_own_design():
 @pytest.mark.parametrize(
     ("activation", "words"),
     [
-        (vs.Strain(part="uper", value=0.1), 'no part "uper".*upper'),
+        (Strain(part="uper", value=0.1), 'no part "uper".*upper'),
         ({"kind": "strain", "part": "upper", "value": -1.0}, "nothing would be left"),
         ({"kind": "warm", "part": "upper", "value": 1.0}, "kind"),
     ],
