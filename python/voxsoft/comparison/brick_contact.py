@@ -104,7 +104,7 @@ def tools_of(touching: Touching) -> tuple[RigidTool, ...]:
         way = np.zeros(3)
         if each.way is not None:
             history = each.way.history
-            factor = 1.0 if history is None else history.factor[-1]
+            factor = 1.0 if history is None else history.factors[-1]
             way = factor * np.asarray(each.way.displacement)
         if not np.isnan(friction):
             found.append(RigidTool(each.name, surface.vertices, surface.triangles, way, friction))

@@ -307,7 +307,7 @@ def prescribed(clamp: Clamp, points: Floats) -> Floats:
     motion = clamp.motion
     if motion is None:
         return moved
-    factor = 1.0 if motion.history is None else motion.history.factor[-1]
+    factor = 1.0 if motion.history is None else motion.history.factors[-1]
     if motion.rotation is not None:
         axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)
         arms = points - np.asarray(motion.rotation.center)

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from voxsoft.design.history import with_tables
 from voxsoft.design.resolution import Document, formulas
 from voxsoft.materials import is_card_path
 
@@ -74,7 +75,7 @@ def written_path(path: tuple[str | int, ...]) -> tuple[str | int, ...]:
 
 def with_absolute_paths(document: Mapping[str, Any], folder: Path) -> Document:
     """Complete the relative paths of files, which are meant from the folder of the design's."""
-    whole: Document = _with_whole_meshes(document, folder)
+    whole: Document = with_tables(_with_whole_meshes(document, folder), folder)
     for steps, path in [*_cards(whole, ()), *included_files(whole)]:
         # A path that is absolute already stays as it is.
         _put(whole, steps, str(folder.absolute() / path))

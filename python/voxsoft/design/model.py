@@ -36,6 +36,7 @@ from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, Contact, contact_problems
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
+from voxsoft.design.history import History, with_named
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
 from voxsoft.design.kept_formulas import with_kept_formulas
 from voxsoft.design.layer import Layer
@@ -103,6 +104,8 @@ class Design(Record):
         Springs between places of the body, or to fixed points.
     tendons
         Lines through the body that are pulled.
+    histories
+        Histories by name, which loads, motions and tendons of a file call ``history``.
     activations
         Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
@@ -159,6 +162,7 @@ class Design(Record):
     layers: tuple[Layer, ...] = Field((), max_length=250)
     springs: tuple[Spring, ...] = ()
     tendons: tuple[Tendon, ...] = Field((), max_length=250)
+    histories: Table[Name, History] = Field(default_factory=FrozenDict, max_length=200)
     activations: tuple[AnyActivation, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
@@ -248,7 +252,8 @@ class Design(Record):
         if context.get("whole"):
             return handler(with_stand_ins(found.document))
         document, empty = without_empty_shapes(found.document)
-        problems, only_formulas = found.problems, bool(found.problems)
+        document, unnamed = with_named(document)
+        problems, only_formulas = [*found.problems, *unnamed], bool(found.problems) and not unnamed
         included: Included | None = None
         try:
             design = handler(document)

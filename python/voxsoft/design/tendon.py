@@ -156,7 +156,7 @@ class Tendon(Record):
         if self.stiffness is not None and self.tension is not None:
             what = "changes nothing where the tension is given"
             raise DesignError("stiffness", what, "leave it out, or give a length or shortening")
-        lowest = 0.0 if self.history is None else min(self.history.factor)
+        lowest = 0.0 if self.history is None else min(self.history.factors)
         if lowest < 0.0 and self.shortening is None:
             what = f"has a factor of {lowest:g}, and a line cannot be pushed"
             raise DesignError("history", what, "give factors of zero or more")

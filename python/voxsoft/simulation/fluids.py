@@ -407,4 +407,4 @@ def _source(pressure: float, history: History | None) -> dict[str, Any]:
 
 
 def _course(history: History | None) -> list[Sequence[float]]:
-    return [[0.0], [1.0]] if history is None else [list(history.time), list(history.factor)]
+    return [[0.0], [1.0]] if history is None else [list(history.times), list(history.factors)]

@@ -337,7 +337,7 @@ def _at_the_end(item: Any) -> Any:  # noqa: ANN401 - a load, clamp or object
     history = getattr(holder, "history", None)
     if holder is None or history is None:
         return item
-    ended = holder.replace(history=History(time=(0.0,), factor=(history.factor[-1],)))
+    ended = holder.replace(history=History(time=(0.0,), factor=(history.factors[-1],)))
     return ended if holder is item else item.replace(motion=ended)
 
 
@@ -359,7 +359,7 @@ def _factors(sizes: list[np.ndarray[Any, Any]], where: str, over: Over) -> tuple
 
 def _history(holders: list[Any], factors: list[float], instants: list[float]) -> History:
     """Factors at instants, on top of what the histories end with."""
-    ends = [1.0 if each.history is None else each.history.factor[-1] for each in holders]
+    ends = [1.0 if each.history is None else each.history.factors[-1] for each in holders]
     return History(
         time=tuple(instants),
         factor=tuple(factor * end for factor, end in zip(factors, ends, strict=True)),

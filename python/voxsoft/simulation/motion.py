@@ -46,7 +46,7 @@ def moved_by(motion: Motion | None, points: NDArray[np.float64]) -> NDArray[np.f
     """
     if motion is None:
         return points
-    factor = motion.history.factor[-1] if motion.history else 1.0
+    factor = motion.history.factors[-1] if motion.history else 1.0
     moved = points
     if motion.rotation is not None:
         axis = np.asarray(motion.rotation.axis) / np.linalg.norm(motion.rotation.axis)

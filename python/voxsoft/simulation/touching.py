@@ -438,7 +438,7 @@ CoreHistory = tuple[list[float], list[float]] | None
 
 def times_and_factors(history: History | None) -> CoreHistory:
     """A history as the core takes it."""
-    return None if history is None else (list(history.time), list(history.factor))
+    return None if history is None else (list(history.times), list(history.factors))
 
 
 def motion_arguments(motion: Motion | None) -> dict[str, Any]:

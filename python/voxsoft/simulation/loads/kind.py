@@ -69,7 +69,7 @@ class LoadReading:
     @property
     def final_factor(self) -> float:
         """Its factor in the end."""
-        return 1.0 if self.history is None else self.history.factor[-1]
+        return 1.0 if self.history is None else self.history.factors[-1]
 
 
 class LoadKind(ABC, Generic[L]):
