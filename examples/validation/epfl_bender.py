@@ -129,7 +129,7 @@ def predictions() -> list[Prediction]:
     """The pressures at which the actuator with walls of 10 mm reaches some angles.
 
     Material: batches of EcoFlex 00-30 differ by a tenth in modulus, and pressures go with it.
-    Geometry: the tunnel is modelled twice as wide as it is, and chambers are cast within 0.2 mm of
+    Geometry: the tunnel is modeled twice as wide as it is, and chambers are cast within 0.2 mm of
     their walls: 5 %. Numerics: walls have five voxels, the films' faces are of one size: 5 %, the
     error bar of a chamber with such walls. Repeatability: samples scatter by 10 to 25 degrees
     around the transition, which the steepest part of the curve makes 2 kPa.

@@ -118,7 +118,7 @@ def fitted(cases: list[Case], voxel: float) -> float:
 
 
 def predictions() -> list[Prediction]:
-    """Heights of the third marker and the tip, and how far they go towards the tendon.
+    """Heights of the third marker and the tip, and how far they go toward the tendon.
 
     Material: what the two fitted cases say of the modulus, each alone. Geometry, and what one
     modulus cannot say: what the fit leaves in each coordinate of the fitted cases, root of the mean
@@ -145,7 +145,7 @@ def predictions() -> list[Prediction]:
             real, at = _plane(case, case.markers), _plane(case, place)
             moved = 2.0 * np.abs(_plane(case, other) - at)
             for marker, words in ((2, "third marker"), (3, "tip")):
-                for axis, way in enumerate(("towards the tendon", "height")):
+                for axis, way in enumerate(("toward the tendon", "height")):
                     found.append(
                         Prediction(
                             "tentacle",
@@ -163,7 +163,7 @@ def predictions() -> list[Prediction]:
 
 
 def _plane(case: Case, markers: Floats) -> Floats:
-    """How far markers are towards the tendon that pulls, and their height, (4, 2), m."""
+    """How far markers are toward the tendon that pulls, and their height, (4, 2), m."""
     aside = np.array([0.5, np.sqrt(0.75) * (1 if case.motor == 1 else -1), 0])
     return np.column_stack((markers @ aside, markers[:, 2]))
 
