@@ -8,6 +8,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison import ErrorBar, discretization_error
+from voxsoft.design import families
 from voxsoft.jobs import RunSpec, run_job
 from voxsoft.units import kPa, mm
 
@@ -184,3 +185,26 @@ def test_stopping_before_the_bars_keeps_the_result(tmp_path):
 )
 def test_a_bar_in_words(bar, words):
     assert str(bar) == words
+
+
+def test_a_goal_may_ask_for_an_accuracy_of_its_own():
+    """Another goal and the probes may be as far off as they are."""
+    beam = families.beam(length="40 mm").with_values("parts.0.material=ecoflex-00-30")
+    goals = {
+        "sag": vs.Objective(minimize="displacement", probe=next(iter(beam.probes)), accuracy=0.5),
+        "far": vs.Objective(maximize="max_displacement"),
+    }
+    loose = vs.error_bars(vs.simulate(beam.replace(objectives=goals)))
+    assert len(loose.voxel_sizes) == 2
+    tight = {**goals, "sag": goals["sag"].replace(accuracy=0.05)}
+    found = vs.error_bars(vs.simulate(beam.replace(objectives=tight)))
+    assert len(found.voxel_sizes) > 2
+    assert found.metrics["sag"].error <= 0.05 * abs(found.metrics["sag"].estimate)
+
+
+def test_an_accuracy_of_a_peak_is_refused_in_words():
+    beam = families.beam(length="40 mm").with_values("parts.0.material=ecoflex-00-30")
+    peak = {"stress": vs.Objective(minimize="max_stress", accuracy=0.1)}
+    bars = vs.error_bars(vs.simulate(beam.replace(objectives=peak)))
+    assert "stress is the largest of all voxels" in bars.sentence
+    assert "percentile" in bars.hint

@@ -257,8 +257,7 @@ def error_bars(
     if refusal is not None:
         return ErrorBars.none(*refusal)
     search = _Search(result, progress, announce, solve)
-    accuracy = result.design.solver.accuracy
-    return search.pair() if accuracy is None else search.until(accuracy)
+    return search.until_accurate() if _wants_accuracy(result.design) else search.pair()
 
 
 def _refusal(result: Result) -> tuple[str, str] | None:
@@ -275,7 +274,7 @@ def _refusal(result: Result) -> tuple[str, str] | None:
     if result.mesh.voxel_size is None:
         return "the mesh is not made of voxels", "compare several meshes"
     lattice = any(isinstance(design.material_of(part), Lattice) for part in design.parts)
-    if lattice and design.solver.error == "auto" and design.solver.accuracy is None:
+    if lattice and design.solver.error == "auto" and not _wants_accuracy(design):
         what = "the constants of a lattice are fitted on voxels of one size, and hold its error"
         return what, 'take rubber, or write error = "finer" to see how the size changes it'
     return None
@@ -358,8 +357,8 @@ class _Search:
             hint = f'error = "finer", which takes about {about:.2g} s'
         return ErrorBars.none("; ".join(reasons), hint)
 
-    def until(self, accuracy: float) -> ErrorBars:
-        """From ever smaller voxels, until all errors are within the accuracy."""
+    def until_accurate(self) -> ErrorBars:
+        """From ever smaller voxels, until all errors are within what is asked for."""
         runs = [self.own]
         while True:
             if 8 * runs[-1].voxels > ACCURATE_UP_TO:
@@ -374,7 +373,11 @@ class _Search:
                 return self._bars(runs, what, hint)
             runs.append(other)
             bars = self._bars(runs)
-            if _largest_error(bars, self.own.result.design) <= accuracy:
+            for name, target in _asked(self.own.result.design).items():
+                if target.accuracy is not None and name not in bars.metrics:
+                    what = f"{name} is the largest of all voxels and has none, so no accuracy"
+                    return self._bars(runs, what, "give it a percentile, or leave accuracy out")
+            if _is_accurate(bars, self.own.result.design):
                 return bars
 
     def _solved(self, size: float, coarser: _Run | None) -> _Run | str:
@@ -486,14 +489,29 @@ def _is_peak(name: str, asked: _Asked) -> bool:
     return metric.is_peak and (target is None or target.percentile is None)
 
 
-def _largest_error(bars: ErrorBars, design: Design) -> float:
-    """The largest error of a probe or of what is asked for, as a part of its size."""
-    asked = [bars.metrics[name] for name in _asked(design) if name in bars.metrics]
-    pairs = [(abs(bar.estimate), bar.error) for bar in asked]
-    for components in bars.probes.values():
-        size = math.hypot(*(bar.estimate for bar in components))
-        pairs.append((size, math.hypot(*(bar.error for bar in components))))
-    if not pairs:
+def _wants_accuracy(design: Design) -> bool:
+    """Whether the design, or one of its goals, asks for an accuracy."""
+    goals = any(target.accuracy is not None for target in _asked(design).values())
+    return goals or design.solver.accuracy is not None
+
+
+def _is_accurate(bars: ErrorBars, design: Design) -> bool:
+    """Whether errors are small enough: of goals by their own accuracy, else by the design's.
+
+    Probes, or without them and without goals the largest displacement, are held to the design's.
+    """
+    for name, target in _asked(design).items():
+        accuracy = design.solver.accuracy if target.accuracy is None else target.accuracy
+        bar = bars.metrics.get(name)
+        if bar is not None and accuracy is not None and bar.error > accuracy * abs(bar.estimate):
+            return False
+    if design.solver.accuracy is None:
+        return True
+    pairs = [
+        (math.hypot(*(bar.estimate for bar in each)), math.hypot(*(bar.error for bar in each)))
+        for each in bars.probes.values()
+    ]
+    if not pairs and not _asked(design):
         moved = bars.metrics["max_displacement"]
         pairs = [(abs(moved.estimate), moved.error)]
-    return max(error / size if size > 0.0 else 0.0 for size, error in pairs)
+    return all(error <= design.solver.accuracy * size for size, error in pairs)

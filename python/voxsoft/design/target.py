@@ -19,7 +19,7 @@ from voxsoft.design.operands import Name
 from voxsoft.design.parameter import AnyQuantity, as_one_kind, read_quantity, write_quantities
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import read_from_file
+from voxsoft.units import Proportion, read_from_file
 
 Axis = Literal["x", "y", "z"]
 
@@ -43,6 +43,9 @@ class Objective(Record):
     percentile
         Of a metric that takes the largest of all voxels: what so many percent of the volume stay
         at or below, above 0 and at most 100; default: 100.
+    accuracy
+        The error to leave of it, as a part of its size, ``"2 %"``: a run takes as small voxels as
+        that needs. Default: as the solver says, or none.
     object
         What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
         body with itself. Default: the only object there is.
@@ -62,6 +65,7 @@ class Objective(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    accuracy: Proportion | None = None
 
     @model_validator(mode="after")
     def _one_direction(self) -> Objective:
@@ -87,7 +91,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object
+    probe, base, axis, cavity, percentile, object, accuracy
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -107,6 +111,7 @@ class Constraint(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    accuracy: Proportion | None = None
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None
     kind: str = "number"
