@@ -162,7 +162,7 @@ def test_a_line_that_is_eased_keeps_its_tension_until_it_slides_back():
         seen.append(state.tensions[-2] / 0.2)
         assert state.tension == pytest.approx(0.2 * eased)
     pulled, sticks, back, farther = seen
-    assert pulled == pytest.approx(1 / ratio, rel=1e-6)
+    assert pulled == pytest.approx(1 / ratio, rel=5e-3)
     # It is inside the cone of 0.6 e^(±μθ). The body still settles, and stretches what sticks.
     assert sticks == pytest.approx(1 / ratio, rel=5e-3)
     assert back == pytest.approx(1 / ratio, rel=5e-3)

@@ -136,6 +136,14 @@ impl Problem {
         self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
     }
 
+    /// The same without what holds a length: a motion that it prescribes would count as a vibration against its stiffness.
+    pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
+        let on = self.vertices(positions);
+        for load in self.loads.iter().filter(|load| !load.kind.holds_length()) {
+            load.kind.add_forces(on, load.history.at(time), forces);
+        }
+    }
+
     /// Adds the external forces (N) with a factor of the caller's for each load.
     pub fn add_scaled_loads(
         &self,

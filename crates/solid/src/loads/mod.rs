@@ -58,6 +58,11 @@ pub trait ExternalForce: Debug + Send + Sync {
         true
     }
 
+    /// Whether it holds a length, stiffer than any body.
+    fn holds_length(&self) -> bool {
+        false
+    }
+
     /// Whether its stiffness joins vertices that are near each other, so that multigrid on the voxels converges with it.
     fn is_local(&self) -> bool {
         true

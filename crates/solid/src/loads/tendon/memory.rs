@@ -31,6 +31,11 @@ impl Memory {
         self.keep(Vec::new(), Vec::new());
     }
 
+    /// The tension at the pulled end.
+    pub fn first(&self) -> Option<f64> {
+        self.look(|(tensions, _)| tensions.first().copied())
+    }
+
     /// The ratio of each tension to the first, one where nothing was pulled; and the lengths that were there.
     pub fn ratios_and_lengths(&self, segments: usize) -> (Vec<f64>, Option<Vec<f64>>) {
         self.look(|(tensions, lengths)| {

@@ -58,8 +58,9 @@ pub struct Tendon {
     taut: bool,
 }
 
-/// What sticks without a stiffness of its own stretches by a ten-thousandth under the whole tension: what it then moves
-/// before it slides is less than a tendon's length is known to.
+/// What sticks stretches by a ten-thousandth under the whole tension, or more if that is its own stiffness: what it then
+/// moves before it slides is less than a tendon's length is known to. Stiffer, and Newton's method would have to find where
+/// it slides to that much less.
 const STICK: f64 = 1e4;
 
 /// A tendon at some positions.
@@ -196,11 +197,14 @@ impl Tendon {
         tensions
     }
 
-    /// `EA` of what sticks, in N.
+    /// `EA` of what sticks, in N: its own, but no more than stretches by a little.
     fn stick_stiffness(&self) -> f64 {
         match self.drive {
             Drive::Tension(tension) => STICK * tension,
-            Drive::Shortening { stiffness, .. } => stiffness,
+            Drive::Shortening { stiffness, .. } => match self.memory.first() {
+                Some(before) => stiffness.min(STICK * before),
+                None => stiffness,
+            },
         }
     }
 
@@ -513,6 +517,10 @@ impl ExternalForce for Tendon {
 
     fn is_conservative(&self) -> bool {
         !self.has_friction() || self.held
+    }
+
+    fn holds_length(&self) -> bool {
+        matches!(self.drive, Drive::Shortening { .. })
     }
 
     fn is_local(&self) -> bool {
