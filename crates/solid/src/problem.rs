@@ -226,6 +226,15 @@ impl Problem {
         self
     }
 
+    /// The same with loads that remember on their own, whatever copies of this problem do.
+    #[must_use]
+    pub fn with_own_memory(mut self) -> Self {
+        for load in &mut self.loads {
+            load.kind = load.kind.with_own_memory();
+        }
+        self
+    }
+
     fn vertices<'a>(&'a self, positions: &'a [Vec3]) -> Vertices<'a> {
         Vertices {
             rest: self.body.rest(),

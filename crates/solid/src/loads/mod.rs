@@ -133,6 +133,14 @@ impl LoadKind {
             other => other.clone(),
         }
     }
+
+    /// The same with a memory of its own, where it has one.
+    pub(crate) fn with_own_memory(&self) -> Self {
+        match self {
+            Self::Tendon(tendon) => Self::Tendon(tendon.with_own_memory()),
+            other => other.clone(),
+        }
+    }
 }
 
 impl std::ops::Deref for LoadKind {

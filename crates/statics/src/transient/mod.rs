@@ -103,6 +103,7 @@ impl Transient {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
         let moving = problem
             .clone()
+            .with_held_loads()
             .with_term(Arc::clone(&inertia) as Arc<dyn Term>);
         let moving = moving.expect("inertia has the vertices of its body");
         if let Some(contact) = problem.contact() {

@@ -116,11 +116,17 @@ impl Tendon {
         points.collect()
     }
 
-    /// The same, with a memory of its own, with the ratios of tensions held as they were accepted last: it has a potential
-    /// then.
+    /// The same with the ratios of tensions held as they were accepted last: it has a potential then.
     pub fn held(&self) -> Self {
         Self {
             held: true,
+            ..self.clone()
+        }
+    }
+
+    /// The same with a memory of its own.
+    pub fn with_own_memory(&self) -> Self {
+        Self {
             memory: Memory::default(),
             ..self.clone()
         }
