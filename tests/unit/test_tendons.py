@@ -135,13 +135,13 @@ def wrapped(angle, friction, **changes):
     first = np.array(post[0]) - 20 * mm * np.array([0.0, 1.0, 0.0])
     tail = np.array(post[-1]) + 5 * mm * heading
     through = [{"fixed": tuple(at)} for at in (first, *post, tail)]
-    return vs.Tendon(through=[*through, AXIS[1]], friction=friction, name="t", **changes), tail
+    return vs.Tendon(through=[*through, AXIS[1]], friction=friction, name="t", **changes)
 
 
 @pytest.mark.parametrize("turns", [0.25, 0.5, 0.75, 1.0])
 def test_a_belt_has_the_tension_of_the_capstan(turns):
     friction, angle = 0.2, 2 * np.pi * turns
-    tendon, tail = wrapped(angle, friction, tension=0.2)
+    tendon = wrapped(angle, friction, tension=0.2)
     result = simulate(bar([tendon]))
     state = result.tendons["t"]
     # On the post alone; the polygon turns by the whole angle, and by no more.
@@ -155,7 +155,7 @@ def test_a_line_that_is_eased_keeps_its_tension_until_it_slides_back():
     seen = []
     for eased in (1.0, 0.6, 0.2, 0.05):
         history = {"time": [0, 0.2, 0.4], "factor": [0, 1, eased]}
-        tendon, _ = wrapped(angle, friction, tension=0.2, history=history)
+        tendon = wrapped(angle, friction, tension=0.2, history=history)
         design = bar([tendon]).replace(solver={})
         result = simulate(design, method="dynamics", end_time=0.5, time_step=0.005, damping=200.0)
         state = result.tendons["t"]
@@ -217,7 +217,9 @@ def test_a_line_over_an_object_pulls_it():
 
 
 def test_bodies_have_their_own_tendons():
-    finger = bar([along(through=[(0, 2 * mm, 3 * mm), (LENGTH + 1 * mm, 2 * mm, 3 * mm)], tension=0.1)])
+    finger = bar(
+        [along(through=[(0, 2 * mm, 3 * mm), (LENGTH + 1 * mm, 2 * mm, 3 * mm)], tension=0.1)]
+    )
     finger = finger.replace(solver={})
     pair = vs.Design(
         name="pair",

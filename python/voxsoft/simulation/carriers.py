@@ -45,9 +45,7 @@ class Carrier(ABC):
         """How far a point is from the body [m], infinite where it is far."""
         return self.nearest(point)[2]
 
-    def place(
-        self, point: Floats, radius: float | None = None
-    ) -> tuple[Integers, Floats] | None:
+    def place(self, point: Floats, radius: float | None = None) -> tuple[Integers, Floats] | None:
         """What carries a point [m], (3,); None for one that is outside.
 
         With a radius [m] it is the mean of what is in a ball around the point, and in the body.
@@ -137,9 +135,10 @@ class _Tets(Carrier):
 
     @cached_property
     def _frames(self) -> tuple[Floats, Floats]:
-        corners = self.mesh.vertices[self.mesh.tets]
+        corners: Floats = self.mesh.vertices[self.mesh.tets]
         edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-        return corners, np.linalg.inv(edges)
+        inverse: Floats = np.asarray(np.linalg.inv(edges), dtype=np.float64)
+        return corners, inverse
 
     def nearest(self, point: Floats) -> tuple[Integers, Floats, float]:
         corners, inverse = self._frames

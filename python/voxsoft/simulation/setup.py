@@ -234,9 +234,7 @@ class Setup:
             parts.floor(self.design.floor.z)
         return parts
 
-    def _give_to(
-        self, parts: _core.ProblemParts | SectorParts, *, touching: bool = False
-    ) -> None:
+    def _give_to(self, parts: _core.ProblemParts | SectorParts, *, touching: bool = False) -> None:
         """Hand layers, clamps, loads and what is attached to the problem of the core."""
         for where, layer, found in _numbered("layers", self.design.layers, self.layers):
             _say_where(parts, where)

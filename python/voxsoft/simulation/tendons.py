@@ -250,9 +250,7 @@ class _Way:
             number = [body.name for body, _ in self.carriers].index(guide.body)
             placed = self.carriers[number][0].placed(point[None])[0]
             return _Stop(where, placed, point, number, radius=guide.radius)
-        nearest = [
-            carrier.distance(body.own(point[None])[0]) for body, carrier in self.carriers
-        ]
+        nearest = [carrier.distance(body.own(point[None])[0]) for body, carrier in self.carriers]
         number = int(np.argmin(nearest))
         own = self.carriers[number][0].own(point[None])[0]
         return _Stop(where, point, own, number, radius=guide.radius)

@@ -61,9 +61,7 @@ def _slider(index: int, tendon: ResolvedTendon) -> events.BodyLoad:
 def pulled(setup: Setup, factors: Sequence[float]) -> tuple[Tendon, ...]:
     """The tendons of a design, each pulled so many times as hard or drawn in by so many times."""
     pairs = zip(setup.tendons, factors, strict=True)
-    return tuple(
-        each.tendon if factor == 1.0 else each.scaled(factor) for each, factor in pairs
-    )
+    return tuple(each.tendon if factor == 1.0 else each.scaled(factor) for each, factor in pairs)
 
 
 def tendon_attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:
@@ -78,9 +76,7 @@ def tendon_attachments(setup: Setup, surface: Surface) -> list[events.BodyAttach
     return found
 
 
-def _place(
-    setup: Setup, surface: Surface, tendon: ResolvedTendon, at: int
-) -> events.BodyPlace:
+def _place(setup: Setup, surface: Surface, tendon: ResolvedTendon, at: int) -> events.BodyPlace:
     place, center = tendon.places[at], tendon.points[at]
     carried = np.array(place.get("vertices", ()), dtype=np.uint32)
     vertices = surface.index_of(carried)

@@ -36,16 +36,11 @@ impl Memory {
         self.look(|(tensions, _)| tensions.first().copied())
     }
 
-    /// The ratio of each tension to the first, one where nothing was pulled; and the lengths that were there.
-    pub fn ratios_and_lengths(&self, segments: usize) -> (Vec<f64>, Option<Vec<f64>>) {
-        self.look(|(tensions, lengths)| {
-            let lengths = (!lengths.is_empty()).then(|| lengths.clone());
-            match tensions.first() {
-                Some(first) if *first > 0.0 => {
-                    (tensions.iter().map(|t| t / first).collect(), lengths)
-                }
-                _ => (vec![1.0; segments], lengths),
-            }
+    /// The ratio of each tension to the first, one where nothing was pulled; and the first.
+    pub fn ratios_and_first(&self, segments: usize) -> (Vec<f64>, f64) {
+        self.look(|(tensions, _)| match tensions.first() {
+            Some(first) if *first > 0.0 => (tensions.iter().map(|t| t / first).collect(), *first),
+            _ => (vec![1.0; segments], 0.0),
         })
     }
 }

@@ -78,8 +78,8 @@ pub struct TendonState {
 struct Pulled {
     line: Polyline,
     tensions: Tensions,
-    /// How the tension of the first segment changes with all lengths and ratios: `EA`, or zero where it is given.
-    elastic: f64,
+    /// How much all segments together stretch by the first tension, in m/N; `None` where that is given, or there is none.
+    compliance: Option<f64>,
 }
 
 impl Tendon {
@@ -151,7 +151,7 @@ impl Tendon {
 
     fn pulled(&self, positions: &[Vec3], factor: f64) -> Pulled {
         let line = Polyline::new(&self.places, positions);
-        let (tensions, elastic) = if self.held && self.has_friction() {
+        let (tensions, compliance) = if self.held && self.has_friction() {
             self.held_tensions(&line, factor)
         } else {
             self.tensions(&line, factor)
@@ -159,33 +159,29 @@ impl Tendon {
         Pulled {
             line,
             tensions,
-            elastic,
+            compliance,
         }
     }
 
-    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
+    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
         let decay = |angle: f64| libm::exp(-self.friction * angle);
         let decays: Vec<f64> = line.angles().into_iter().map(decay).collect();
         let sticking = self.sticking(line);
         match self.drive {
             Drive::Tension(tension) => {
                 let first = (factor * tension).max(0.0);
-                (Tensions::from_first(first, &sticking, &decays), 0.0)
+                (Tensions::from_first(first, &sticking, &decays), None)
             }
             Drive::Shortening { by, stiffness } => {
                 let stretch = line.length() - self.material(by, factor);
                 let compliances = self.compliances(stiffness);
-                let found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                let mut found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                let is_taut = self.taut || found.values[0] > 0.0;
                 if self.taut {
-                    let taut = found.taut(stretch, &compliances, &sticking, &decays);
-                    return (taut, stiffness);
+                    found = found.taut(stretch, &compliances, &sticking, &decays);
                 }
-                let elastic = if found.values[0] > 0.0 {
-                    stiffness
-                } else {
-                    0.0
-                };
-                (found, elastic)
+                let compliance = dot_of(&found.by_first, &compliances);
+                (found, is_taut.then_some(compliance))
             }
         }
     }
@@ -214,29 +210,34 @@ impl Tendon {
         }
     }
 
-    /// With the ratios `r` that were there: `T₁ = EA (Σ r_j (l_j − l_j⁰) + L⁰ − M)/Σ r_j m_j`, which is that of
-    /// [`Tensions::from_stretch`] at the lengths `l⁰` that were there.
-    fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
-        let (ratios, then) = self.memory.ratios_and_lengths(self.lengths.len());
-        let (first, elastic) = match self.drive {
-            Drive::Tension(tension) => ((factor * tension).max(0.0), 0.0),
-            Drive::Shortening { by, stiffness } => {
-                let then = then.unwrap_or_else(|| line.lengths.clone());
-                let mut stretch = then.iter().sum::<f64>() - self.material(by, factor);
-                for ((ratio, now), then) in ratios.iter().zip(&line.lengths).zip(&then) {
-                    stretch += ratio * (now - then);
-                }
-                let compliance = dot_of(&ratios, &self.compliances(stiffness));
-                let first = (stretch / compliance).max(0.0);
-                (first, if first > 0.0 { stiffness } else { 0.0 })
+    /// With the ratios `r` that were there. Of a line that is drawn in `T₁ = (L − M)/Σ c_j r_j`, as at those ratios, and
+    /// `T_j = T₁ + (r_j − 1) T₁ⁿ`: what friction takes is that of the tension that was there, so that there is a potential.
+    fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+        let (ratios, before) = self.memory.ratios_and_first(self.lengths.len());
+        let holds = vec![Hold::Fixed; ratios.len() - 1];
+        match self.drive {
+            Drive::Tension(tension) => {
+                let first = (factor * tension).max(0.0);
+                let found = Tensions {
+                    values: ratios.iter().map(|ratio| ratio * first).collect(),
+                    holds,
+                    by_first: ratios,
+                };
+                (found, None)
             }
-        };
-        let found = Tensions {
-            values: ratios.iter().map(|ratio| ratio * first).collect(),
-            holds: vec![Hold::Fixed; ratios.len() - 1],
-            by_first: ratios,
-        };
-        (found, elastic)
+            Drive::Shortening { by, stiffness } => {
+                let compliance = dot_of(&ratios, &self.compliances(stiffness));
+                let stretch = line.length() - self.material(by, factor);
+                let first = stretch.max(0.0) / compliance;
+                let each = ratios.iter().map(|ratio| first + (ratio - 1.0) * before);
+                let found = Tensions {
+                    values: each.collect(),
+                    holds,
+                    by_first: vec![1.0; ratios.len()],
+                };
+                (found, (stretch > 0.0).then_some(compliance))
+            }
+        }
     }
 
     fn compliances(&self, stiffness: f64) -> Vec<f64> {
@@ -276,7 +277,7 @@ impl Tendon {
         let Pulled {
             line,
             tensions,
-            elastic,
+            compliance,
         } = pulled;
         let width = 3 * self.places.len();
         // With the first tension as it is.
@@ -305,29 +306,23 @@ impl Tendon {
             }
             rows.push(row);
         }
-        if *elastic == 0.0 {
+        let (Some(compliance), Drive::Shortening { stiffness, .. }) = (compliance, self.drive)
+        else {
             return rows;
-        }
+        };
         // The stretch Σ l_j − M stays Σ c_j T_j, of which the first tension takes what the others do not.
-        let compliances = self.compliances(*elastic);
         let mut first = vec![0.0; width];
         for segment in 0..self.lengths.len() {
-            let weight = if self.held && self.has_friction() {
-                tensions.by_first[segment]
-            } else {
-                1.0
-            };
-            line.add_length_slope(segment, weight, &mut first);
+            line.add_length_slope(segment, 1.0, &mut first);
         }
-        for (row, compliance) in rows.iter().zip(&compliances) {
+        for (row, part) in rows.iter().zip(self.compliances(stiffness)) {
             for (sum, x) in first.iter_mut().zip(row) {
-                *sum -= compliance * x;
+                *sum -= part * x;
             }
         }
-        let all = dot_of(&tensions.by_first, &compliances);
         for (row, slope) in rows.iter_mut().zip(&tensions.by_first) {
             for (x, first) in row.iter_mut().zip(&first) {
-                *x += slope * first / all;
+                *x += slope * first / compliance;
             }
         }
         rows
@@ -476,20 +471,27 @@ impl ExternalForce for Tendon {
         -self.potential(on, 1.0)
     }
 
-    /// With friction, which has none, that of tensions whose ratios stay.
+    /// With friction, which has none, that of tensions of which a part follows the first one and the rest stays.
     fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
-        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
+        let Pulled {
+            line,
+            tensions,
+            compliance,
+        } = self.pulled(on.positions, factor);
+        let first = tensions.values[0];
+        let ways = line.lengths.iter().zip(&self.lengths);
+        let longer = ways.map(|(now, rest)| now - rest);
         match self.drive {
             Drive::Tension(_) => {
-                let ways = line.lengths.iter().zip(&self.lengths);
-                let pairs = tensions.values.iter().zip(ways);
-                pairs
-                    .map(|(tension, (now, rest))| tension * (now - rest))
-                    .sum()
+                let pairs = tensions.values.iter().zip(longer);
+                pairs.map(|(tension, longer)| tension * longer).sum()
             }
-            Drive::Shortening { stiffness, .. } => {
-                let compliance = dot_of(&tensions.by_first, &self.compliances(stiffness));
-                0.5 * compliance * tensions.values[0].powi(2)
+            Drive::Shortening { .. } => {
+                let pairs = tensions.values.iter().zip(longer);
+                let dead: f64 = pairs
+                    .map(|(tension, longer)| (tension - first) * longer)
+                    .sum();
+                0.5 * compliance.unwrap_or(0.0) * first.powi(2) + dead
             }
         }
     }
@@ -499,9 +501,8 @@ impl ExternalForce for Tendon {
         let first = match self.drive {
             Drive::Tension(tension) if factor >= 0.0 => tension,
             Drive::Tension(_) => 0.0,
-            Drive::Shortening { .. } if pulled.elastic == 0.0 => 0.0,
-            Drive::Shortening { by, stiffness } => {
-                by / dot_of(&pulled.tensions.by_first, &self.compliances(stiffness))
+            Drive::Shortening { by, .. } => {
+                pulled.compliance.map_or(0.0, |compliance| by / compliance)
             }
         };
         let pulls: Vec<f64> = pulled
