@@ -32,6 +32,7 @@ __all__ = [
     "Floor",
     "Force",
     "Gravity",
+    "Guide",
     "History",
     "Layer",
     "Motion",

@@ -64,7 +64,7 @@ class Carrier(ABC):
         return vertices[kept], weights[kept] / len(found)
 
     def _ball(self, point: Floats, radius: float) -> Floats:
-        """Points evenly in a ball, as close as half an element or a quarter of the radius, (n, 3)."""
+        """Points evenly in a ball, by half an element or a quarter of the radius, (n, 3)."""
         step = min(0.5 * self.size, 0.25 * radius)
         count = int(radius / step)
         if count > _MOST_ACROSS:

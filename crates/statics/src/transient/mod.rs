@@ -101,9 +101,9 @@ impl Transient {
     /// Moves a problem on from a state.
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
+        let problem = &problem.clone().with_held_loads();
         let moving = problem
             .clone()
-            .with_held_loads()
             .with_term(Arc::clone(&inertia) as Arc<dyn Term>);
         let moving = moving.expect("inertia has the vertices of its body");
         if let Some(contact) = problem.contact() {

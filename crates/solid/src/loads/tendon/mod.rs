@@ -3,9 +3,10 @@
 //! A tendon of length `L(x)` that is pulled by a tension `T` has the potential `T L`. One that is drawn in is a spring of
 //! the stiffness `EA` over its length without tension `M`, which the puller makes shorter: `EA (L − M)²/2M`, and nothing
 //! where it is slack. With friction the tension falls along it ([`capstan`]), and there is no potential; the tangent is
-//! exact, and not symmetric. Dynamics holds the ratios of the tensions during a step, between which there is a potential.
+//! exact, and not symmetric. Dynamics holds the bounds of friction during a step, and has a potential then ([`held`]).
 
 mod capstan;
+mod held;
 mod memory;
 mod polyline;
 
@@ -17,7 +18,8 @@ use crate::assembly::{Visitor, check_indices};
 use crate::vector::{Vec3, axpy};
 
 use capstan::{Hold, Tensions};
-use memory::Memory;
+use held::HeldBend;
+use memory::{Kept, Memory};
 pub use polyline::Place;
 use polyline::Polyline;
 
@@ -50,7 +52,7 @@ pub struct Tendon {
     /// The tensions that were there, which friction remembers.
     #[serde(skip)]
     memory: Memory,
-    /// Whether ratios of tensions are those that were there.
+    /// Whether friction has the bounds of the state that was accepted last.
     #[serde(skip)]
     held: bool,
     /// Whether it goes on as it is where it would become slack.
@@ -116,7 +118,7 @@ impl Tendon {
         points.collect()
     }
 
-    /// The same with the ratios of tensions held as they were accepted last: it has a potential then.
+    /// The same with the bounds of friction held as they were accepted last: it has a potential then.
     pub fn held(&self) -> Self {
         Self {
             held: true,
@@ -140,6 +142,10 @@ impl Tendon {
         }
     }
 
+    fn is_held(&self) -> bool {
+        self.held && self.has_friction()
+    }
+
     fn has_friction(&self) -> bool {
         self.friction > 0.0
     }
@@ -151,7 +157,7 @@ impl Tendon {
 
     fn pulled(&self, positions: &[Vec3], factor: f64) -> Pulled {
         let line = Polyline::new(&self.places, positions);
-        let (tensions, compliance) = if self.held && self.has_friction() {
+        let (tensions, compliance) = if self.is_held() {
             self.held_tensions(&line, factor)
         } else {
             self.tensions(&line, factor)
@@ -163,9 +169,13 @@ impl Tendon {
         }
     }
 
-    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+    fn decays(&self, line: &Polyline) -> Vec<f64> {
         let decay = |angle: f64| libm::exp(-self.friction * angle);
-        let decays: Vec<f64> = line.angles().into_iter().map(decay).collect();
+        line.angles().into_iter().map(decay).collect()
+    }
+
+    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+        let decays = self.decays(line);
         let sticking = self.sticking(line);
         match self.drive {
             Drive::Tension(tension) => {
@@ -189,55 +199,85 @@ impl Tendon {
     /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
     /// the anchor has become longer since, over the compliance of the line that lies on it.
     fn sticking(&self, line: &Polyline) -> Vec<f64> {
-        let (mut tensions, then) = self.memory.tensions_and_lengths(&self.lengths);
+        let (mut tensions, then, first) = match self.memory.kept() {
+            Some(kept) => {
+                let first = kept.tensions[0];
+                (kept.tensions, kept.lengths, Some(first))
+            }
+            None => (vec![0.0; self.lengths.len()], self.lengths.clone(), None),
+        };
         let (mut longer, mut material) = (0.0, 0.0);
         for segment in (1..self.lengths.len()).rev() {
             longer += line.lengths[segment] - then[segment];
             material += self.lengths[segment];
-            tensions[segment] += self.stick_stiffness() / material * longer;
+            tensions[segment] += self.stick_stiffness(first) / material * longer;
         }
         tensions
     }
 
-    /// `EA` of what sticks, in N: its own, but no more than stretches by a little.
-    fn stick_stiffness(&self) -> f64 {
+    /// `EA` of what sticks, in N, after a tension at the pulled end: its own, but no more than stretches by a little.
+    fn stick_stiffness(&self, before: Option<f64>) -> f64 {
         match self.drive {
             Drive::Tension(tension) => STICK * tension,
-            Drive::Shortening { stiffness, .. } => match self.memory.first() {
+            Drive::Shortening { stiffness, .. } => match before {
                 Some(before) => stiffness.min(STICK * before),
                 None => stiffness,
             },
         }
     }
 
-    /// With the ratios `r` that were there. Of a line that is drawn in `T₁ = (L − M)/Σ c_j r_j`, as at those ratios, and
-    /// `T_j = T₁ + (r_j − 1) T₁ⁿ`: what friction takes is that of the tension that was there, so that there is a potential.
+    /// With friction as [`held`] has it. Of a line that is drawn in the first tension is `(L − M)/Σ c_j r_j`, as at the
+    /// ratios `r` that were there.
     fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
-        let (ratios, before) = self.memory.ratios_and_first(self.lengths.len());
-        let holds = vec![Hold::Fixed; ratios.len() - 1];
-        match self.drive {
-            Drive::Tension(tension) => {
-                let first = (factor * tension).max(0.0);
-                let found = Tensions {
-                    values: ratios.iter().map(|ratio| ratio * first).collect(),
-                    holds,
-                    by_first: ratios,
-                };
-                (found, None)
-            }
+        let kept = self.memory.kept();
+        let first_before = kept.as_ref().map_or(0.0, |kept| kept.tensions[0]);
+        let (first, compliance) = match self.drive {
+            Drive::Tension(tension) => ((factor * tension).max(0.0), None),
             Drive::Shortening { by, stiffness } => {
-                let compliance = dot_of(&ratios, &self.compliances(stiffness));
-                let stretch = line.length() - self.material(by, factor);
-                let first = stretch.max(0.0) / compliance;
-                let each = ratios.iter().map(|ratio| first + (ratio - 1.0) * before);
-                let found = Tensions {
-                    values: each.collect(),
-                    holds,
-                    by_first: vec![1.0; ratios.len()],
+                let compliances = self.compliances(stiffness);
+                let compliance = match &kept {
+                    Some(kept) if first_before > 0.0 => {
+                        dot_of(&kept.tensions, &compliances) / first_before
+                    }
+                    _ => compliances.iter().sum(),
                 };
-                (found, (stretch > 0.0).then_some(compliance))
+                let stretch = (line.length() - self.material(by, factor)).max(0.0);
+                (stretch / compliance, (stretch > 0.0).then_some(compliance))
             }
+        };
+        let mut values = vec![first];
+        let mut holds = Vec::new();
+        for (bend, (held, slip)) in self.held_bends(line).iter().enumerate() {
+            let (force, stiffness) = held.force(*slip);
+            values.push(values[bend] - force);
+            holds.push(Hold::Differs(stiffness));
         }
+        holds.resize(self.lengths.len() - 1, Hold::Differs(0.0));
+        values.resize(self.lengths.len(), first);
+        let found = Tensions {
+            by_first: vec![1.0; values.len()],
+            values,
+            holds,
+        };
+        (found, compliance)
+    }
+
+    /// Each bend during a step, and by how much the line has slid over it; none in the first step.
+    fn held_bends(&self, line: &Polyline) -> Vec<(HeldBend, f64)> {
+        let Some(kept) = self.memory.kept() else {
+            return Vec::new();
+        };
+        let (mut longer, mut material) = (0.0, 0.0);
+        let mut bends = Vec::with_capacity(kept.decays.len());
+        for (bend, decay) in kept.decays.iter().enumerate().rev() {
+            longer += line.lengths[bend + 1] - kept.lengths[bend + 1];
+            material += self.lengths[bend + 1];
+            let sides = [kept.tensions[bend], kept.tensions[bend + 1]];
+            let stiffness = self.stick_stiffness(Some(kept.tensions[0])) / material;
+            bends.push((HeldBend::new(sides, *decay, stiffness), -longer));
+        }
+        bends.reverse();
+        bends
     }
 
     fn compliances(&self, stiffness: f64) -> Vec<f64> {
@@ -249,8 +289,7 @@ impl Tendon {
 
     /// Whether segments pull without knowing of each other.
     fn is_in_pieces(&self) -> bool {
-        let free = !self.has_friction() || self.held;
-        free && matches!(self.drive, Drive::Tension(_))
+        !self.has_friction() && matches!(self.drive, Drive::Tension(_))
     }
 
     /// The vertices of places, each once.
@@ -280,6 +319,8 @@ impl Tendon {
             compliance,
         } = pulled;
         let width = 3 * self.places.len();
+        let before = self.memory.kept().map(|kept| kept.tensions[0]);
+        let stick = self.stick_stiffness(before);
         // With the first tension as it is.
         let mut rows = vec![vec![0.0; width]];
         for (bend, hold) in tensions.holds.iter().enumerate() {
@@ -297,12 +338,13 @@ impl Tendon {
                     }
                 }
                 Hold::Sticks => {
-                    let beyond = bend + 1..self.lengths.len();
-                    let material: f64 = self.lengths[beyond.clone()].iter().sum();
-                    let weight = self.stick_stiffness() / material;
-                    beyond.for_each(|segment| line.add_length_slope(segment, weight, &mut row));
+                    let material: f64 = self.lengths[bend + 1..].iter().sum();
+                    add_beyond(line, bend, stick / material, &mut row);
                 }
-                Hold::Fixed => {}
+                Hold::Differs(stiffness) => {
+                    row.clone_from(&rows[bend]);
+                    add_beyond(line, bend, *stiffness, &mut row);
+                }
             }
             rows.push(row);
         }
@@ -315,9 +357,11 @@ impl Tendon {
         for segment in 0..self.lengths.len() {
             line.add_length_slope(segment, 1.0, &mut first);
         }
-        for (row, part) in rows.iter().zip(self.compliances(stiffness)) {
-            for (sum, x) in first.iter_mut().zip(row) {
-                *sum -= part * x;
+        if !self.is_held() {
+            for (row, part) in rows.iter().zip(self.compliances(stiffness)) {
+                for (sum, x) in first.iter_mut().zip(row) {
+                    *sum -= part * x;
+                }
             }
         }
         for (row, slope) in rows.iter_mut().zip(&tensions.by_first) {
@@ -346,6 +390,14 @@ impl Tendon {
             }
         }
         matrix
+    }
+}
+
+/// Adds `weight` times the derivative of the length of all segments beyond a bend.
+fn add_beyond(line: &Polyline, bend: usize, weight: f64, row: &mut [f64]) {
+    if weight > 0.0 {
+        let beyond = bend + 1..line.lengths.len();
+        beyond.for_each(|segment| line.add_length_slope(segment, weight, row));
     }
 }
 
@@ -471,7 +523,7 @@ impl ExternalForce for Tendon {
         -self.potential(on, 1.0)
     }
 
-    /// With friction, which has none, that of tensions of which a part follows the first one and the rest stays.
+    /// With friction, which has none, that of a step in which it is held.
     fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
         let Pulled {
             line,
@@ -479,21 +531,17 @@ impl ExternalForce for Tendon {
             compliance,
         } = self.pulled(on.positions, factor);
         let first = tensions.values[0];
-        let ways = line.lengths.iter().zip(&self.lengths);
-        let longer = ways.map(|(now, rest)| now - rest);
-        match self.drive {
-            Drive::Tension(_) => {
-                let pairs = tensions.values.iter().zip(longer);
-                pairs.map(|(tension, longer)| tension * longer).sum()
-            }
-            Drive::Shortening { .. } => {
-                let pairs = tensions.values.iter().zip(longer);
-                let dead: f64 = pairs
-                    .map(|(tension, longer)| (tension - first) * longer)
-                    .sum();
-                0.5 * compliance.unwrap_or(0.0) * first.powi(2) + dead
-            }
-        }
+        let pulled = match self.drive {
+            Drive::Tension(_) => first * (line.length() - self.lengths.iter().sum::<f64>()),
+            Drive::Shortening { .. } => 0.5 * compliance.unwrap_or(0.0) * first.powi(2),
+        };
+        let held = if self.has_friction() {
+            self.held_bends(&line)
+        } else {
+            Vec::new()
+        };
+        let rubbed = held.iter().map(|(bend, slip)| bend.potential(*slip));
+        pulled + rubbed.sum::<f64>()
     }
 
     fn add_slopes(&self, on: Vertices<'_>, factor: f64, weight: f64, forces: &mut [Vec3]) {
@@ -543,11 +591,22 @@ impl ExternalForce for Tendon {
     }
 
     fn accept(&self, on: Vertices<'_>, factor: f64) {
-        if self.has_friction() {
-            let line = Polyline::new(&self.places, on.positions);
-            let (found, _) = self.tensions(&line, factor);
-            self.memory.keep(found.values, line.lengths);
+        if !self.has_friction() {
+            return;
         }
+        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
+        let decays = self.decays(&line);
+        let tensions = if self.is_held() {
+            // The bounds are those of this state from now on.
+            Tensions::from_first(tensions.values[0], &tensions.values, &decays).values
+        } else {
+            tensions.values
+        };
+        self.memory.keep(Kept {
+            tensions,
+            lengths: line.lengths,
+            decays,
+        });
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {

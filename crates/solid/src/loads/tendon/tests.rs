@@ -71,7 +71,12 @@ fn tendons_that_stick_in_part_keep_the_laws() {
         let before = tendon(drive, 0.25).state(&MOVED, eased).tensions;
         let tendon = tendon(drive, 0.4);
         let way = Polyline::new(&tendon.places, &MOVED).lengths;
-        tendon.memory.keep(before.clone(), way);
+        let decays = vec![0.9; 4];
+        tendon.memory.keep(Kept {
+            tensions: before.clone(),
+            lengths: way,
+            decays,
+        });
         let now = tendon.state(&MOVED, 1.0).tensions;
         assert!(now[1] < before[1], "it slides back where it is pulled");
         assert_eq!(now[4..], before[4..], "and sticks farther along");
