@@ -7,44 +7,67 @@
 /// A bend during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HeldBend {
-    /// What friction took before, in N.
+    /// What friction takes without slip, and what it can take, in N.
     before: f64,
-    /// What it can take, in N.
     low: f64,
     high: f64,
+    /// The derivatives of these three by the tension at the pulled end.
+    by_first: [f64; 3],
     /// By which it takes more where the line sticks, in N/m.
     stiffness: f64,
 }
 
+/// What friction takes at a bend, in N, and its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Taken {
+    pub force: f64,
+    /// By the slip, in N/m.
+    pub by_slip: f64,
+    /// By the tension at the pulled end.
+    pub by_first: f64,
+}
+
 impl HeldBend {
-    /// From the tensions on both sides of it before, `e^{−μθ}`, and the stiffness of what sticks.
-    pub fn new([ahead, beyond]: [f64; 2], decay: f64, stiffness: f64) -> Self {
-        let low = ahead * (1.0 - 1.0 / decay);
-        let high = ahead * (1.0 - decay);
+    /// From the tensions ahead of it and beyond before the step, their derivatives by the first one, `e^{−μθ}`, and the stiffness
+    /// of what sticks.
+    pub fn new(
+        [ahead, beyond]: [f64; 2],
+        [by_ahead, by_beyond]: [f64; 2],
+        decay: f64,
+        stiffness: f64,
+    ) -> Self {
+        let (least, most) = (1.0 - 1.0 / decay, 1.0 - decay);
         Self {
-            before: (ahead - beyond).clamp(low, high),
-            low,
-            high,
+            before: (ahead - beyond).clamp(ahead * least, ahead * most),
+            low: ahead * least,
+            high: ahead * most,
+            by_first: [by_ahead - by_beyond, by_ahead * least, by_ahead * most],
             stiffness,
         }
     }
 
-    /// What friction takes (N) where the line has slid by `slip` (m), and the derivative of that.
-    pub fn force(&self, slip: f64) -> (f64, f64) {
+    /// Where the line has slid by `slip` (m).
+    pub fn taken(&self, slip: f64) -> Taken {
         let sticking = self.before + self.stiffness * slip;
-        if sticking <= self.low {
-            (self.low, 0.0)
+        let [before, low, high] = self.by_first;
+        let (force, by_slip, by_first) = if sticking <= self.low {
+            (self.low, 0.0, low)
         } else if sticking >= self.high {
-            (self.high, 0.0)
+            (self.high, 0.0, high)
         } else {
-            (sticking, self.stiffness)
+            (sticking, self.stiffness, before)
+        };
+        Taken {
+            force,
+            by_slip,
+            by_first,
         }
     }
 
     /// The integral of that from no slip on, J.
     pub fn potential(&self, slip: f64) -> f64 {
-        let (force, slope) = self.force(slip);
-        if slope > 0.0 || self.stiffness == 0.0 {
+        let Taken { force, by_slip, .. } = self.taken(slip);
+        if by_slip > 0.0 || self.stiffness == 0.0 {
             return 0.5 * (self.before + force) * slip;
         }
         // It slides from where it reaches its bound.
@@ -59,14 +82,14 @@ mod tests {
 
     #[test]
     fn the_force_is_the_slope_of_the_potential() {
-        let bend = HeldBend::new([5.0, 4.6], 0.8, 1e3);
+        let bend = HeldBend::new([5.0, 4.6], [0.0; 2], 0.8, 1e3);
         for slip in [-5e-3, -1e-3, -1e-4, 0.0, 2e-4, 5e-4, 4e-3] {
             let step = 1e-8;
             let slope = (bend.potential(slip + step) - bend.potential(slip - step)) / (2.0 * step);
-            assert!((slope - bend.force(slip).0).abs() < 1e-5, "{slip}");
+            assert!((slope - bend.taken(slip).force).abs() < 1e-5, "{slip}");
         }
-        assert_eq!(bend.force(1.0), (5.0 * (1.0 - 0.8), 0.0));
-        assert_eq!(bend.force(-1.0), (5.0 * (1.0 - 1.0 / 0.8), 0.0));
+        assert_eq!(bend.taken(1.0).force, 5.0 * (1.0 - 0.8));
+        assert_eq!(bend.taken(-1.0).force, 5.0 * (1.0 - 1.0 / 0.8));
         assert_eq!(bend.potential(0.0), 0.0);
     }
 }

@@ -245,36 +245,48 @@ impl Tendon {
                 (stretch / compliance, (stretch > 0.0).then_some(compliance))
             }
         };
-        let mut values = vec![first];
-        let mut holds = Vec::new();
-        for (bend, (held, slip)) in self.held_bends(line).iter().enumerate() {
-            let (force, stiffness) = held.force(*slip);
-            values.push(values[bend] - force);
-            holds.push(Hold::Differs(stiffness));
-        }
-        holds.resize(self.lengths.len() - 1, Hold::Differs(0.0));
-        values.resize(self.lengths.len(), first);
-        let found = Tensions {
-            by_first: vec![1.0; values.len()],
-            values,
-            holds,
+        let mut found = Tensions {
+            values: vec![first],
+            holds: Vec::new(),
+            by_first: vec![1.0],
         };
+        for (bend, (held, slip)) in self.held_bends(line, first).iter().enumerate() {
+            let taken = held.taken(*slip);
+            found.values.push(found.values[bend] - taken.force);
+            found.by_first.push(found.by_first[bend] - taken.by_first);
+            found.holds.push(Hold::Differs(taken.by_slip));
+        }
+        let segments = self.lengths.len();
+        found.values.resize(segments, first);
+        found.by_first.resize(segments, 1.0);
+        found.holds.resize(segments - 1, Hold::Differs(0.0));
         (found, compliance)
     }
 
     /// Each bend during a step, and by how much the line has slid over it; none in the first step.
-    fn held_bends(&self, line: &Polyline) -> Vec<(HeldBend, f64)> {
+    fn held_bends(&self, line: &Polyline, first: f64) -> Vec<(HeldBend, f64)> {
         let Some(kept) = self.memory.kept() else {
             return Vec::new();
         };
+        // Where a tension is given, it has changed already where the line was; that of a line that is drawn in is found
+        // in the step.
+        let (before, slopes) = match self.drive {
+            Drive::Tension(_) => {
+                let now = Tensions::from_first(first, &kept.tensions, &kept.decays);
+                (now.values, now.by_first)
+            }
+            Drive::Shortening { .. } => (kept.tensions.clone(), vec![0.0; kept.tensions.len()]),
+        };
+        let stick = self.stick_stiffness(Some(kept.tensions[0]));
         let (mut longer, mut material) = (0.0, 0.0);
         let mut bends = Vec::with_capacity(kept.decays.len());
         for (bend, decay) in kept.decays.iter().enumerate().rev() {
             longer += line.lengths[bend + 1] - kept.lengths[bend + 1];
             material += self.lengths[bend + 1];
-            let sides = [kept.tensions[bend], kept.tensions[bend + 1]];
-            let stiffness = self.stick_stiffness(Some(kept.tensions[0])) / material;
-            bends.push((HeldBend::new(sides, *decay, stiffness), -longer));
+            let sides = [before[bend], before[bend + 1]];
+            let by_first = [slopes[bend], slopes[bend + 1]];
+            let held = HeldBend::new(sides, by_first, *decay, stick / material);
+            bends.push((held, -longer));
         }
         bends.reverse();
         bends
@@ -536,7 +548,7 @@ impl ExternalForce for Tendon {
             Drive::Shortening { .. } => 0.5 * compliance.unwrap_or(0.0) * first.powi(2),
         };
         let held = if self.has_friction() {
-            self.held_bends(&line)
+            self.held_bends(&line, first)
         } else {
             Vec::new()
         };
