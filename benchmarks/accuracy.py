@@ -1,10 +1,12 @@
 """Errors against converged references, for the hyperelastic voxel and the lattice.
 
-``python benchmarks/accuracy.py [--json] [--fine]``. Six clamped beams under their weight, round and
-stair-step cylinders at 4 kPa, a PneuNet at 3 kPa, and a block with a smooth exact solution. E =
-60 kPa everywhere and nothing is fitted, but for the lattice: its two moduli are those that fit
-beam (a) at 5 mm best, and then stay. `--fine` adds voxels of 1.25 mm to the bodies that take
-minutes with them.
+``python benchmarks/accuracy.py [--json] [--fine] [--answers]``. First what runs answer, with their
+error bars and times (`answers.py`): twisted bars, thick spheres and tubes, cylinders, a PneuNet,
+and six clamped beams of three Poisson's ratios; `--answers` stops there. Then the same beams,
+round and stair-step cylinders at 4 kPa, the PneuNet at 3 kPa, and a block with a smooth exact
+solution, of both materials and sizes extrapolated by hand. E = 60 kPa everywhere and nothing is
+fitted, but for the lattice: its two moduli are those that fit beam (a) at 5 mm best, and then
+stay. `--fine` adds voxels of 1.25 mm to the bodies that take minutes with them.
 
 Errors of beams are lengths of the error vector at the stations of the reference; the ratio is over
 the tip's displacement. Elsewhere the error is that of one displacement, and the ratio is over it.
@@ -22,6 +24,15 @@ from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from answers import (
+    beam_answers,
+    cylinder_answers,
+    pneunet_answers,
+    rubber,
+    sphere_answers,
+    tube_answers,
+)
+from bending import torsion
 from make_references import SOFT, cylinder, pneunet
 from measure import Report
 from numpy.typing import NDArray
@@ -58,8 +69,8 @@ class Beam:
         """How far the tip moves in mm."""
         return float(np.linalg.norm(self.moved[-1]))
 
-    def setup(self, material: Material, refine: int = 1) -> Setup:
-        """The beam of 5 mm voxels, each cut into `refine` along each axis."""
+    def design(self, material: Material) -> vs.Design:
+        """The beam of 5 mm voxels."""
         length, width, height = (f"{side:g} mm" for side in self.size)
         beam = families.paper_beam().with_parameters(length=length, width=width, height=height)
         probes = {
@@ -73,7 +84,11 @@ class Beam:
             "probes": probes,
             "objectives": {},
         }
-        return Setup.of(beam.replace(**changes), refine=refine)
+        return beam.replace(**changes)
+
+    def setup(self, material: Material, refine: int = 1) -> Setup:
+        """The beam of 5 mm voxels, each cut into `refine` along each axis."""
+        return Setup.of(self.design(material), refine=refine)
 
 
 def rows_of(name: str) -> list[dict[str, str]]:
@@ -162,6 +177,36 @@ def beam_rows(report: Report, sizes: tuple[int, ...]) -> None:
         report.add(name, 100 * max(ratios), "% of its displacement")
 
 
+def answers(report: Report, refines: tuple[int, ...]) -> None:
+    """What runs answer, with their error bars and times."""
+    for across in (2, 4, 8):
+        error = torsion(across)
+        report.add(f"torsion, {across} across, error of the torque", 100 * error, "%", 1 + error)
+    sphere_answers(report)
+    tube_answers(report)
+    walls = rows_of("cylinders_4kPa_smooth.csv")
+    cylinder_answers(
+        report,
+        cylinder,
+        [(float(row["wall_mm"]), float(row["top_centre_uz_mm"])) for row in walls],
+    )
+    pneunet_answers(report, pneunet(), voxel_references()["pneunet-2.5", "tip_uz_mm"])
+    for beam in beams():
+
+        def make(poisson: float, refine: int, beam: Beam = beam) -> vs.Design:
+            design = beam.design(rubber(poisson))
+            return design.replace(voxel_size=design.voxel_size / refine)
+
+        station = f"s{beam.stations[-1]:g}"
+        beam_answers(report, beam.name, make, station, float(beam.moved[-1][1]), refines)
+
+
+def voxel_references() -> dict[tuple[str, str], float]:
+    """The references on stairs, by case and quantity."""
+    rows = rows_of("voxel_references.csv")
+    return {(row["case"], row["quantity"]): float(row["value"]) for row in rows}
+
+
 def one_number(report: Report, name: str, value: float, reference: float) -> None:
     """Add the error of one displacement in mm."""
     report.add(f"{name}, error", value - reference, "mm", value / reference - 1)
@@ -207,10 +252,7 @@ def with_material(design: vs.Design, material: Material) -> vs.Design:
 
 def stair_rows(report: Report, refines: tuple[int, ...]) -> None:
     """Cylinders of 5 mm voxels as they stand, steps and all, and the PneuNet of 2.5 mm voxels."""
-    table = {
-        (row["case"], row["quantity"]): float(row["value"])
-        for row in rows_of("voxel_references.csv")
-    }
+    table = voxel_references()
     for wall in (5, 10, 15):
         body = cylinder(wall * mm, VOXEL * mm)
         # Points only: means over faces weigh their vertices, of which finer elements have others.
@@ -260,9 +302,15 @@ def order_rows(report: Report) -> None:
 def main() -> None:
     """Measure everything."""
     report = Report(
-        "Errors against converged references", fine="also 1.25 mm voxels, which take minutes"
+        "Errors against converged references",
+        fine="also 1.25 mm voxels, which take minutes",
+        answers="only what runs answer, with their error bars",
     )
     fine = bool(report.options["fine"])
+    answers(report, (1, 2, 4))
+    if report.options["answers"]:
+        report.show()
+        return
     order_rows(report)
     fitted = lattice()
     report.add("lattice fitted to beam (a), edge modulus", fitted.edge / kPa, "kPa")

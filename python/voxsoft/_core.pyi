@@ -200,6 +200,7 @@ class Material:
     def with_fibers(self, fibers: Sequence[Fiber]) -> Material:
         """The same with these fibers in place of any others; a lattice has none."""
 
+    def with_swelling(self, stretch: float) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
         """The same with these branches: share of the instantaneous modulus, time in s."""
 
@@ -253,6 +254,19 @@ class ProblemParts:
         triangles: NDArray[np.uint32],
         pressure: float,
         history: _History = None,
+    ) -> None: ...
+    def fluid(
+        self,
+        network: str,
+        walls: Sequence[
+            Sequence[
+                tuple[
+                    NDArray[np.uint32],
+                    tuple[NDArray[np.uint32], NDArray[np.float64]] | None,
+                    float,
+                ]
+            ]
+        ],
     ) -> None: ...
     def floor(self, z: float) -> None: ...
     def attach(self, kind: str, elements: str) -> None: ...
@@ -457,6 +471,14 @@ class Answer:
     @property
     def elastic_energy(self) -> float: ...
     @property
+    def chambers(self) -> NDArray[np.float64]:
+        """Pressure, volume, mass, flow, work and energy of each chamber with a fluid, (c, 6)."""
+
+    @property
+    def chamber_records(self) -> NDArray[np.float64]:
+        """The same at each record, (f, c, 6)."""
+
+    @property
     def record_times(self) -> NDArray[np.float64]: ...
     @property
     def records(self) -> NDArray[np.float64]: ...
@@ -527,6 +549,9 @@ def equilibrium(
     control: str = "load",
     steps: int = 20,
     ratio: float = 1.0,
+    from_time: float | None = None,
+    to_time: float = ...,
+    longest: float = 1.0,
     linear: str = "auto",
     memory: int = ...,
     start: NDArray[np.float64] | None = None,
@@ -555,6 +580,9 @@ def adjoint(
     *,
     memory: int = ...,
 ) -> NDArray[np.float64]: ...
+def modes(
+    problem: Problem, positions: NDArray[np.float64], count: int, *, memory: int = ...
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def record_contact(problem: Problem) -> None: ...
 def recorded_contact(problem: Problem) -> tuple[bool, float, float]: ...
 def same_surfaces(problem: Problem, other: Problem) -> bool: ...

@@ -44,15 +44,12 @@ def mean_rotation(
 ) -> float:
     """Angle in rad by which some vertices have turned as a whole.
 
-    The best rotation in the sense of least squares (Kabsch 1976, doi 10.1107/S0567739476001873);
-    for a tip section of a bending actuator this is its bending angle.
+    For a tip section of a bending actuator this is its bending angle.
 
     Parameters
     ----------
-    rest, positions
-        Vertices at rest and now, (n, 3), m.
-    vertices
-        At least three vertices that are not on one line.
+    rest, positions, vertices
+        As for :func:`mean_rotation_vector`.
 
     Returns
     -------
@@ -67,14 +64,47 @@ def mean_rotation(
     >>> round(float(np.degrees(angle)), 6)
     90.0
     """
+    return float(np.linalg.norm(mean_rotation_vector(rest, positions, vertices)))
+
+
+def mean_rotation_vector(
+    rest: NDArray[np.float64], positions: NDArray[np.float64], vertices: NDArray[np.uint32]
+) -> NDArray[np.float64]:
+    """The turn of some vertices as a whole: along its axis, and as long as its angle in rad.
+
+    The best rotation in the sense of least squares (Kabsch 1976, doi 10.1107/S0567739476001873).
+
+    Parameters
+    ----------
+    rest, positions
+        Vertices at rest and now, (n, 3), m.
+    vertices
+        At least three vertices that are not on one line.
+
+    Returns
+    -------
+    ndarray of shape (3,)
+        Right-handed, at most π long; NaN where the vertices do not define a rotation.
+
+    Examples
+    --------
+    >>> square = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]])
+    >>> turned = square @ np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    >>> vector = mean_rotation_vector(square, turned, np.arange(4, dtype=np.uint32))
+    >>> np.degrees(vector).round(6) + 0.0
+    array([ 0.,  0., 90.])
+    """
+    from scipy.spatial.transform import Rotation  # slow to load
+
     before = rest[vertices] - rest[vertices].mean(axis=0)
     after = positions[vertices] - positions[vertices].mean(axis=0)
     left, values, right = np.linalg.svd(before.T @ after)
     if values[1] <= 1e-12 * values[0] or len(vertices) < 3:
-        return float("nan")
+        return np.full(3, np.nan)
     handed = np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))])
-    cosine = (np.trace(left @ handed @ right) - 1.0) / 2.0
-    return float(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    # Rows turn by the transpose.
+    vector: NDArray[np.float64] = Rotation.from_matrix((left @ handed @ right).T).as_rotvec()
+    return vector
 
 
 def enclosed_volume(triangles: NDArray[np.int32], positions: NDArray[np.float64]) -> float:

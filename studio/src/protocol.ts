@@ -52,6 +52,7 @@ export const TopologyFlag = {
 /** Kinds: SI unit, unit of bare numbers, exponents. */
 export const KINDS = {
   "length": {"si": "m", "written": "mm", "called": "a length", "dimension": [1, 0, 0, 0]},
+  "curvature": {"si": "1/m", "written": "1/m", "called": "a curvature", "dimension": [-1, 0, 0, 0]},
   "area": {"si": "m^2", "written": "mm^2", "called": "an area", "dimension": [2, 0, 0, 0]},
   "volume": {"si": "m^3", "written": "mL", "called": "a volume", "dimension": [3, 0, 0, 0]},
   "pressure": {"si": "Pa", "written": "kPa", "called": "a pressure", "dimension": [-1, 1, -2, 0]},
@@ -563,6 +564,7 @@ export interface Metric {
   name: string;
   kind: string;
   needs_probe: boolean;
+  needs_base: boolean;
   needs_cavity: boolean;
   takes_percentile: boolean;
   needs_object: boolean;

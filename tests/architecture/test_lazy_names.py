@@ -33,10 +33,10 @@ def test_a_package_shows_its_public_names_and_nothing_else(name):
     assert list(package.__all__) == sorted(package.__all__)
 
 
-def test_the_package_itself_has_at_most_seventy_names():
+def test_the_package_itself_has_at_most_eighty_names():
     """What is typed every day; the rest is in its modules."""
     voxsoft = importlib.import_module("voxsoft")
-    assert len(voxsoft.__all__) <= 70
+    assert len(voxsoft.__all__) <= 80
     assert len(set(voxsoft.__all__)) == len(voxsoft.__all__)
 
 

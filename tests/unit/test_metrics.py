@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from voxsoft import Objective, check, simulate
+from voxsoft import Objective, Probe, check, simulate
 from voxsoft.design import families
 from voxsoft.errors import DesignError
 from voxsoft.metrics import METRICS, Metric
@@ -19,7 +19,8 @@ SOFT = 'parts.0.material={model="neo-hookean", young="60 kPa"}'
 @pytest.fixture(scope="module")
 def pressed():
     small = families.cylinder(radius="20 mm", height="30 mm")
-    return simulate(small.with_values(SOFT, "loads.0.value=1 kPa"))
+    probes = {"top": small.probes["top"], "foot": Probe(z=(0, 0))}
+    return simulate(small.with_values(SOFT, "loads.0.value=1 kPa").replace(probes=probes))
 
 
 def test_every_metric_has_its_own_name_and_kind():
@@ -34,8 +35,8 @@ def test_a_metric_without_a_value_cannot_be_made():
 
 
 def test_a_name_that_is_no_metric_is_refused(pressed):
-    with pytest.raises(DesignError, match=r'"curvature" is not a metric'):
-        pressed.metric("curvature")
+    with pytest.raises(DesignError, match=r'"roundness" is not a metric'):
+        pressed.metric("roundness")
 
 
 #: Those of contact have no value where a design has none.
@@ -46,9 +47,11 @@ WITHOUT_CONTACT = sorted(name for name in BUILT_IN if "object" not in METRICS[na
 def test_a_result_and_the_state_that_derivatives_use_agree(pressed, name):
     """Two readings of one registry; supports carry nothing here, up to 1e-8 of about 1 N."""
     state = LoadedState(Setup(pressed.design, pressed.mesh), pressed.positions)
-    target = Objective(maximize=name)
+    needs = {"probe": "top", "base": "foot"}
+    options = {key: value for key, value in needs.items() if key in METRICS[name].needs}
+    target = Objective(maximize=name, **options)
     assert METRICS[name].value(state, target) == pytest.approx(
-        pressed.metric(name), rel=1e-6, abs=1e-8
+        pressed.metric(name, **options), rel=1e-6, abs=1e-8
     )
 
 
@@ -74,5 +77,5 @@ def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
 
 
 def test_an_axis_gives_a_component_and_no_axis_the_magnitude(pressed):
-    parts = [pressed.metric("displacement", axis=axis) for axis in ("x", "y", "z")]
-    assert pressed.metric("displacement") == pytest.approx(np.linalg.norm(parts))
+    parts = [pressed.metric("displacement", probe="top", axis=axis) for axis in ("x", "y", "z")]
+    assert pressed.metric("displacement", probe="top") == pytest.approx(np.linalg.norm(parts))

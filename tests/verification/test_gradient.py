@@ -143,7 +143,11 @@ def test_prescribed_motion_moves_the_clamped_vertices_too():
         "energy": Objective(maximize="elastic_energy"),
         # Not the largest stretch: it stands at a kink here, where edges trade places.
     }
-    turn = {"turn": Objective(maximize="rotation", probe="end")}
+    turn = {
+        "turn": Objective(maximize="rotation", probe="end"),
+        "about": Objective(maximize="rotation", probe="end", axis="x"),
+        "aside": Objective(maximize="rotation", probe="end", axis="y"),
+    }
     angle = "clamps.1.motion.rotation.angle"
     probes = {"end": {"x": ["15 mm", "15 mm"]}, "point": {"point": ["7 mm", "2 mm", "3 mm"]}}
     design = block(clamps=moving, probes=probes)
@@ -177,6 +181,12 @@ def test_two_materials_in_one_body():
         "turn": Objective(maximize="rotation", probe="end"),
         "energy": Objective(maximize="elastic_energy"),
     }
+    lines = {
+        f"{metric}{axis or ''}": Objective(maximize=metric, probe="end", base="point", axis=axis)
+        for metric in ("chord_angle", "curvature")
+        for axis in (None, "x")
+    }
+    targets |= lines
     constants = ["parts.0.material.c.0", "parts.0.material.c.1", "parts.1.material.poisson"]
     check(bar, targets, ["E", *constants, "parts.0.material.density", "loads.0.value"])
 
@@ -253,7 +263,9 @@ def test_slopes_of_metrics_are_their_derivatives(name):
         f"parts.0.material={SOFT}"
     )
     loads = [{"kind": "traction", "region": {"z": ["20 mm", "20 mm"]}, "value": "500 Pa"}]
-    setup = Setup.of(Design.from_document({**pressed.document, "loads": loads}))
+    probes = {"top": {"z": ["20 mm", "20 mm"]}, "side": {"x": ["10 mm", "15 mm"]}}
+    changes = {"loads": loads, "probes": probes}
+    setup = Setup.of(Design.from_document({**pressed.document, **changes}))
     random = np.random.default_rng(3)
     rest = setup.mesh.vertices
     turned = rest @ np.linalg.qr(random.normal(size=(3, 3)))[0]
@@ -262,7 +274,7 @@ def test_slopes_of_metrics_are_their_derivatives(name):
     way, step = random.normal(size=rest.shape), 1e-7
     metric = METRICS[name]
     for axis in [None, "y"] if "axis" in metric.takes else [None]:
-        target = Objective(maximize=name, axis=axis)
+        target = Objective(maximize=name, axis=axis, probe="top", base="side")
         along = float(np.vdot(metric.slope(LoadedState(setup, positions), target), way))
         high, low = (
             metric.value(LoadedState(setup, positions + sign * step * way), target)

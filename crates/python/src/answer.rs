@@ -70,6 +70,9 @@ pub struct PyAnswer {
     pub records: Py<PyArray3<f64>>,
     pub frames: Py<PyArray3<f64>>,
     pub path: Option<Py<PyPath>>,
+    /// Pressure, volume, mass, flow, work and energy of each chamber with a fluid, and at each record.
+    pub chambers: Py<PyArray2<f64>>,
+    pub chamber_records: Py<PyArray3<f64>>,
     /// What touches what.
     pub contacts: Vec<Py<PyContact>>,
     /// Where the objects are.

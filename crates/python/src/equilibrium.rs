@@ -63,11 +63,12 @@ pub(crate) fn to_python(error: AdjointError) -> PyErr {
     }
 }
 
-/// The equilibrium. `control` is "load", "arc-length" (with `steps`) or "volume" (with `steps`, `ratio`);
+/// The equilibrium. `control` is "load", "time" (with `from_time`, `to_time`, `longest`), "arc-length" (with `steps`) or
+/// "volume" (with `steps`, `ratio`);
 /// `start` are positions, and `pressures` what the voxels there have instead of their own, see `Problem.pressures`;
 /// `linear` is "auto", "direct" or "iterative", `memory` the bytes that the tangent may take.
 #[pyfunction]
-#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, linear="auto", memory=u64::MAX, start=None, pressures=None, sensors=vec![], frames=false, progress=None))]
+#[pyo3(signature = (problem, *, tolerance, first_step=1.0, control="load", steps=20, ratio=1.0, from_time=None, to_time=f64::INFINITY, longest=1.0, linear="auto", memory=u64::MAX, start=None, pressures=None, sensors=vec![], frames=false, progress=None))]
 #[expect(
     clippy::too_many_arguments,
     reason = "keyword arguments of one Python call"
@@ -80,6 +81,9 @@ pub fn equilibrium(
     control: &str,
     steps: u32,
     ratio: f64,
+    from_time: Option<f64>,
+    to_time: f64,
+    longest: f64,
     linear: &str,
     memory: u64,
     start: Option<PyReadonlyArray2<'_, f64>>,
@@ -91,10 +95,15 @@ pub fn equilibrium(
     let inner = &problem.problem;
     let control = match control {
         "load" => Control::Load,
+        "time" => Control::Time {
+            from: from_time,
+            to: to_time,
+            longest,
+        },
         "arc-length" => Control::ArcLength { steps },
         "volume" => Control::Volume { ratio, steps },
         other => {
-            let message = format!("control: \"{other}\" is not load, arc-length or volume");
+            let message = format!("control: \"{other}\" is not load, time, arc-length or volume");
             return Err(PyValueError::new_err(message));
         }
     };
@@ -122,7 +131,7 @@ pub fn equilibrium(
         positions,
         pressures,
     });
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(inner);
     let problem_of_work = Arc::clone(inner);
     let (answer, watch) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);

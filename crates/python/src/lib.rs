@@ -13,6 +13,7 @@ mod gate;
 mod live;
 mod materials;
 mod mesh;
+mod modes;
 mod player;
 mod sensitivity;
 mod shapes;
@@ -55,6 +56,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     player::add_constants(module)?;
     module.add_function(wrap_pyfunction!(equilibrium::equilibrium, module)?)?;
     module.add_function(wrap_pyfunction!(equilibrium::adjoint, module)?)?;
+    module.add_function(wrap_pyfunction!(modes::modes, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::sensitivities, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::record_contact, module)?)?;
     module.add_function(wrap_pyfunction!(sensitivity::recorded_contact, module)?)?;

@@ -101,6 +101,11 @@ impl PyMaterial {
         made(self.rubber(py, "prony")?.with_prony(branches))
     }
 
+    /// The same material, free of stress when it is so many times as long along every axis.
+    fn with_swelling(&self, py: Python<'_>, stretch: f64) -> PyResult<Self> {
+        made(self.rubber(py, "activations")?.with_swelling(stretch))
+    }
+
     /// Young's modulus in Pa at small strain, of voxels with edges of so many m.
     fn young(&self, voxel_size: f64) -> f64 {
         match &self.0 {

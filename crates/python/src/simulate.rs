@@ -7,10 +7,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
+use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Gravity, History, Images, Load,
+    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Fluid, Gravity, History, Images, Load,
     LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, Motion, PointForces,
     Pressure, Problem, ProblemError, State, Term, elastic,
 };
@@ -91,6 +92,7 @@ pub struct PyProblemParts {
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
     tendons: Vec<(TendonPart, History)>,
+    fluid: Option<Fluid>,
 }
 
 #[pymethods]
@@ -164,6 +166,25 @@ impl PyProblemParts {
         let forces = rows("forces", &forces)?;
         let vertices = vertices.as_array().to_vec();
         self.load(PointForces { vertices, forces }, history)
+    }
+
+    /// Gas or liquid in chambers: a network as JSON, and for each chamber of it walls, as triangles with their voids and
+    /// weight.
+    fn fluid(&mut self, network: &str, walls: Vec<Vec<WallArgument<'_>>>) -> PyResult<()> {
+        let network: Network = serde_json::from_str(network)
+            .map_err(|error| PyValueError::new_err(format!("network: {error}")))?;
+        let wall = |(triangles, voids, weight): WallArgument<'_>| {
+            Ok(Pressure {
+                triangles: rows("triangles", &triangles)?,
+                voids: self::voids(voids)?,
+                pressure: weight,
+                closed: true,
+            })
+        };
+        let chamber = |walls: Vec<WallArgument<'_>>| walls.into_iter().map(wall).collect();
+        let walls: Vec<Walls> = walls.into_iter().map(chamber).collect::<PyResult<_>>()?;
+        self.fluid = Some(Fluid::new(network, walls).map_err(to_python)?);
+        Ok(())
     }
 
     fn floor(&mut self, z: f64) {
@@ -375,6 +396,9 @@ impl PyProblemParts {
     }
 }
 
+/// Triangles, voids, and the weight of both.
+type WallArgument<'py> = (PyReadonlyArray2<'py, u32>, VoidsArgument<'py>, f64);
+
 /// Tetrahedra and the part of each that is void.
 type VoidsArgument<'py> = Option<(PyReadonlyArray2<'py, u32>, PyReadonlyArray1<'py, f64>)>;
 
@@ -480,6 +504,7 @@ impl PyProblem {
             attachments: Vec::new(),
             touch: None,
             tendons: Vec::new(),
+            fluid: self.problem.fluid().cloned(),
         };
         let mut mesh = self.mesh.clone();
         let mut parts = parts;
@@ -681,6 +706,7 @@ impl PyProblem {
             loads.push(load.ok_or_else(missing)?);
         }
         let touch = parts.touch.clone();
+        let fluid = parts.fluid.as_ref().map(Fluid::anew);
         gate::run_owned(py, move |_| {
             let mut mesh = mesh;
             if let Some(parts) = &touch {
@@ -688,6 +714,9 @@ impl PyProblem {
             }
             let body = Body::new(&mesh, &materials)?;
             let mut problem = Problem::new(body, clamps, loads, floor)?;
+            if let Some(fluid) = fluid.transpose()? {
+                problem = problem.with_fluid(fluid)?;
+            }
             let mut touching = None;
             if let Some(parts) = touch {
                 if let Some(springs) = parts.frame_springs(problem.body(), first) {
@@ -782,6 +811,15 @@ impl PyProblem {
         let balance = balance_under(&self.problem, positions, factor_of);
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let sensors = watch.sensors.len();
+        let now = self.problem.fluid().map_or(Vec::new(), |fluid| {
+            fluid.read(positions, fluid.part(factor_of))
+        });
+        let now: Vec<[f64; 6]> = now.iter().map(|reading| reading.numbers()).collect();
+        let read = if watch.chambers.is_empty() {
+            0
+        } else {
+            watch.recorded
+        };
         let frames = if watch.keep_frames { watch.recorded } else { 0 };
         Ok(PyAnswer {
             status: answer.status.into(),
@@ -807,6 +845,10 @@ impl PyProblem {
                 .reshape([frames, own, 3])?
                 .unbind(),
             path: None,
+            chambers: from_rows(py, &now).unbind(),
+            chamber_records: PyArray1::from_vec(py, watch.chambers)
+                .reshape([read, now.len(), 6])?
+                .unbind(),
             contacts,
             objects,
             history: None,

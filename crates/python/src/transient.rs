@@ -51,7 +51,7 @@ pub fn transient(
         .as_ref()
         .map(|touching| Arc::clone(&touching.touch));
     let first = problem.own();
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
+    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(&inner);
     let seen: Mutex<Seen> = Mutex::default();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| {

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
-use voxsoft_solid::Progress;
 use voxsoft_solid::vector::Vec3;
+use voxsoft_solid::{Fluid, Problem, Progress};
 
 /// How often a Python progress callback is called at most.
 const PROGRESS_PERIOD: Duration = Duration::from_millis(100);
@@ -39,6 +39,9 @@ pub(crate) struct Watch {
     pub(crate) times: Vec<f64>,
     pub(crate) records: Vec<f64>,
     pub(crate) frames: Vec<f64>,
+    /// What fills chambers, and what was read of each at every record.
+    fluid: Option<Fluid>,
+    pub(crate) chambers: Vec<f64>,
     pub(crate) raised: Option<PyErr>,
 }
 
@@ -57,13 +60,34 @@ impl Watch {
             times: Vec::new(),
             records: Vec::new(),
             frames: Vec::new(),
+            fluid: None,
+            chambers: Vec::new(),
             raised: None,
+        }
+    }
+
+    /// The same that also reads the chambers of a problem.
+    pub(crate) fn of_chambers(self, problem: &Problem) -> Self {
+        Self {
+            fluid: problem.fluid().cloned(),
+            ..self
         }
     }
 
     pub(crate) fn see(&mut self, now: &Progress<'_>, cancel: &AtomicBool) -> ControlFlow<()> {
         if now.record {
             self.record(now.positions, now.time);
+            if let Some(fluid) = &self.fluid {
+                // Without velocities it is a point of a path of equilibria, and the time its load factor.
+                let part = if now.velocities.is_empty() {
+                    now.time
+                } else {
+                    1.0
+                };
+                let readings = fluid.read(now.positions, part);
+                self.chambers
+                    .extend(readings.iter().flat_map(|reading| reading.numbers()));
+            }
         }
         self.report((now.steps, now.time, now.residual), cancel)
     }

@@ -75,6 +75,8 @@ enum Material {
         fibers: Vec<(Vec3, f64, bool)>,
         /// Share and time of each branch.
         prony: Vec<(f64, f64)>,
+        /// How much longer it is free of stress than in the body at rest.
+        swelling: f64,
     },
 }
 
@@ -319,6 +321,7 @@ impl From<&solid::Material> for Material {
                     .map(|f| (f.direction, f.modulus, f.compression))
                     .collect(),
                 prony: rubber.prony().to_vec(),
+                swelling: rubber.swelling(),
             },
         }
     }
@@ -345,6 +348,7 @@ impl TryFrom<Material> for solid::Material {
                 density,
                 fibers,
                 prony,
+                swelling,
             } => {
                 let model = match model {
                     Hyperelastic::NeoHookean(c10) => Model::NeoHookean { c10 },
@@ -360,7 +364,8 @@ impl TryFrom<Material> for solid::Material {
                 };
                 let fibers = fibers.into_iter().map(fiber).collect();
                 let plain = HyperelasticMaterial::new(model, bulk, density)?;
-                plain.with_fibers(fibers)?.with_prony(prony)?.into()
+                let whole = plain.with_fibers(fibers)?.with_prony(prony)?;
+                whole.with_swelling(swelling)?.into()
             }
         })
     }

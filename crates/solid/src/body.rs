@@ -177,7 +177,7 @@ impl Body {
                     &materials[usize::from(mesh.tet_part[block[0]])]
                 {
                     let (vertices, side) = cube.ok_or(ProblemError::NotCubes { tet: block[0] })?;
-                    let brick = Brick {
+                    let mut brick = Brick {
                         vertices,
                         material: u32::from(mesh.tet_part[block[0]]),
                         side,
@@ -190,6 +190,8 @@ impl Body {
                     for vertex in vertices {
                         masses[vertex as usize] += material.density() * brick.volume() / 8.0;
                     }
+                    // Swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ times as large.
+                    brick.side *= material.swelling();
                     bricks.push(brick);
                 }
                 owned.push((first_new..found.len()).collect());

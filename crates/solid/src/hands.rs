@@ -1,7 +1,7 @@
 //! Hands on a problem in motion: springs that pull vertices, and loads that are set by hand.
 
 use crate::vector::{Vec3, axpy, norm, scale, sub};
-use crate::{History, Problem, ProblemError, State};
+use crate::{Fluid, History, Problem, ProblemError, State};
 
 /// A spring between a vertex and a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -180,7 +180,11 @@ pub fn loads_end(problem: &Problem) -> f64 {
     let loads = problem.loads().iter().map(|load| &load.history);
     let clamps = problem.clamps().iter();
     let motions = clamps.filter_map(|clamp| Some(&clamp.motion.as_ref()?.history));
-    loads.chain(motions).map(History::end).fold(0.0, f64::max)
+    let of_fluid = problem.fluid().map_or(0.0, Fluid::end);
+    loads
+        .chain(motions)
+        .map(History::end)
+        .fold(of_fluid, f64::max)
 }
 
 /// The shortest side of anything in the body, in m: what a step may safely be measured by.

@@ -2,9 +2,12 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::assembly::{Visitor, check_indices};
+use crate::fluid::Coupling;
 use crate::loads::Vertices;
 use crate::vector::Vec3;
-use crate::{Body, Clamp, Contact, Floor, History, Load, LoadKind, ProblemError, Rigid, Term};
+use crate::{
+    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
+};
 
 /// A body with clamps, loads, and maybe a floor or contact.
 #[derive(Debug, Clone)]
@@ -14,6 +17,7 @@ pub struct Problem {
     loads: Vec<Load>,
     floor: Option<Floor>,
     contact: Option<Arc<dyn Contact>>,
+    fluid: Option<Fluid>,
     rigid: Vec<Rigid>,
     held: Vec<[bool; 3]>,
     conservative: bool,
@@ -48,6 +52,7 @@ impl Problem {
             loads,
             floor,
             contact: None,
+            fluid: None,
             rigid: Vec::new(),
             held,
             conservative,
@@ -60,10 +65,32 @@ impl Problem {
         let mut problem = self.with_term(term)?;
         let mut joined = problem.held.clone();
         contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
-        let pressed = pressed(&problem.loads);
+        let pressed = problem.pressed();
         problem.body.warp_unless(&joined, &pressed);
         problem.contact = Some(contact);
         Ok(problem)
+    }
+
+    /// The same with gas or liquid in its chambers; to be added before contact.
+    pub fn with_fluid(mut self, fluid: Fluid) -> Result<Self, ProblemError> {
+        fluid.check(self.body.rest().len())?;
+        self.conservative &= fluid.is_conservative();
+        self.fluid = Some(fluid);
+        let pressed = self.pressed();
+        self.body.warp_unless(&self.held, &pressed);
+        Ok(self)
+    }
+
+    /// What fills its chambers, where that has a pressure of its own.
+    pub fn fluid(&self) -> Option<&Fluid> {
+        self.fluid.as_ref()
+    }
+
+    /// The triangles under pressure.
+    fn pressed(&self) -> Vec<[u32; 3]> {
+        let mut pressed = pressed(&self.loads);
+        pressed.extend(self.fluid.iter().flat_map(Fluid::triangles));
+        pressed
     }
 
     /// The same with another term on its body.
@@ -154,6 +181,9 @@ impl Problem {
         let on = self.vertices(positions);
         for load in &self.loads {
             load.kind.add_forces(on, factor_of(load), forces);
+        }
+        if let Some(fluid) = &self.fluid {
+            fluid.add_forces(positions, fluid.part(factor_of), forces);
         }
     }
 
@@ -248,7 +278,9 @@ impl Problem {
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
         let on = self.vertices(positions);
         let potential = |load: &Load| load.kind.potential(on, factor_of(load));
-        self.loads.iter().map(potential).sum()
+        let of_fluid = |fluid: &Fluid| fluid.potential(positions, fluid.part(factor_of));
+        let of_loads: f64 = self.loads.iter().map(potential).sum();
+        self.fluid.as_ref().map_or(0.0, of_fluid) + of_loads
     }
 
     /// The work (J) of all pressures with a factor for each: what volume control prescribes.
@@ -267,7 +299,7 @@ impl Problem {
     }
 
     /// Hands minus the derivative of the external forces by positions (N/m) to `visit`, piece by
-    /// piece as [`crate::elastic::visit_stiffness`] does.
+    /// piece as [`crate::elastic::visit_stiffness`] does, but for [`Problem::coupling`].
     pub fn visit_load_stiffness(
         &self,
         positions: &[Vec3],
@@ -278,6 +310,19 @@ impl Problem {
             let factor = factor_of(load);
             load.kind.visit_stiffness(positions, factor, visit);
         }
+        if let Some(fluid) = &self.fluid {
+            fluid.visit_stiffness(positions, fluid.part(factor_of), visit);
+        }
+    }
+
+    /// The part of that which joins all of the walls of a chamber, as the pressure in it follows its volume.
+    pub fn coupling(
+        &self,
+        positions: &[Vec3],
+        factor_of: &dyn Fn(&Load) -> f64,
+    ) -> Option<Coupling> {
+        let fluid = self.fluid.as_ref()?;
+        Some(fluid.coupling(positions, fluid.part(factor_of)))
     }
 
     /// Hands over the vertices of every element and every piece of the loads' stiffness: the tangent joins no
@@ -292,6 +337,9 @@ impl Problem {
         self.loads
             .iter()
             .for_each(|load| load.kind.visit_pattern(visit));
+        self.fluid
+            .iter()
+            .for_each(|fluid| fluid.visit_pattern(visit));
     }
 
     /// Puts held vertices where their clamps want them at `time`, motions being scaled by `ramp`.

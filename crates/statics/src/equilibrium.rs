@@ -7,7 +7,7 @@ use voxsoft_solid::balance::NEGLIGIBLE_STRAIN;
 use voxsoft_solid::matrix::axial;
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
-use voxsoft_solid::{Body, Brick, Observer, Problem, Progress, elastic};
+use voxsoft_solid::{Body, Brick, Fluid, Observer, Problem, Progress, elastic};
 
 use crate::inertia::Inertia;
 use crate::point::Point;
@@ -58,6 +58,24 @@ pub(crate) enum Way {
 pub(crate) struct Found {
     pub iterations: u32,
     pub residual: f64,
+}
+
+/// As long as it lives, forces and stiffness of a fluid are those of pressures that are carried along; what is looked at
+/// to judge a state has none.
+struct Carrying<'a>(Option<&'a Fluid>);
+
+impl<'a> Carrying<'a> {
+    fn along(fluid: Option<&'a Fluid>, pressures: Option<Vec<f64>>) -> Self {
+        let fluid = fluid.filter(|_| pressures.is_some());
+        fluid.inspect(|fluid| fluid.carry(pressures));
+        Self(fluid)
+    }
+}
+
+impl Drop for Carrying<'_> {
+    fn drop(&mut self) {
+        self.0.inspect(|fluid| fluid.carry(None));
+    }
 }
 
 /// The forces at some positions.
@@ -310,6 +328,8 @@ impl<'a> Equilibrium<'a> {
         let body = self.problem.body();
         let opening = self.opening.take();
         let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
+        let fluid = self.problem.fluid().filter(|fluid| fluid.is_stiff());
+        let mut carried: Option<Vec<f64>> = None;
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         let mut previous = f64::INFINITY;
@@ -327,6 +347,7 @@ impl<'a> Equilibrium<'a> {
                     residual: relative,
                 });
             }
+            let carrying = Carrying::along(fluid, carried.take());
             if let Some(strains) = &strains {
                 forces.free = self.predicted_forces(strains, positions, point);
             }
@@ -384,6 +405,9 @@ impl<'a> Equilibrium<'a> {
                 Some(strains) => strains.carry(body, positions, &moves),
                 None => Strains::predict(body, positions, &moves),
             });
+            carried = fluid
+                .map(|fluid| fluid.carried_on(positions, fluid.part(&point.factor_of()), &moves));
+            drop(carrying);
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);
             }

@@ -38,8 +38,10 @@
 //! ```
 
 mod adjoint;
+mod along;
 mod bordered;
 mod control;
+mod coupled;
 mod direct;
 mod ensemble;
 mod equilibrium;
@@ -47,6 +49,7 @@ mod implicit;
 mod inertia;
 mod iterative;
 mod loose;
+mod modes;
 mod multigrid;
 mod ordering;
 mod path;
@@ -65,6 +68,7 @@ mod volume;
 pub use adjoint::{AdjointError, adjoint};
 pub use ensemble::{Ensemble, Settled, Variant};
 pub use implicit::{Implicit, ImplicitSettings};
+pub use modes::{Mode, modes};
 pub use path::{Start, solve};
 pub use sensitivity::{Varied, sensitivities};
 pub use settings::{Answer, Control, LinearSolver, PathPoint, Settings};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Observer, Problem, Progress, Status, Term};
 
+use crate::along::Along;
 use crate::control;
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
@@ -29,6 +30,8 @@ const LARGEST_TURN: f64 = 1.0;
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
 pub(crate) const LONGEST_OF_WAY: f64 = 0.05;
+/// The longest step where fluids do work, which is added up by the trapezoidal rule: it is good to some parts in a thousand then.
+const LONGEST_OF_WORK: f64 = 0.125;
 /// How much of the load, or of the growth of a volume, comes on while the body snaps.
 pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
@@ -56,24 +59,6 @@ impl Ending {
             status,
             limit,
             reached,
-        }
-    }
-}
-
-/// What grows under load control.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Along {
-    /// All loads and motions.
-    All,
-    /// All but pressures, which volume control goes on with.
-    Dead,
-}
-
-impl Along {
-    fn at(self, factor: f64) -> Point {
-        match self {
-            Self::All => Point::all(factor),
-            Self::Dead => Point::of(factor, 0.0),
         }
     }
 }
@@ -109,7 +94,7 @@ pub fn solve(
     observer: &mut Observer<'_>,
 ) -> Answer {
     let loose = match settings.control {
-        Control::Load | Control::Volume { .. } => Loose::find(problem),
+        Control::Load | Control::Time { .. } | Control::Volume { .. } => Loose::find(problem),
         // What is loose goes to rest under a load, which past a limit nothing is stable under.
         Control::ArcLength { .. } => None,
     };
@@ -133,7 +118,7 @@ fn follow(
     let rest = problem.body().rest();
     let positions = start.map_or(rest, |start| &start.positions).to_vec();
     let solver = match settings.control {
-        Control::Load => settings.linear,
+        Control::Load | Control::Time { .. } => settings.linear,
         // Where contact goes astray is told from the signs of pivots.
         Control::Volume { .. } if problem.contact().is_none() => settings.linear,
         Control::ArcLength { .. } | Control::Volume { .. } => LinearSolver::Direct,
@@ -142,10 +127,17 @@ fn follow(
         solver,
         memory: settings.memory,
     };
-    if let Some(contact) = problem.contact() {
+    let along = Along::of(settings.control);
+    let goes_on = matches!(along, Along::Time { .. });
+    if let Some(contact) = problem.contact().filter(|_| !goes_on) {
         contact.start(&positions);
     }
-    problem.start_loads();
+    if !goes_on {
+        problem.start_loads();
+        if let Some(fluid) = problem.fluid() {
+            fluid.start(rest, None);
+        }
+    }
     let equilibrium = match Equilibrium::new(problem, means) {
         Ok(equilibrium) => Equilibrium {
             precision: (settings.tolerance / Settings::default().tolerance).min(1.0),
@@ -160,14 +152,17 @@ fn follow(
             ..equilibrium
         },
         positions,
-        point: Point::all(0.0),
+        point: along.at(0.0),
         points: Vec::new(),
         snaps: Vec::new(),
         observer,
         looking: false,
     };
     let ending = match settings.control {
-        Control::Load => path.follow_load(settings, Along::All, start.is_some(), loose),
+        Control::Load | Control::Time { .. } => {
+            let warm = start.is_some() && !goes_on;
+            path.follow_load(settings, along, warm, loose)
+        }
         Control::ArcLength { steps } => control::follow_arc(&mut path, settings, steps),
         Control::Volume { ratio, steps } => {
             let growth = (ratio, steps);
@@ -190,6 +185,7 @@ fn refused(positions: Vec<Vec3>, error: FactorError) -> Answer {
         },
         factor: 0.0,
         dead_factor: 0.0,
+        time: f64::INFINITY,
         reached: 0.0,
         residual: f64::INFINITY,
         iterations: 0,
@@ -214,7 +210,9 @@ impl Path<'_, '_> {
     fn answer(mut self, ending: Ending, settings: &Settings) -> Answer {
         // Load and volume control have asked at each point; a point of an arc knows only whether the load has turned.
         let stable = match (self.points.last(), settings.control) {
-            (Some(last), Control::Load | Control::Volume { .. }) => last.stable,
+            (Some(last), Control::Load | Control::Time { .. } | Control::Volume { .. }) => {
+                last.stable
+            }
             _ => self.equilibrium.is_stable(&self.positions, self.point),
         };
         let residual = self
@@ -225,6 +223,7 @@ impl Path<'_, '_> {
             status: ending.status,
             factor: self.point.pressure,
             dead_factor: self.point.dead,
+            time: self.point.time,
             reached: ending.reached,
             residual,
             iterations: self.equilibrium.iterations,
@@ -243,6 +242,9 @@ impl Path<'_, '_> {
         }
         let problem = self.equilibrium.problem;
         problem.accept_loads(&positions, &point.factor_of());
+        if let Some(fluid) = self.equilibrium.problem.fluid() {
+            fluid.take_rest(&positions, fluid.part(&point.factor_of()));
+        }
         self.positions = positions;
         self.point = point;
         self.points.push(PathPoint {
@@ -287,10 +289,14 @@ impl Path<'_, '_> {
         };
         let cold = self.equilibrium.problem.body().rest().to_vec();
         let contact = self.equilibrium.problem.contact();
-        let longest = if self.equilibrium.problem.depends_on_way() {
-            LONGEST_OF_WAY
-        } else {
-            1.0
+        let longest = match settings.control {
+            _ if !self.equilibrium.problem.depends_on_way() => 1.0,
+            Control::Time { longest, .. } => longest,
+            _ => LONGEST_OF_WAY,
+        };
+        let longest = match self.equilibrium.problem.fluid() {
+            Some(_) => f64::min(longest, LONGEST_OF_WORK),
+            None => longest,
         };
         let easy = if contact.is_some() {
             EASY_WITH_CONTACT
@@ -300,9 +306,9 @@ impl Path<'_, '_> {
         let mut length = StepLength::new(first, longest);
         let mut cuts = 0;
         let mut last = f64::INFINITY;
+        let mut now = 0.0;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
-            let now = self.point.dead;
             let step = length.get();
             let next = if now + LAST * step < 1.0 {
                 now + step
@@ -328,7 +334,9 @@ impl Path<'_, '_> {
                     if stable || cuts == UNSTABLE_CUTS {
                         // Under dead loads alone only the end is a point of the path.
                         self.looking = match along {
-                            Along::All => loose.is_some() && next == 1.0,
+                            Along::All { .. } | Along::Time { .. } => {
+                                loose.is_some() && next == 1.0
+                            }
                             Along::Dead => next < 1.0,
                         };
                         self.accept(trial, point, found.iterations, found.residual);
@@ -336,6 +344,7 @@ impl Path<'_, '_> {
                             point.stable = stable;
                         }
                         last = next - now;
+                        now = next;
                         if next == 1.0 {
                             return self.end(along, loose, settings);
                         }
@@ -379,14 +388,17 @@ impl Path<'_, '_> {
                 {
                     length.set(SNAP);
                     last = f64::INFINITY;
-                    if self.point.dead < 1.0 {
+                    now = (now + SNAP).min(1.0);
+                    if now < 1.0 {
                         continue;
                     }
                     return self.end(along, loose, settings);
                 }
-                // Contact makes corners in the path, which no tangent foresees.
-                let limit = match (contact, along) {
-                    (None, Along::All) => self.look_ahead(settings),
+                // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
+                // load, so that no direction leads ahead.
+                let fluid = self.equilibrium.problem.fluid();
+                let limit = match contact {
+                    None if fluid.is_none() && along.has_factor() => self.look_ahead(settings),
                     _ => None,
                 };
                 // What was held at an equilibrium before does not move freely: contact lost its way.
@@ -403,7 +415,7 @@ impl Path<'_, '_> {
     /// The end of load control, where all that grows is there.
     fn end(&mut self, along: Along, loose: Option<&Loose>, settings: &Settings) -> Ending {
         match (along, loose) {
-            (Along::All, Some(loose)) => {
+            (Along::All { .. } | Along::Time { .. }, Some(loose)) => {
                 let mut search = AtLoad {
                     point: self.point,
                     safe: true,
@@ -411,7 +423,9 @@ impl Path<'_, '_> {
                 };
                 self.release(loose, &mut search, settings)
             }
-            (Along::All, None) => Ending::new(Status::AtRest, None, 1.0),
+            (Along::All { .. } | Along::Time { .. }, None) => {
+                Ending::new(Status::AtRest, None, 1.0)
+            }
             (Along::Dead, _) => {
                 self.looking = false;
                 let before = self.points.len().saturating_sub(1);

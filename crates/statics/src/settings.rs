@@ -9,7 +9,17 @@ use crate::point::Point;
 pub enum Control {
     /// All loads and motions grow together to their full values.
     Load,
-    /// The same, but steps are measured along the path in displacements and loads, so that it is
+    /// Loads and motions are those that their histories have at an instant, as if nothing had mass.
+    Time {
+        /// The instant in s of the equilibrium that it starts from; without one, loads and motions grow together to
+        /// those of the end.
+        from: Option<f64>,
+        /// The instant in s at the end.
+        to: f64,
+        /// The longest step, as a part of the way, where the answer depends on the way.
+        longest: f64,
+    },
+    /// Loads and motions grow as with [`Control::Load`], but steps are measured along the path in displacements and loads, so that it is
     /// followed through snaps, where the load falls. Ends at the full load, or after `steps`.
     ArcLength {
         /// The most steps to take.
@@ -127,6 +137,8 @@ pub struct Answer {
     pub factor: f64,
     /// The same on loads that are no pressure, which [`Control::Volume`] holds while pressures vary.
     pub dead_factor: f64,
+    /// The instant of all histories in s; without end where they are over.
+    pub time: f64,
     /// How much of the way that was asked for lies behind: of the load, or with [`Control::Volume`] of
     /// the growth in volume. One at the end of it.
     pub reached: f64,
@@ -149,6 +161,10 @@ pub struct Answer {
 impl Answer {
     /// The factor on a load at the positions that were reached.
     pub fn factor_of(&self, load: &Load) -> f64 {
-        Point::of(self.dead_factor, self.factor).factor_of()(load)
+        let point = Point {
+            time: self.time,
+            ..Point::of(self.dead_factor, self.factor)
+        };
+        point.factor_of()(load)
     }
 }

@@ -131,7 +131,7 @@ impl Equilibrium<'_> {
 
     /// Corrects the forces of contact by an equilibrium; whether they have settled.
     fn is_contact_settled(&self, positions: &[Vec3], point: Point) -> bool {
-        let precision = if point == Point::all(1.0) {
+        let precision = if (point.dead, point.pressure) == (1.0, 1.0) {
             self.precision.min(AT_THE_END)
         } else {
             self.precision

@@ -4,6 +4,7 @@ use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Load, Problem};
 
+use crate::coupled::{Answers, Coupled};
 use crate::direct::{DirectFactor, DirectSystem};
 use crate::iterative::{IterativeFactor, IterativeSystem};
 use crate::settings::LinearSolver;
@@ -13,14 +14,26 @@ const LARGE: usize = 4_000;
 
 /// The tangent of a problem, kept with its pattern for many assemblies.
 ///
-/// The direct way runs on one thread; the iterative one on all, with the same bits for any number.
-pub(crate) enum System {
+/// The direct way runs on one thread; the iterative one on all, with the same bits for any number. What joins all of a
+/// chamber's wall is kept apart ([`crate::coupled`]), and is solved for directly.
+pub(crate) struct System {
+    tangent: Tangent,
+    coupled: Option<Coupled>,
+}
+
+enum Tangent {
     Direct(Box<DirectSystem>),
     Iterative(Box<IterativeSystem>),
 }
 
 /// A tangent made ready for solutions.
-pub(crate) enum Factor {
+pub(crate) struct Factor {
+    tangent: TangentFactor,
+    /// Those of the tangent to what is coupled to it.
+    answers: Option<Answers>,
+}
+
+enum TangentFactor {
     Direct(DirectFactor),
     Iterative(IterativeFactor),
 }
@@ -67,23 +80,29 @@ impl System {
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Auto => large,
+        } && problem.fluid().is_none();
+        let tangent = if iterative && let Some(system) = IterativeSystem::new(problem, held, means)?
+        {
+            Tangent::Iterative(Box::new(system))
+        } else {
+            Tangent::Direct(Box::new(DirectSystem::new(problem, held, means)?))
         };
-        if iterative && let Some(system) = IterativeSystem::new(problem, held, means)? {
-            return Ok(Self::Iterative(Box::new(system)));
-        }
-        DirectSystem::new(problem, held, means).map(|system| Self::Direct(Box::new(system)))
+        Ok(Self {
+            tangent,
+            coupled: None,
+        })
     }
 
     /// Whether solutions come from an iteration.
     pub fn is_iterative(&self) -> bool {
-        matches!(self, Self::Iterative(_))
+        matches!(self.tangent, Tangent::Iterative(_))
     }
 
     /// The length of vectors of free coordinates.
     pub fn size(&self) -> usize {
-        match self {
-            Self::Direct(system) => system.size(),
-            Self::Iterative(system) => system.size(),
+        match &self.tangent {
+            Tangent::Direct(system) => system.size(),
+            Tangent::Iterative(system) => system.size(),
         }
     }
 
@@ -99,45 +118,94 @@ impl System {
         jump: Option<&[Vec3]>,
         residual: &mut [f64],
     ) {
-        match self {
-            Self::Direct(system) => {
+        match &mut self.tangent {
+            Tangent::Direct(system) => {
                 system.assemble(problem, positions, factor_of, strains, jump, residual);
             }
-            Self::Iterative(system) => {
+            Tangent::Iterative(system) => {
                 system.assemble(problem, positions, factor_of, strains, jump, residual);
             }
         }
+        let coupling = problem.coupling(positions, factor_of);
+        if let (Some(coupling), Some(jump)) = (&coupling, jump) {
+            let mut forces = vec![[0.0; 3]; positions.len()];
+            coupling.add_product(jump, &mut forces);
+            let pairs = residual.iter_mut().zip(self.gather(&forces));
+            pairs.for_each(|(side, force)| *side -= force);
+        }
+        let free = |coupling| Coupled::new(coupling, &|field| self.gather(field));
+        self.coupled = coupling.map(free);
     }
 
     /// Factorizes the assembled tangent plus `shift` times its diagonal, whatever its signs.
     pub fn factor(&mut self, shift: f64) -> Result<Factor, FactorError> {
-        match self {
-            Self::Direct(system) => match system.factor(shift, true) {
+        let tangent = match &mut self.tangent {
+            Tangent::Direct(system) => match system.factor(shift, true) {
                 Err(FactorError::NotPositive) => system.factor(shift, false),
                 other => other,
             }
-            .map(Factor::Direct),
-            Self::Iterative(system) => {
+            .map(TangentFactor::Direct),
+            Tangent::Iterative(system) => {
                 system.lift(shift);
-                system.factor(false).map(Factor::Iterative)
+                system.factor(false).map(TangentFactor::Iterative)
             }
-        }
+        }?;
+        Ok(Factor {
+            answers: self.answers(&tangent),
+            tangent,
+        })
     }
 
     /// Factorizes the assembled tangent, which is symmetric, plus `shift` times its diagonal, if that is
     /// positive definite. An iteration needs no shift: its solutions go downhill anyway.
     pub fn factor_positive(&mut self, shift: f64) -> Result<Factor, FactorError> {
-        match self {
-            Self::Direct(system) => system.factor(shift, true).map(Factor::Direct),
-            Self::Iterative(system) => system.factor(true).map(Factor::Iterative),
+        if self.coupled.is_some() {
+            // What is coupled to it may hold what the tangent alone does not.
+            let factor = self.factor(shift)?;
+            return if self.is_positive(&factor) {
+                Ok(factor)
+            } else {
+                Err(FactorError::NotPositive)
+            };
+        }
+        let tangent = match &mut self.tangent {
+            Tangent::Direct(system) => system.factor(shift, true).map(TangentFactor::Direct),
+            Tangent::Iterative(system) => system.factor(true).map(TangentFactor::Iterative),
+        }?;
+        Ok(Factor {
+            tangent,
+            answers: None,
+        })
+    }
+
+    /// The solutions of a factor to the gradients that are coupled to it.
+    fn answers(&self, factor: &TangentFactor) -> Option<Answers> {
+        let (coupled, Tangent::Direct(system), TangentFactor::Direct(factor)) =
+            (self.coupled.as_ref()?, &self.tangent, factor)
+        else {
+            return None;
+        };
+        let solve = |side: &mut [f64], transposed: bool| system.solve(factor, side, transposed);
+        Some(coupled.answers(&solve))
+    }
+
+    fn is_positive(&self, factor: &Factor) -> bool {
+        let negative = self.negative_pivots(factor);
+        match (&self.coupled, &factor.answers) {
+            (Some(coupled), Some(answers)) => {
+                negative.is_some_and(|negative| coupled.is_positive_with(answers, negative))
+            }
+            _ => negative == Some(0),
         }
     }
 
-    /// How many negative eigenvalues the factorized matrix has; unknown where it is not symmetric, or
-    /// solved iteratively.
+    /// How many negative eigenvalues the factorized matrix has, what is coupled to it left out; unknown where it is not
+    /// symmetric, or solved iteratively.
     pub fn negative_pivots(&self, factor: &Factor) -> Option<usize> {
-        match (self, factor) {
-            (Self::Direct(system), Factor::Direct(factor)) => system.negative_pivots(factor),
+        match (&self.tangent, &factor.tangent) {
+            (Tangent::Direct(system), TangentFactor::Direct(factor)) => {
+                system.negative_pivots(factor)
+            }
             _ => None,
         }
     }
@@ -154,13 +222,16 @@ impl System {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        match (self, factor) {
-            (Self::Direct(system), Factor::Direct(factor)) => {
-                system.solve(factor, side, transposed);
-                Ok(())
+        match (&self.tangent, &factor.tangent) {
+            (Tangent::Direct(system), TangentFactor::Direct(direct)) => {
+                system.solve(direct, side, transposed);
+                match (&self.coupled, &factor.answers) {
+                    (Some(coupled), Some(answers)) => coupled.correct(answers, side, transposed),
+                    _ => Ok(()),
+                }
             }
             // Only symmetric tangents are solved iteratively.
-            (Self::Iterative(system), Factor::Iterative(factor)) => {
+            (Tangent::Iterative(system), TangentFactor::Iterative(factor)) => {
                 system.solve(factor, side, tolerance, stop)
             }
             _ => unreachable!("a factor belongs to the system that made it"),
@@ -176,8 +247,8 @@ impl System {
         tolerance: f64,
         stop: &mut dyn FnMut() -> bool,
     ) -> Result<(), FactorError> {
-        match (self, factor) {
-            (Self::Iterative(system), Factor::Iterative(factor)) => {
+        match (&self.tangent, &factor.tangent) {
+            (Tangent::Iterative(system), TangentFactor::Iterative(factor)) => {
                 system.solve_from(factor, side, guess, tolerance, stop)
             }
             _ => self.solve(factor, side, false, tolerance, stop),
@@ -187,33 +258,33 @@ impl System {
     /// Whether the tangent is positive among all directions across `gradient`, where its inverse gives `gradient` a negative
     /// `compliance` by itself: it has one negative eigenvalue then.
     pub fn is_held_across(&mut self, factor: &Factor, gradient: &[f64], compliance: f64) -> bool {
-        match self {
-            Self::Direct(_) => self.negative_pivots(factor) == Some(1),
-            Self::Iterative(system) => system.is_held_across(gradient, compliance),
+        match &mut self.tangent {
+            Tangent::Direct(_) => self.negative_pivots(factor) == Some(1),
+            Tangent::Iterative(system) => system.is_held_across(gradient, compliance),
         }
     }
 
     /// Whether the assembled tangent, which is symmetric, is positive definite.
     pub fn is_positive_definite(&mut self) -> bool {
-        match self {
-            Self::Direct(system) => system.factor(0.0, true).is_ok(),
-            Self::Iterative(system) => system.is_positive_definite(None),
+        match &mut self.tangent {
+            Tangent::Direct(_) => self.factor_positive(0.0).is_ok(),
+            Tangent::Iterative(system) => system.is_positive_definite(None),
         }
     }
 
     /// The free coordinates of vectors on vertices.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
-        match self {
-            Self::Direct(system) => system.gather(vectors),
-            Self::Iterative(system) => system.gather(vectors),
+        match &self.tangent {
+            Tangent::Direct(system) => system.gather(vectors),
+            Tangent::Iterative(system) => system.gather(vectors),
         }
     }
 
     /// Free coordinates as vectors on vertices, zero where held.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
-        match self {
-            Self::Direct(system) => system.spread(free),
-            Self::Iterative(system) => system.spread(free),
+        match &self.tangent {
+            Tangent::Direct(system) => system.spread(free),
+            Tangent::Iterative(system) => system.spread(free),
         }
     }
 }

@@ -8,12 +8,13 @@
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Problem, Status};
 
+use crate::along::Along;
 use crate::bordered::{
     Bordered, Constraint, DIRECTION_TOLERANCE, Missing, Unknown, load_direction, product,
 };
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
-use crate::path::{Along, Ending, LONGEST_OF_WAY, Path, SNAP, UNSTABLE_CUTS, status_of};
+use crate::path::{Ending, LONGEST_OF_WAY, Path, SNAP, UNSTABLE_CUTS, status_of};
 use crate::point::Point;
 use crate::settings::Settings;
 

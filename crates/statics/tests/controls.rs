@@ -13,8 +13,8 @@ use common::touching::{NONE, add_box, moved, touching};
 use common::{block, vertices_where};
 use voxsoft_contact::touch::{Surface, Touch};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, Load, Pressure, Problem, Spring, Springs, Status};
-use voxsoft_statics::{Answer, Control, Settings, solve};
+use voxsoft_solid::{Body, Clamp, History, Load, Pressure, Problem, Spring, Springs, Status};
+use voxsoft_statics::{Answer, Control, Settings, Start, solve};
 
 /// The side of the block, its height over the anchors, their distance, m; a spring, N/m.
 const SIDE: f64 = 10e-3;
@@ -40,10 +40,11 @@ fn largest() -> f64 {
     truss(HEIGHT - (length * length - ASIDE * ASIDE).sqrt())
 }
 
-/// What pushes the block: its weight down (N), a clamp that goes down by a way (m) and pulls by a spring, or a chamber below it
+/// What pushes the block: its weight down (N), at once or over time, a clamp that goes down by a way (m) and pulls by a spring, or a chamber below it
 /// up.
 enum Push {
     Weight(f64),
+    Slowly(f64, History),
     Clamp(f64),
     Chamber,
 }
@@ -52,7 +53,7 @@ const PULLER: f64 = 30.0;
 
 fn guided(push: &Push) -> (Problem, Arc<Touch>) {
     let sign = match push {
-        Push::Weight(_) | Push::Clamp(_) => -1.0,
+        Push::Weight(_) | Push::Slowly(..) | Push::Clamp(_) => -1.0,
         Push::Chamber => 1.0,
     };
     let mut mesh = block([1, 1, 1], SIDE);
@@ -108,11 +109,14 @@ fn guided(push: &Push) -> (Problem, Arc<Touch>) {
         });
     }
     let body = Body::new(&mesh, &[common::rubber()]).unwrap();
+    let mass: f64 = body.masses().iter().sum();
+    let down = |weight: f64| Load::gravity([0.0, 0.0, -weight / mass]);
     let loads = match push {
-        Push::Weight(weight) => {
-            let mass: f64 = body.masses().iter().sum();
-            vec![Load::gravity([0.0, 0.0, -weight / mass])]
-        }
+        Push::Weight(weight) => vec![down(*weight)],
+        Push::Slowly(weight, history) => vec![Load {
+            history: history.clone(),
+            ..down(*weight)
+        }],
         Push::Clamp(_) => Vec::new(),
         // Either diagonal of the faces carries half of the pressure, so that all corners get the same.
         Push::Chamber => [false, true]
@@ -230,6 +234,37 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
     assert!(!jumps.iter().any(on_way));
     let off = force(&touch, &snapped) - (weight - truss(way));
     assert!(off.abs() < 1e-4 * weight, "{off}");
+}
+
+/// Over the time of a history, there and back, each stretch begins with the equilibrium of the one before.
+#[test]
+fn a_path_over_time_follows_the_history_of_its_load() {
+    let history = History::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.25]).unwrap();
+    let (problem, _) = guided(&Push::Slowly(0.9 * largest(), history.clone()));
+    let mut start = None;
+    let mut from = None;
+    for to in [0.5, 1.0, 1.5, 2.0] {
+        let settings = Settings {
+            control: Control::Time {
+                from,
+                to,
+                longest: 1.0,
+            },
+            ..Settings::default()
+        };
+        let answer = solve(&problem, start.as_ref(), &settings, &mut |_| {
+            ControlFlow::Continue(())
+        });
+        assert_eq!(answer.status, Status::AtRest);
+        assert_eq!(answer.time, to);
+        let off = history.at(to) * 0.9 * largest() - truss(-answer.positions[0][2]);
+        assert!(off.abs() < EXACT * largest(), "{to}: {off}");
+        from = Some(to);
+        start = Some(Start {
+            positions: answer.positions,
+            pressures: None,
+        });
+    }
 }
 
 /// The end of the spring has gone by `w + F(w)/k` where the block has gone by `w`: to and fro.

@@ -9,8 +9,8 @@ from voxsoft.calibration.experiment import Experiment
 from voxsoft.calibration.space import Space
 from voxsoft.materials import Material
 from voxsoft.materials.constants import with_constants
+from voxsoft.simulation.adjoint import adjoint_states
 from voxsoft.simulation.differences import derivative
-from voxsoft.simulation.gradient import adjoint_states
 from voxsoft.simulation.touching import refuse_contact
 
 Floats = NDArray[np.float64]

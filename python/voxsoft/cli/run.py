@@ -13,13 +13,16 @@ from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from voxsoft.comparison import ErrorBar, ErrorBars
-    from voxsoft.simulation import Diagnostic, Result
+    from voxsoft.simulation import Diagnostic, LoadPath, Result
 
 
 _METHODS = "auto, statics, relaxation, dynamics or xpbd; default: as the design says, else auto."
+
+#: What is below this part of the largest number of a column is rounding.
+_ROUNDING = 1e-9
 
 _ERRORS = "Voxels for error bars: auto, finer, coarser or off; default: as the design says."
 
@@ -41,9 +44,18 @@ def run(
         bool,
         typer.Option(
             "--figure",
-            help="Also draw the deformed body, as body.png, and what touches it, as contact.png.",
+            help="Also draw the deformed body, as body.png, what touches it, as contact.png, and "
+            "the numbers along a path, as path.png.",
         ),
     ] = False,
+    over: Annotated[
+        str | None,
+        typer.Option(
+            "--over",
+            help="Follow a path: a key, its values, a unit, how many: "
+            "'loads[0].value=0..30 kPa/16', there and back 0..30..0, or 'time=0..2 s/21'.",
+        ),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Simulate a design and write a run folder.
@@ -61,6 +73,7 @@ def run(
         spec = RunSpec(
             design=DesignSource.of_file(design, sets or []),
             solver={name: value for name, value in settings.items() if value is not None},
+            over=over,
             figure=figure,
         )
         folder = out or Path("runs") / f"{folder_name(loaded.name)}-{loaded.hash[:8]}"
@@ -69,9 +82,36 @@ def run(
         if json:
             print_json(outcome.summary)
         else:
+            if outcome.path is not None:
+                _show_path(outcome.path, outcome.path_bars)
             _show(outcome.found, outcome.error_bars, folder)
     if outcome.found.status != "ok":
         raise typer.Exit(NOT_AT_REST)
+
+
+def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
+    """The numbers along a path: what the design asks for, or else how its probes move."""
+    from voxsoft.comparison.path_bars import bars_of
+
+    design = path.design
+    names = [*design.objectives, *design.constraints]
+    names = names or [f"{probe}.{axis}" for probe in design.probes for axis in "xyz"]
+    rows = [[path.over.value_in_words(value)] for value in path.values]
+    for name in names:
+        kind, values = path.columns[name]
+        known = [*bars_of(name, bars), *[None] * len(values)]
+        rounding = _ROUNDING * max(map(abs, values))
+        for row, value, bar in zip(rows, values, known, strict=False):
+            if abs(value) <= rounding:
+                row.append("0")
+            else:
+                row.append(quantity(value, kind) if bar is None else str(bar))
+    for row, result in zip(rows, path.results, strict=True):
+        row.append("" if result.status == "ok" else f"[red]{result.status}[/red]")
+    color = "green" if path.status == "ok" else "red"
+    say(f"[{color}]{path.status}[/{color}]: {plain(path.message)}")
+    show_table(f"Along {path.over.key}", [path.over.key, *names, ""], rows)
+    say("The last equilibrium:")
 
 
 def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:

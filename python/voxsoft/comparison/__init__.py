@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from voxsoft.comparison.bars import ErrorBar, ErrorBars, error_bars
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
+    from voxsoft.comparison.path_bars import path_error_bars
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
 
@@ -24,6 +25,7 @@ __all__ = [
     "confirm",
     "discretization_error",
     "error_bars",
+    "path_error_bars",
 ]
 
 # Loaded when first used: a job knows what a comparison is asked without its solvers.
@@ -38,5 +40,6 @@ _HOMES = {
     "confirm": "voxsoft.comparison.confirmation",
     "discretization_error": "voxsoft.comparison.richardson",
     "error_bars": "voxsoft.comparison.bars",
+    "path_error_bars": "voxsoft.comparison.path_bars",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -58,6 +58,9 @@ TIMES_AS_LONG: Final = 12.0
 #: about how many seconds it takes.
 Announce = Callable[[float, int, float], None]
 
+#: Solves a design, given the run on voxels twice as large where that is known.
+Solve = Callable[[Design, Result | None], Result]
+
 
 @dataclass(frozen=True)
 class ErrorBar:
@@ -214,6 +217,7 @@ def error_bars(
     *,
     progress: Callable[[int, float, float], None] | None = None,
     announce: Announce | None = None,
+    solve: Solve | None = None,
 ) -> ErrorBars:
     """Estimate the discretization errors of a run by further runs on other voxels.
 
@@ -225,6 +229,9 @@ def error_bars(
         As for :func:`voxsoft.simulate`.
     announce
         Called before each further run with what it will cost.
+    solve
+        Solves the design on other voxels, given the run on voxels twice as large if that is known;
+        default: :func:`voxsoft.simulate`.
 
     Returns
     -------
@@ -249,7 +256,7 @@ def error_bars(
     refusal = _refusal(result)
     if refusal is not None:
         return ErrorBars.none(*refusal)
-    search = _Search(result, progress, announce)
+    search = _Search(result, progress, announce, solve)
     accuracy = result.design.solver.accuracy
     return search.pair() if accuracy is None else search.until(accuracy)
 
@@ -318,8 +325,10 @@ class _Search:
         result: Result,
         progress: Callable[[int, float, float], None] | None,
         announce: Announce | None,
+        solve: Solve | None,
     ) -> None:
         self.own = _Run(result, result.design.voxel_size)
+        self._solve = solve
         self._progress, self._announce = progress, announce
         self._seconds = 0.0
 
@@ -378,7 +387,10 @@ class _Search:
         other = design.with_values(f"voxel_size={size * 1e3!r} mm")
         try:
             begin = None if coarser is None else coarser.result
-            result = simulate(other, progress=self._progress, coarser=begin)
+            if self._solve is None:
+                result = simulate(other, progress=self._progress, coarser=begin)
+            else:
+                result = self._solve(other, begin)
         except VoxSoftError as error:
             return str(error).partition("\n")[0]
         self._seconds += result.seconds

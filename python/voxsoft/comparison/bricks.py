@@ -24,6 +24,7 @@ from voxsoft.errors import SimulationError
 from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Setup
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.loads import LoadReceiver
 from voxsoft.simulation.touching import refuse_bodies
 
@@ -145,7 +146,7 @@ class BrickModel:
         ------
         SimulationError
             A mesh that is not made of full voxels, or what no outside code is given: a floor,
-            layers, springs, fibers, objects that are free or turn, bonds.
+            layers, springs, fibers, activations, objects that are free or turn, bonds.
 
         Examples
         --------
@@ -161,6 +162,7 @@ class BrickModel:
             )
         refuse_bodies(setup.design, "outside codes")
         check_contact(setup)
+        refuse_supplies(setup.design, "outside codes")
         if setup.design.layers:
             raise SimulationError(
                 "layers", "cannot be given to an outside code", "compare the design without them"
@@ -169,6 +171,10 @@ class BrickModel:
         for where in [*(where for where, _ in attachments_of(setup.design)), *tendons]:
             raise SimulationError(
                 where, "cannot be given to an outside code", "compare the design without it"
+            )
+        if setup.design.activations:
+            raise SimulationError(
+                "activations", "cannot be given to an outside code", "compare without them"
             )
         for index, part in enumerate(setup.design.parts):
             if part.fibers:

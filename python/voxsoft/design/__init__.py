@@ -1,12 +1,15 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
+from voxsoft.design.activation import Strain, Swelling
 from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.contact import Contact, ContactPair
+from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
+from voxsoft.design.line import Pump, Valve
 from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, Pressure, Traction
 from voxsoft.design.model import Design
 from voxsoft.design.object import Object
@@ -16,39 +19,59 @@ from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
+from voxsoft.design.supply import (
+    AnySupply,
+    Connection,
+    FlowSupply,
+    MassSupply,
+    PressureSupply,
+    VolumeSupply,
+)
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.design.tendon import Guide, Tendon
 
 __all__ = [
     "AnyLoad",
+    "AnySupply",
     "Body",
     "Chamber",
     "Clamp",
+    "Connection",
     "Constraint",
     "Contact",
     "ContactPair",
     "Design",
     "Floor",
+    "FlowSupply",
     "Force",
+    "Gas",
     "Gravity",
     "Guide",
     "History",
     "Layer",
+    "Liquid",
+    "MassSupply",
     "Motion",
     "Object",
     "Objective",
     "Parameter",
     "Part",
     "Pressure",
+    "PressureSupply",
     "Probe",
+    "Pump",
     "Region",
     "Rotation",
     "Solver",
     "Spring",
+    "Strain",
+    "Swelling",
     "Symmetry",
     "Tendon",
     "Traction",
+    "Valve",
+    "VolumeSupply",
     "require_design",
     "set_values",
 ]

@@ -63,7 +63,10 @@ class Assembly:
             What cannot be said in the frame of the design, such as a clamp along an axis that is
             turned.
         """
-        lists = ("layers", "springs", "tendons", "clamps", "loads")
+        lists = (
+            *("layers", "springs", "tendons", "activations", "clamps", "loads"),
+            *("supplies", "connections"),
+        )
         tables = ("shapes", "chambers", "probes")
         found = cls({key: [*getattr(design, key)] for key in lists})
         found.entries |= {key: dict(getattr(design, key)) for key in tables}
@@ -219,9 +222,13 @@ class _Included:
         self._extend(found, "springs", springs)
         tendons = [self._tendon(*each) for each in enumerate(self.inner.tendons)]
         self._extend(found, "tendons", tendons)
+        activations = [each.replace(part=self._name(each.part)) for each in self.inner.activations]
+        self._extend(found, "activations", activations)
         loads = [(i, load) for i, load in enumerate(self.inner.loads) if _is_of_a_place(load)]
         placed = [self._load(*each) for each in loads]
         self._extend(found, "loads", placed, [index for index, _ in loads])
+        for key in ("supplies", "connections"):
+            self._extend(found, key, [self._fed(each) for each in getattr(self.inner, key)])
         found.left_out += self._left_behind()
         found.empty_shapes += [self._name(name) for name in self.inner.empty_shapes]
 
@@ -351,6 +358,17 @@ class _Included:
         if isinstance(value, tuple):
             changes["value"] = tuple((self._frame[0] @ value).tolist())
         return load.replace(**changes)
+
+    def _fed(self, supply: Record) -> Record:
+        """A supply or a connection of chambers by the names that they have in the outer design."""
+        changes: dict[str, Any] = {}
+        if (own := getattr(supply, "chamber", None)) is not None:
+            changes["chamber"] = self._name(str(own))
+        if own := getattr(supply, "chambers", ()):
+            changes["chambers"] = tuple(self._name(str(each)) for each in own)
+        if (name := getattr(supply, "name", None)) is not None:
+            changes["name"] = self._name(name)
+        return supply.replace(**changes)
 
     def _clamp(self, index: int, clamp: Clamp) -> Clamp:
         where = f"clamps[{index}]"

@@ -21,6 +21,7 @@ from pydantic import (
 )
 from pydantic_core import PydanticSerializationError
 
+from voxsoft.design.activation import AnyActivation
 from voxsoft.design.assembly import (
     Assembly,
     body_problems,
@@ -49,6 +50,7 @@ from voxsoft.design.resolution import Document, Resolution, formulas, with_param
 from voxsoft.design.schema import with_formulas
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
+from voxsoft.design.supply import AnySupply, Connection
 from voxsoft.design.symmetry import Symmetry, symmetry_problems
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.design.tendon import Tendon
@@ -101,6 +103,8 @@ class Design(Record):
         Springs between places of the body, or to fixed points.
     tendons
         Lines through the body that are pulled.
+    activations
+        Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
     symmetry
@@ -109,6 +113,8 @@ class Design(Record):
         Rigid things beside the body, and what touches with how much friction.
     chambers
         Cavities by name, each found by its place: what loads and metrics call ``cavity``.
+    supplies, connections
+        What drives chambers as volumes of gas or liquid, and what lets them exchange it.
     probes
         Named places to measure at.
     objectives, constraints
@@ -153,6 +159,7 @@ class Design(Record):
     layers: tuple[Layer, ...] = Field((), max_length=250)
     springs: tuple[Spring, ...] = ()
     tendons: tuple[Tendon, ...] = Field((), max_length=250)
+    activations: tuple[AnyActivation, ...] = ()
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
@@ -160,6 +167,8 @@ class Design(Record):
     objects: tuple[Object, ...] = Field((), max_length=250)
     contact: Contact | None = None
     chambers: Table[ChamberName, Chamber] = Field(default_factory=FrozenDict)
+    supplies: tuple[AnySupply, ...] = Field((), max_length=250)
+    connections: tuple[Connection, ...] = Field((), max_length=250)
     probes: Table[Name, Probe] = Field(default_factory=FrozenDict)
     objectives: Table[Name, Objective] = Field(default_factory=FrozenDict)
     constraints: Table[Name, Constraint] = Field(default_factory=FrozenDict)

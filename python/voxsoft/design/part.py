@@ -68,3 +68,8 @@ class Part(Record):
     fibers: tuple[Fiber, ...] = Field((), max_length=10)
     name: Name | None = None
     body: Name | None = None
+
+    @property
+    def label(self) -> str:
+        """Its name, or that of its shape; empty where neither has one."""
+        return self.name or (self.shape if isinstance(self.shape, str) else "")

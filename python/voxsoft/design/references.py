@@ -57,11 +57,17 @@ def dangling_references(
     probes = {*_table(document, "probes"), *known.probes}
     for table in ("objectives", "constraints"):
         for key, target in _table(document, table).items():
-            probe = entry_of(target, "probe")
-            if isinstance(probe, str) and probe not in probes and (included or "." not in probe):
-                yield _unknown((table, key, "probe"), "probe", probe, probes)
+            for option in ("probe", "base"):
+                probe = entry_of(target, option)
+                if (
+                    isinstance(probe, str)
+                    and probe not in probes
+                    and (included or "." not in probe)
+                ):
+                    yield _unknown((table, key, option), "probe", probe, probes)
     if included is not None or not document.get("bodies"):
         yield from _objects(document, known)
+        yield from _activations(document)
     if included is not None:
         yield from _bodies(document, included)
 
@@ -124,6 +130,17 @@ def _chambers(document: Mapping[str, Any], included: Included) -> Iterator[Error
             hint = closest(choice, map(str, known))
             hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
             yield ErrorDetail(place((*path, "cavity")), f'there is no chamber "{choice}"', hint)
+    for path, user in (*_list(document, "supplies"), *_list(document, "connections")):
+        named: list[tuple[Path, Any]] = [(("chamber",), entry_of(user, "chamber"))]
+        chambers = entry_of(user, "chambers")
+        if isinstance(chambers, (list, tuple)):
+            named += [(("chambers", number), each) for number, each in enumerate(chambers)]
+        for key, choice in named:
+            of_a_body = isinstance(choice, str) and "." in choice
+            if isinstance(choice, str) and choice not in ("all", *known) and not of_a_body:
+                hint = closest(choice, map(str, known))
+                hint = hint or "name it under [chambers] by its place: { point = [x, y, z] }"
+                yield ErrorDetail(place((*path, *key)), f'there is no chamber "{choice}"', hint)
 
 
 def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:
@@ -135,6 +152,16 @@ def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorD
             name = entry_of(target, "object")
             if isinstance(name, str) and name not in known:
                 yield _unknown((table, key, "object"), "object", name, known)
+
+
+def _activations(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
+    """Parts that are to swell and are not there; designs of bodies look after their own."""
+    names = [entry_of(part, "name") or entry_of(part, "shape") for _, part in _parts(document)]
+    known = [name for name in names if isinstance(name, str)]
+    for path, activation in _list(document, "activations"):
+        name = entry_of(activation, "part")
+        if isinstance(name, str) and name not in known and "." not in name:
+            yield _unknown((*path, "part"), "part", name, known)
 
 
 def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDetail]:

@@ -33,6 +33,8 @@ class Objective(Record):
         Name of the metric, such as ``"displacement"``; give one of the two.
     probe
         Where it is measured, for a metric that needs a place.
+    base
+        Another probe, where the line to the first one begins, for a metric that needs a line.
     axis
         The component; default: the magnitude.
     cavity
@@ -55,6 +57,7 @@ class Objective(Record):
     maximize: Name | None = None
     minimize: Name | None = None
     probe: Name | None = None
+    base: Name | None = None
     axis: Axis | None = None
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
@@ -84,7 +87,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, axis, cavity, percentile, object
+    probe, base, axis, cavity, percentile, object
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -99,6 +102,7 @@ class Constraint(Record):
 
     metric: Name
     probe: Name | None = None
+    base: Name | None = None
     axis: Axis | None = None
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from voxsoft.files.exports import export
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
+    from voxsoft.files.path_table import write_path
     from voxsoft.files.run_folder import write_run
     from voxsoft.files.study_folder import write_confirmation, write_study
 
@@ -29,6 +30,7 @@ __all__ = [
     "write_confirmation",
     "write_family",
     "write_mesh",
+    "write_path",
     "write_run",
     "write_study",
 ]
@@ -46,6 +48,7 @@ _HOMES = {
     "write_comparison": "voxsoft.files.comparison_report",
     "write_family": "voxsoft.files.family_file",
     "write_mesh": "voxsoft.files.meshes",
+    "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
     "write_study": "voxsoft.files.study_folder",
 }

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 if TYPE_CHECKING:
     from voxsoft.comparison import Confirmation, ErrorBars
+    from voxsoft.simulation import LoadPath
 
 
 class Summarized(Protocol):
@@ -41,6 +43,10 @@ class JobOutcome(Generic[Found]):
         The best designs of a study, solved again, if that was asked.
     error_bars
         Those of a run, or why there are none.
+    path
+        The path that a run followed, whose last equilibrium is what was found.
+    path_bars
+        The error bars along it, as far as it was followed.
     """
 
     folder: Path
@@ -50,6 +56,8 @@ class JobOutcome(Generic[Found]):
     earlier: int = 0
     confirmed: Confirmation | None = None
     error_bars: ErrorBars | None = None
+    path: LoadPath | None = None
+    path_bars: tuple[ErrorBars, ...] = ()
 
     @property
     def summary(self) -> dict[str, Any]:
@@ -57,4 +65,14 @@ class JobOutcome(Generic[Found]):
         more = {} if self.confirmed is None else {"confirmed": self.confirmed.summary()}
         if self.error_bars is not None:
             more["error_bars"] = self.error_bars.summary()
+        if self.path is not None:
+            more |= path_summary(self.path, self.path_bars)
         return self.found.summary() | more | {"folder": str(self.folder)}
+
+
+def path_summary(path: LoadPath, bars: Sequence[ErrorBars] = ()) -> dict[str, Any]:
+    """What a path adds to the summary of its last equilibrium, each row with its error bars."""
+    rows = path.summary()
+    for row, bar in zip(rows["path"], bars, strict=False):
+        row["error_bars"] = bar.summary()
+    return rows

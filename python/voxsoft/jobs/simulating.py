@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Final
 
 from voxsoft import files, simulation
 from voxsoft.comparison.bars import ErrorBars, error_bars
+from voxsoft.comparison.path_bars import path_error_bars
+from voxsoft.design import Design
 from voxsoft.files.figures import save_figure, save_thumbnail
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
 from voxsoft.jobs.nearness import Nearness
-from voxsoft.jobs.outcome import JobOutcome
+from voxsoft.jobs.outcome import JobOutcome, path_summary
 from voxsoft.jobs.spec import RunSpec
 from voxsoft.simulation import Result
 from voxsoft.units import format_percent, format_quantity
@@ -22,6 +25,8 @@ from voxsoft.units import format_percent, format_quantity
 FURTHER: Final = "percent of a further run"
 #: Seconds between two words on how far a run is.
 _REPORT_EVERY: Final = 0.25
+#: No further entries of a summary.
+_NOTHING: Final[Mapping[str, Any]] = MappingProxyType({})
 
 
 def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[Result]:
@@ -31,22 +36,64 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
     if settings:
         design = design.replace(solver=design.solver.replace(**settings))
     notify(Progress(0, 100, "percent", "meshing"))
+    if spec.over is not None:
+        return _follow(spec, design, folder, notify)
     nearness = Nearness(design.solver)
     result = simulation.simulate(design, progress=_reporting(nearness, notify))
-    write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
-    files.write_run(result, folder)
-    save_thumbnail(result, folder)
-    if spec.figure:
-        from voxsoft.plot import plot_body
-
-        save_figure(plot_body(result), folder / "body.png")
-        if result.contacts:
-            save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
+    _write(spec, result, folder)
     bars = _error_bars(result, notify)
     files.write_run(result, folder, more={"error_bars": bars.summary()})
     notify(Progress(100, 100, "percent"))
     sentence = f"{result.message[:1].upper()}{result.message[1:]}."
     return JobOutcome(folder, result, sentence, error_bars=bars)
+
+
+def _write(spec: RunSpec, result: Result, folder: Path, more: Mapping[str, Any] = _NOTHING) -> None:
+    """Write a run folder with its pictures."""
+    write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
+    files.write_run(result, folder, more=more)
+    save_thumbnail(result, folder)
+    if not spec.figure:
+        return
+    from voxsoft.plot import plot_body
+
+    save_figure(plot_body(result), folder / "body.png")
+    if result.contacts:
+        save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
+
+
+def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> JobOutcome[Result]:
+    """Follow a path, and write the folder of its last equilibrium with a table of all of them."""
+    assert spec.over is not None  # asked by the caller
+    over = simulation.Over.read(spec.over)
+
+    def step(found: int, asked: int) -> None:
+        notify(Progress(found, asked, "equilibria"))
+
+    path = simulation.follow(design, over, step=step)
+    result = path.results[-1]
+    _write(spec, result, folder, path_summary(path))
+    files.write_path(path, (), folder)
+
+    def announce(size: float, voxels: int, seconds: float) -> None:
+        length = format_quantity(float(f"{size:.4g}"), "length")
+        words = f"error bars: {voxels:,} voxels of {length}, about {seconds:.2g} s"
+        notify(Progress(0, 100, FURTHER, words))
+
+    try:
+        bars = path_error_bars(path, announce=announce)
+    except KeyboardInterrupt:
+        bars = ()
+    files.write_run(result, folder, more=path_summary(path, bars))
+    files.write_path(path, bars, folder)
+    if spec.figure:
+        from voxsoft.plot import plot_path
+
+        save_figure(plot_path(path, bars), folder / "path.png")
+    notify(Progress(100, 100, "percent"))
+    last = bars[-1] if bars else ErrorBars.none("they were stopped", "run it again")
+    sentence = f"{path.message[:1].upper()}{path.message[1:]}."
+    return JobOutcome(folder, result, sentence, error_bars=last, path=path, path_bars=bars)
 
 
 def _error_bars(result: Result, notify: Listener) -> ErrorBars:

@@ -58,8 +58,11 @@ class RunSpec(JobSpec):
         A :class:`DesignSource`, or a :class:`~voxsoft.design.Design`.
     solver
         Settings in place of those of the design.
+    over
+        A path to follow, as :func:`voxsoft.follow` reads it: ``"loads[0].value=0..30 kPa/16"``.
     figure
-        Whether ``body.png`` is drawn too, and ``contact.png`` where something touches.
+        Whether ``body.png`` is drawn too, ``contact.png`` where something touches, and ``path.png``
+        of a path.
     kept
         Whether the folder holds what stood on the studio's screen: such a state no job repeats.
 
@@ -72,6 +75,7 @@ class RunSpec(JobSpec):
 
     kind: Literal["run"] = "run"
     solver: Table[str, Scalar] = Field(default_factory=FrozenDict)
+    over: str | None = None
     figure: bool = False
     kept: bool = False
 

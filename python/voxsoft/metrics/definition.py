@@ -18,11 +18,12 @@ Floats = NDArray[np.float64]
 #: What asks for a metric, with its place and its direction.
 Target = Objective | Constraint
 #: Keys of a target that say where, along what or of which voxels a metric is measured.
-Option = Literal["probe", "axis", "cavity", "percentile", "object"]
+Option = Literal["probe", "base", "axis", "cavity", "percentile", "object"]
 
 #: What a metric lacks that does not take a key.
 _LACKS: Final[Mapping[Option, str]] = {
     "probe": "is not measured at a probe",
+    "base": "is not measured along a line",
     "axis": "has no direction",
     "cavity": "is not measured in a cavity",
     "percentile": "is not one number for each voxel",
@@ -82,6 +83,22 @@ class Touch(Protocol):
         """The part of the pressure under which the surfaces slip, 0 to 1."""
 
 
+class Supplied(Protocol):
+    """A volume of gas or liquid; :class:`~voxsoft.simulation.fluids.ChamberState` says more."""
+
+    @property
+    def cavities(self) -> tuple[int, ...]:
+        """The indices of its cavities."""
+
+    @property
+    def work(self) -> float:
+        """Done on the walls, J."""
+
+    @property
+    def energy(self) -> float:
+        """That this took, J."""
+
+
 class State(Protocol):
     """What the value of a metric may look at: a body where it is now.
 
@@ -131,6 +148,20 @@ class State(Protocol):
     def gap_to(self, name: str) -> float:
         """The smallest distance of the body and an object, m."""
 
+    def compliance_at(self, place: Place) -> Floats:
+        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N."""
+
+    def natural_frequency(self) -> float:
+        """That of the slowest small vibration, Hz."""
+
+    @property
+    def cavity_pressures(self) -> Sequence[float]:
+        """The gauge pressure in each cavity of the mesh, Pa."""
+
+    @property
+    def supplies(self) -> Sequence[Supplied]:
+        """The volumes of gas and liquid."""
+
 
 class SlopeState(State, Protocol):
     """What the slope of a metric may look at besides."""
@@ -163,6 +194,8 @@ class Metric:
     is_peak
         Whether it is the largest or smallest of all voxels unless the target has a percentile. At
         a sharp corner such a number grows as voxels get smaller, without a limit.
+    is_costly
+        Whether it takes about as long as the run itself, so that it is found only where asked for.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
 
@@ -180,6 +213,7 @@ class Metric:
     needs: frozenset[Option] = frozenset()
     takes: frozenset[Option] = frozenset()
     is_peak: bool = False
+    is_costly: bool = False
     home: str = ""
 
     def refusals(self, target: Target) -> Iterator[ErrorDetail]:

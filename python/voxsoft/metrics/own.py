@@ -52,9 +52,9 @@ def metric(
         The kind of quantity, a key of :data:`voxsoft.units.KINDS`: ``"length"``, ``"force"``,
         ``"angle"``, ...; default: a number without a unit.
     needs, takes
-        Which of ``"probe"``, ``"axis"``, ``"cavity"``, ``"percentile"`` and ``"object"`` must or
-        may stand beside it. A function of such a metric takes a second argument, the objective or
-        constraint that asks.
+        Which of ``"probe"``, ``"base"``, ``"axis"``, ``"cavity"``, ``"percentile"`` and
+        ``"object"`` must or may stand beside it. A function of such a metric takes a second
+        argument, the objective or constraint that asks.
     slope
         From the same arguments to the derivative of the value by the positions of all vertices,
         (n, 3), which ``gradient`` and ``Study.optimize("gradient", ...)`` need; default: none.

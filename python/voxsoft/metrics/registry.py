@@ -8,6 +8,7 @@ from typing import Final
 
 from voxsoft.errors import DesignError
 from voxsoft.metrics.chambers import CAVITY_VOLUME, CAVITY_VOLUME_CHANGE
+from voxsoft.metrics.chord import CHORD_ANGLE, CURVATURE
 from voxsoft.metrics.contact import CONTACT_AREA, CONTACT_FORCE, CONTACT_GAP, STICKING
 from voxsoft.metrics.definition import Metric
 from voxsoft.metrics.displacement import DISPLACEMENT, MAX_DISPLACEMENT
@@ -17,6 +18,8 @@ from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
 from voxsoft.metrics.stress import MAX_STRESS
 from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
+from voxsoft.metrics.supplies import CHAMBER_PRESSURE, SUPPLIED_ENERGY, SUPPLIED_WORK
+from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
@@ -25,6 +28,11 @@ _ALL: Final[dict[str, Metric]] = {
     for metric in (
         DISPLACEMENT,
         ROTATION,
+        CHORD_ANGLE,
+        CURVATURE,
+        COMPLIANCE,
+        STIFFNESS,
+        NATURAL_FREQUENCY,
         MASS,
         VOLUME,
         CAVITY_VOLUME,
@@ -43,6 +51,9 @@ _ALL: Final[dict[str, Metric]] = {
         GRIP_FORCE,
         HOLD_MARGIN,
         BLOCKED_FORCE,
+        CHAMBER_PRESSURE,
+        SUPPLIED_WORK,
+        SUPPLIED_ENERGY,
     )
 }
 

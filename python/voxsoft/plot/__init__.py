@@ -31,6 +31,7 @@ if TYPE_CHECKING:
         plot_times,
     )
     from voxsoft.plot.coupon import plot_coupons
+    from voxsoft.plot.path import plot_path
     from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "plot_fitness",
     "plot_history",
     "plot_pareto",
+    "plot_path",
     "plot_profiles",
     "plot_scatter",
     "plot_shape",
@@ -60,6 +62,7 @@ _HOMES = {
     "plot_errors": "voxsoft.plot.comparison",
     "plot_fitness": "voxsoft.plot.calibration",
     "plot_history": "voxsoft.plot.study",
+    "plot_path": "voxsoft.plot.path",
     "plot_pareto": "voxsoft.plot.study",
     "plot_profiles": "voxsoft.plot.calibration",
     "plot_scatter": "voxsoft.plot.study",

@@ -22,6 +22,7 @@ from voxsoft.simulation.equilibrium import (
     Statics,
     VolumeControl,
 )
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
 from voxsoft.simulation.touching import has_contact
@@ -115,7 +116,8 @@ def kind_of(design: Design, solver: Solver) -> type[Method]:
         return controlled
     if any(each.is_free for each in design.objects):
         return timed
-    if (has_contact(design) or design.tendons) and not dynamic:
+    needs_statics = has_contact(design) or has_supplies(design) or design.tendons
+    if needs_statics and not dynamic:
         return LoadControl
     if dynamic:
         return timed
@@ -167,6 +169,8 @@ def unused_settings(
         yield from _without_contact(design, solver, kind)
     elif design.assembled.tendons:
         yield from _without_tendons(solver, kind)
+    if has_supplies(design):
+        yield from _without_supplies(design, solver, kind)
     given = given_settings(solver)
     for name in [*given, *(key for key, value in (extra or {}).items() if value)]:
         users = USERS[name]
@@ -178,6 +182,24 @@ def unused_settings(
         instead = _ASKING.get(name, _ASKING_FOR_DYNAMICS)
         what = f"is a setting of {_together(users)}, and {_because(name, kind, solver)}"
         yield ErrorDetail(where, what, f"{instead}, or leave {name} out")
+
+
+def _without_supplies(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:
+    """Find what a design with supplies cannot be solved by."""
+    known = kind is LoadControl or (kind in DYNAMICS and solver.method != "xpbd")
+    if not known:
+        title = f"{kind.title} by xpbd" if kind in DYNAMICS else kind.title
+        what = f"means {title}, and supplies are known to load control and implicit dynamics"
+        yield ErrorDetail("solver", what, 'write method = "statics", or method = "dynamics"')
+    for index, part in enumerate(design.parts):
+        material = design.material_of(part)
+        if kind in DYNAMICS and isinstance(material, Hyperelastic) and material.prony:
+            what = "relaxes, and implicit dynamics with supplies knows no viscosity"
+            yield ErrorDetail(f"parts[{index}].material", what, "leave prony out of it")
+    for name in ("substeps", "iterations", "retardation"):
+        if kind in DYNAMICS and getattr(solver, name) is not None:
+            what = "is a setting of explicit dynamics, which knows no supplies"
+            yield ErrorDetail(f"solver.{name}", what, f"leave {name} out")
 
 
 def _without_contact(design: Design, solver: Solver, kind: type[Method]) -> Iterator[ErrorDetail]:

@@ -48,7 +48,8 @@ class Dynamics(Method):
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Move the body from its unloaded state."""
         interval = watch.record_interval or max(DEFAULT_RECORD_INTERVAL, self.time_step or 0.0)
-        if setup.touching is not None or setup.tendons:
+        implicit = (setup.touching, setup.fluids)
+        if setup.tendons or any(each is not None for each in implicit):
             return self._by_implicit_steps(setup, watch, interval)
         rate, ends = self.rate, self.ends()
         asked: dict[str, Any] = {
@@ -72,7 +73,7 @@ class Dynamics(Method):
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
 
     def _by_implicit_steps(self, setup: Setup, watch: Watch, interval: float) -> Answer:
-        """The same by implicit steps, each of which ends with contacts and tendons settled."""
+        """The same by implicit steps, which end with contacts, tendons and pressures settled."""
         rate, ends = self.rate, self.ends()
         step = self._step(interval)
         answer = _core.transient(

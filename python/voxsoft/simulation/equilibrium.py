@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import ClassVar, Final, Literal
+from typing import Any, ClassVar, Final, Literal, NamedTuple
 
 from voxsoft import _core
 from voxsoft._core import Status
@@ -12,6 +12,7 @@ from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.freedom import moves_freely
 from voxsoft.simulation.loads import readings
+from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.start import Start
@@ -23,6 +24,9 @@ DEFAULT_STEPS: Final = 20
 DEFAULT_ARC: Final = 0.2
 DEFAULT_VOLUME_RATIO: Final = 1.5
 
+
+#: In how many steps what swells too much for one does so.
+_SWELLING_STEPS: Final = (4, 16)
 
 #: What to try instead of a control that found no equilibrium, and of one that met a limit.
 _OTHER_WAYS: Final[Mapping[str, str]] = {
@@ -59,6 +63,29 @@ class LoadControl(Statics):
     control: Literal["load"] = "load"
     first_step: Share = 1.0
 
+    def solve(self, setup: Setup, watch: Watch) -> Answer:
+        """Find the equilibrium under the final loads; what swells does so in steps if need be."""
+        found = super().solve(setup, watch)
+        if found[1].status != Status.NOT_CONVERGED or not setup.design.activations:
+            return found
+        steps = found[1].steps
+        for count in _SWELLING_STEPS:
+            start = None
+            for number in range(1, count + 1):
+                swollen = [each.share(number / count) for each in setup.design.activations]
+                design = setup.design.replace(activations=tuple(swollen))
+                problem = setup.problem.with_materials(core_materials(design, setup.materials))
+                used, report = find_equilibrium(
+                    setup, self, watch.progress, problem, frames=watch.frames, start=start
+                )
+                steps += report.steps
+                if report.status != Status.AT_REST:
+                    break
+                start = Start(report.answer.positions)
+            else:
+                return used, Report(report.answer, report.status, steps)
+        return found
+
 
 class ArcLengthControl(Statics):
     """All loads grow together, and the path is followed through snaps."""
@@ -90,6 +117,35 @@ class VolumeControl(Statics):
         return super().solve(setup, watch)
 
 
+class Stretch(NamedTuple):
+    """The way from one instant of all histories to another, as if nothing had mass.
+
+    Attributes
+    ----------
+    since
+        The instant in s of the equilibrium that it begins with, of which contact goes on too; None
+        at the beginning, where loads grow from nothing.
+    until
+        The instant in s of the equilibrium that is looked for.
+    longest
+        The longest step where the answer depends on the way, as a part of this one.
+    """
+
+    since: float | None
+    until: float
+    longest: float
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What the core calls them."""
+        return {
+            "control": "time",
+            "from_time": self.since,
+            "to_time": self.until,
+            "longest": self.longest,
+        }
+
+
 def find_equilibrium(
     setup: Setup,
     statics: Statics,
@@ -98,10 +154,11 @@ def find_equilibrium(
     *,
     frames: bool = False,
     start: Start | None = None,
+    stretch: Stretch | None = None,
 ) -> Answer:
     """Solve a setup by statics, or a variant of its problem; `frames` keeps all of the path.
 
-    Without a start it begins at rest.
+    Without a start it begins at rest. A stretch of time takes the place of the control.
 
     Returns
     -------
@@ -120,7 +177,7 @@ def find_equilibrium(
         **asked,
         start=None if start is None else start.positions,
         pressures=None if start is None else start.pressures,
-        control=statics.control,
+        **({"control": statics.control} if stretch is None else stretch.settings),
         memory=memory_limit(),
         sensors=[(place.vertices, place.weights) for place in setup.places.values()],
         frames=frames,

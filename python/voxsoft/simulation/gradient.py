@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -11,8 +10,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft import _core
-from voxsoft._memory import memory_limit
 from voxsoft.design import Design, Objective
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.variation import number_of, with_number
@@ -20,8 +17,8 @@ from voxsoft.errors import DesignError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Target, metric_named
 from voxsoft.records import closest
+from voxsoft.simulation.adjoint import adjoint_states, readable_errors
 from voxsoft.simulation.differences import STENCIL, STEP
-from voxsoft.simulation.equilibrium import too_large_a_tangent
 from voxsoft.simulation.loaded_state import LoadedState
 from voxsoft.simulation.motion import held_axes, held_positions
 from voxsoft.simulation.path_gradient import check_residual, path_gradient
@@ -110,7 +107,7 @@ def gradient(
     _check_way(setup, result)
     varied = [_variation(base, name) for name in names]
     if has_contact(result.design):
-        with _readable_errors(len(base.positions)):
+        with readable_errors(len(base.positions)):
             return path_gradient(setup, result, chosen, dict(zip(names, varied, strict=True)))
     slopes = np.array([_slope(base, target) for target in chosen.values()])
     adjoints = adjoint_states(setup.problem, base.positions, slopes)
@@ -121,43 +118,6 @@ def gradient(
         }
         for (target_name, target), adjoint in zip(chosen.items(), adjoints, strict=True)
     }
-
-
-def adjoint_states(problem: _core.Problem, positions: Floats, slopes: Floats) -> Floats:
-    """Solve ``Kᵀ μ = ∂J/∂x`` for several metrics with one factorization, (k, n, 3) → (k, n, 3).
-
-    Parameters
-    ----------
-    problem
-        The problem with its tangent ``K``.
-    positions
-        Its equilibrium, (n, 3), m.
-    slopes
-        Derivatives of the metrics by the positions.
-
-    Raises
-    ------
-    SimulationError
-        The tangent is singular, or does not fit in memory.
-    """
-    with _readable_errors(len(positions)):
-        return _core.adjoint(problem, positions, slopes, memory=memory_limit())
-
-
-@contextmanager
-def _readable_errors(vertices: int) -> Iterator[None]:
-    """Say what the core's errors mean for a body of so many vertices."""
-    try:
-        yield
-    except MemoryError as error:
-        (needed,) = error.args
-        raise SimulationError(
-            "gradient", too_large_a_tangent(vertices, needed), "use larger voxels"
-        ) from None
-    except ArithmeticError as error:
-        raise SimulationError(
-            "gradient", str(error), "hold the body better, or go a little back from the limit"
-        ) from None
 
 
 def _check_slope(target: Target) -> None:

@@ -16,14 +16,17 @@ from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.apart import Surface
+from voxsoft.simulation.compliance import compliance_of
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads.actions import SurfacePressure
 from voxsoft.simulation.motion import moved_by
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
+from voxsoft.simulation.result import pressures_of
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import ContactState
+from voxsoft.simulation.vibration import modes_of
 
 Floats = NDArray[np.float64]
 
@@ -110,6 +113,16 @@ class LoadedState:
             return ()
         return touching.contacts(_core.contacts_at(self.setup.problem, self.positions))
 
+    @property
+    def cavity_pressures(self) -> tuple[float, ...]:
+        """The final pressure in each cavity, Pa, that of loads: slopes know no supplies."""
+        return tuple(pressures_of(self.design, self.mesh))
+
+    @property
+    def supplies(self) -> tuple[()]:
+        """None: slopes know no supplies."""
+        return ()
+
     def gap_to(self, name: str) -> float:
         """The smallest distance of the body and an object, m."""
         for each in self.contacts:
@@ -121,6 +134,14 @@ class LoadedState:
         (motion,) = (each.way for each in self.design.objects if each.name == name)
         surface = Surface(moved_by(motion, first.vertices), first.triangles)
         return distance_between(self.mesh, self.positions, surface)
+
+    def compliance_at(self, place: Place) -> Floats:
+        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N."""
+        return compliance_of(self.setup, self.positions, place)
+
+    def natural_frequency(self) -> float:
+        """That of the slowest small vibration, Hz."""
+        return float(modes_of(self.setup, self.positions, 1).frequencies[0])
 
     def pushed_triangles(self) -> Iterator[tuple[NDArray[np.int32], float]]:
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa.

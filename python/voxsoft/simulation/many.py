@@ -20,6 +20,7 @@ from voxsoft.materials import Lattice, Material, material_of
 from voxsoft.metrics import Place
 from voxsoft.records import plain_values
 from voxsoft.simulation.equilibrium import DEFAULT_STATICS_TOLERANCE
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.result import Result, Status, moved_in_words
@@ -117,7 +118,7 @@ class Ensemble:
         """
         materials = setup.materials
         of_lattice = all(isinstance(material, Lattice) for material in materials)
-        if not of_lattice or has_contact(setup.design):
+        if not of_lattice or has_contact(setup.design) or has_supplies(setup.design):
             return None
         core = _core.Ensemble.of(setup.problem)
         voxels = len(setup.mesh.tets) / 5

@@ -7,6 +7,7 @@ from voxsoft.design import Design
 from voxsoft.design.assembly import voxel_size_of
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
+from voxsoft.records import closest
 
 
 def solid_materials(design: Design) -> list[Material]:
@@ -64,12 +65,44 @@ def core_materials(design: Design, materials: list[Material]) -> list[_core.Mate
     materials
         One for each part, such as :func:`solid_materials` gives.
     """
-    return [
-        material.core.with_fibers([fiber.core for fiber in part.fibers])
-        if part.fibers
-        else material.core
-        for part, material in zip(design.parts, materials, strict=True)
-    ]
+    found = []
+    stretches = _stretches(design)
+    for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
+        core = material.core
+        if part.fibers:
+            core = core.with_fibers([fiber.core for fiber in part.fibers])
+        if index in stretches:
+            core = core.with_swelling(stretches[index])
+        found.append(core)
+    return found
+
+
+def _stretches(design: Design) -> dict[int, float]:
+    """How many times as long parts are by themselves, by index; several activations multiply.
+
+    Raises
+    ------
+    DesignError
+        There is no such part, or it is a lattice or rigid.
+    """
+    found: dict[int, float] = {}
+    for number, activation in enumerate(design.activations):
+        where = f"activations[{number}].part"
+        named = [i for i, part in enumerate(design.parts) if activation.part == part.label]
+        if not named:
+            labels = [part.label for part in design.parts]
+            what = f'there is no part "{activation.part}"'
+            raise DesignError(where, what, closest(activation.part, labels))
+        for index in named:
+            material = design.material_of(design.parts[index])
+            if not isinstance(material, Hyperelastic):
+                raise DesignError(
+                    where,
+                    f'swells hyperelastic parts, and "{activation.part}" is "{material.model}"',
+                    "use the neo-Hookean material of the same Young's modulus",
+                )
+            found[index] = found.get(index, 1.0) * activation.stretch
+    return found
 
 
 def _shear(material: Hyperelastic | Lattice | CompliantLattice, voxel_size: float) -> float:

@@ -58,11 +58,10 @@ def nested(coarse: Result, setup: Setup) -> Start | None:
             return None
         moved += coarse.displacements[found] / 8.0
     own = Setup(coarse.design, coarse.mesh)
-    around = own.problem.pressures(coarse.positions)
-    pressures = np.full(len(keys), np.nan)
+    # Where a surface leaves no large voxel around a small one there is none to begin with.
+    around = np.nan_to_num(own.problem.pressures(coarse.positions))
     parents = at.find(keys // 2)
-    inside = parents >= 0
-    pressures[inside] = around[parents[inside]]
+    pressures = np.where(parents >= 0, around[parents], 0.0)
     positions = small.vertices + moved
     if isinstance(setup, SectorSetup):
         kept = setup.sector.vertices

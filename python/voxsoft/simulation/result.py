@@ -23,6 +23,7 @@ from voxsoft.metrics.contact import object_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -65,6 +66,9 @@ class Recording:
         loads as they are at that instant. Empty without contact.
     momentum
         In kg m/s, (f, 3). Empty without contact.
+    chambers
+        Pressure, volume, mass, flow, work and energy of each supply by name, each (f,); for statics
+        at each point of the load path.
     """
 
     times: NDArray[np.float64]
@@ -78,6 +82,7 @@ class Recording:
     kinetic_energy: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     load_potential: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
     momentum: NDArray[np.float64] = field(default_factory=lambda: np.zeros((0, 3)))
+    chambers: Mapping[str, ChamberHistory] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, repr=False)
@@ -132,6 +137,9 @@ class Result(Shown):
         Pressure, friction and gap at each vertex; None for a design without contact.
     tendons
         How hard each tendon pulls and how long it is, by name.
+    supplies
+        Pressure, volume, mass, flow, work and energy of each volume of gas or liquid: those of the
+        design's supplies in their order, then those that only a connection reaches.
     """
 
     design: Design
@@ -163,6 +171,7 @@ class Result(Shown):
     objects: Mapping[str, Pose] = field(default_factory=dict)
     contact_field: ContactField | None = field(default=None, repr=False)
     tendons: Mapping[str, TendonState] = field(default_factory=dict)
+    supplies: tuple[ChamberState, ...] = ()
 
     @property
     def history(self) -> NoReturn:
@@ -194,6 +203,15 @@ class Result(Shown):
         return tuple(cavity.volume_at(self.positions) for cavity in self.mesh.cavities)
 
     @cached_property
+    def cavity_pressures(self) -> tuple[float, ...]:
+        """Gauge pressure in each cavity in Pa, in the order of the mesh's cavities."""
+        pressures = [self.load_factor * value for value in pressures_of(self.design, self.mesh)]
+        for supplied in self.supplies:
+            for index in supplied.cavities:
+                pressures[index] = supplied.pressure
+        return tuple(pressures)
+
+    @cached_property
     def fields(self) -> Fields:
         """Stress and strain in each voxel, and averaged on the vertices."""
         return fields_of(self.design, self.mesh, self.positions)
@@ -209,6 +227,7 @@ class Result(Shown):
         name: str,
         *,
         probe: str | None = None,
+        base: str | None = None,
         axis: Literal["x", "y", "z"] | None = None,
         cavity: int | str | None = None,
         percentile: float | None = None,
@@ -222,6 +241,8 @@ class Result(Shown):
             A key of :data:`voxsoft.metrics.METRICS`, which says what each needs and takes.
         probe
             Where, for a metric that needs it; may be left out if there is one probe.
+        base
+            Another probe, where the line of a chord begins; may be left out if there are two.
         axis
             The component of a vector; default: its magnitude.
         cavity
@@ -241,6 +262,7 @@ class Result(Shown):
         target = Objective(
             maximize=name,
             probe=probe,
+            base=base,
             axis=axis,
             cavity=cavity,
             percentile=percentile,
@@ -260,7 +282,9 @@ class Result(Shown):
         """The design's objectives and constraints by name, or everything that needs no choice."""
         asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
         values = {name: self._value(target) for name, target in asked.items()}
-        free = {name for name, metric in METRICS.items() if not metric.needs}
+        free = {
+            name for name, metric in METRICS.items() if not metric.needs and not metric.is_costly
+        }
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
 
     @cached_property
@@ -289,6 +313,24 @@ class Result(Shown):
             return float(self.positions[:, 2].min()) - self.design.floor.z
         surface = posed_surface(self.design, name, self.objects.get(name))
         return distance_between(self.mesh, self.positions, surface)
+
+    def compliance_at(self, place: Place) -> NDArray[np.float64]:
+        """How a force along x, y or z, shared by a place, moves it, (3, 3), m/N.
+
+        Raises
+        ------
+        SimulationError
+            The tangent is singular there, or does not fit in memory.
+        """
+        from voxsoft.simulation.compliance import compliance  # needs a setup, which makes results
+
+        return compliance(self.design, self.mesh, self.positions, place)
+
+    def natural_frequency(self) -> float:
+        """That of the slowest small vibration, Hz; errors as those of :func:`voxsoft.modes`."""
+        from voxsoft.simulation.vibration import modes  # of results
+
+        return float(modes(self, 1).frequencies[0])
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
@@ -334,7 +376,6 @@ class Result(Shown):
 
     def summary(self) -> dict[str, Any]:
         """Everything a record needs, as plain data in SI units (the ``--json`` of ``run``)."""
-        pressures = [self.load_factor * value for value in _pressures(self.design, self.mesh)]
         return {
             "status": self.status,
             "message": self.message,
@@ -353,10 +394,11 @@ class Result(Shown):
                     "pressure": pressure,
                 }
                 for volume, cavity, pressure in zip(
-                    self.cavity_volumes, self.mesh.cavities, pressures, strict=True
+                    self.cavity_volumes, self.mesh.cavities, self.cavity_pressures, strict=True
                 )
             ],
             "contacts": [contact.summary() for contact in self.contacts],
+            "supplies": [supply.summary() for supply in self.supplies],
             "objects": {name: pose.summary() for name, pose in self.objects.items()},
             "tendons": {name: found.summary() for name, found in self.tendons.items()},
             "penetration": self.penetration.depth,
@@ -386,8 +428,8 @@ def moved_in_words(name: str, moved: NDArray[np.float64]) -> str:
     return f"{name}: moved ({shown}) mm"
 
 
-def _pressures(design: Design, mesh: Mesh) -> list[float]:
-    """The final pressure in Pa in each cavity."""
+def pressures_of(design: Design, mesh: Mesh) -> list[float]:
+    """The final pressure in Pa of all loads in each cavity."""
     pressures = [0.0] * len(mesh.cavities)
     for number, load in enumerate(readings(design)):
         if load.cavity is not None:

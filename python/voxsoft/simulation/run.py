@@ -16,6 +16,7 @@ from voxsoft.simulation.choice import check_solver, method_of
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
@@ -130,6 +131,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
         Steps after which the run counts as not at rest.
     """
     refuse_contact(setup.design, "relaxation")
+    refuse_supplies(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
     answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
@@ -188,6 +190,7 @@ _STATUSES: dict[_core.Status, Status] = {
 def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float) -> Result:
     """Wrap what was found in a :class:`Result`."""
     answer, path, touching = report.answer, report.answer.path, setup.touching
+    fluids = setup.fluids
     rest = setup.mesh.vertices
     still = [place.weights @ rest[place.vertices] for place in setup.places.values()]
     records = answer.records
@@ -198,6 +201,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
             for index, name in enumerate(setup.places)
         },
         frames=answer.frames,
+        chambers={} if fluids is None else fluids.histories(answer.chamber_records),
         **_touch_history(setup, answer),
     )
     return Result(
@@ -233,6 +237,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
             tendon.name: tendon.state(found)
             for tendon, found in zip(setup.tendons, answer.tendons, strict=True)
         },
+        supplies=() if fluids is None else fluids.states(answer.chambers),
     )
 
 

@@ -30,6 +30,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.fluids import Fluids, has_supplies
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
@@ -137,6 +138,8 @@ class Setup:
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
         _ = self.places, self.attached, self.tendons
+        if self.fluids is not None:
+            _ = self.fluids.network
         if self.touching is not None:
             _ = self.touching.surfaces
         if self.sector is not None:
@@ -179,6 +182,9 @@ class Setup:
             The voxels are not symmetric.
         """
         planes = self.design.symmetry
+        if planes and has_supplies(self.design):
+            what = "is not known together with supplies yet"
+            raise DesignError("symmetry", what, "leave the planes out, or give pressure loads")
         if planes and has_contact(self.design):
             what = "is not known together with contact yet"
             raise DesignError("symmetry", what, "leave contact and objects out, or the planes")
@@ -254,6 +260,8 @@ class Setup:
             receiver = _CoreLoads(self.other_split, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
+        if self.fluids is not None and isinstance(parts, _core.ProblemParts):
+            self.fluids.give_to(parts)
         for term, elements in self.attached.items():
             _say_where(parts, term)
             parts.attach(term, json.dumps(elements, allow_nan=False))
@@ -272,6 +280,11 @@ class Setup:
             An object without a surface, or one that is in the unloaded body.
         """
         return Touching(self.design, self.mesh) if has_contact(self.design) else None
+
+    @cached_property
+    def fluids(self) -> Fluids | None:
+        """What supplies its chambers, where the design has supplies; errors as for that class."""
+        return Fluids(self.design, self.mesh) if has_supplies(self.design) else None
 
     @cached_property
     def loads(self) -> tuple[ResolvedLoad, ...]:

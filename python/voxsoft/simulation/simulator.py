@@ -15,6 +15,7 @@ from voxsoft.errors import SimulationError
 from voxsoft.records import Record
 from voxsoft.simulation.commands import LoadCommands, LoadName, Value
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import refuse_contact
@@ -93,6 +94,7 @@ class Simulator:
     ) -> None:
         design = require_design(design, "design").assembled
         refuse_contact(design, "the simulator")
+        refuse_supplies(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)

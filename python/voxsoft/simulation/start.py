@@ -16,9 +16,9 @@ class Start(NamedTuple):
     positions
         In m, (n, 3).
     pressures
-        In Pa, positive in tension, on the vertices at the lowest corners of voxels, (n,); NaN on
-        others.
+        In Pa, positive in tension, on the vertices at the lowest corners of voxels, (n,). None
+        for those that the positions have.
     """
 
     positions: NDArray[np.float64]
-    pressures: NDArray[np.float64]
+    pressures: NDArray[np.float64] | None = None

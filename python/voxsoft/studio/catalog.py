@@ -44,6 +44,7 @@ def hello(runs_folder: Path) -> events.Hello:
                 name=name,
                 kind=metric.kind,
                 needs_probe="probe" in metric.needs,
+                needs_base="base" in metric.needs,
                 needs_cavity="cavity" in metric.takes,
                 takes_percentile="percentile" in metric.takes,
                 needs_object="object" in metric.needs | metric.takes,

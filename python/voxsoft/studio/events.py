@@ -71,6 +71,7 @@ class Metric(Entry):
     name: str
     kind: str
     needs_probe: bool
+    needs_base: bool
     needs_cavity: bool
     takes_percentile: bool
     needs_object: bool

@@ -19,6 +19,7 @@ from voxsoft.errors import FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
@@ -119,6 +120,7 @@ def page_of_body(
         what = "with bonds" if bonded else "of the lattice material"
         refuse_contact(body.setup.design, f"exported pages {what}")
     refuse_bodies(body.setup.design, "exported pages")
+    refuse_supplies(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(

@@ -67,6 +67,7 @@ class Kind:
 
 _ALL: Final = (
     Kind("length", Dimension(1), ("mm", "m", "um")),
+    Kind("curvature", Dimension(-1), ("1/m", "1/mm")),
     Kind("area", Dimension(2), ("mm^2", "m^2")),
     Kind("volume", Dimension(3), ("mL", "mm^3", "m^3")),
     Kind("pressure", Dimension(-1, 1, -2), ("kPa", "Pa", "MPa")),
@@ -82,6 +83,10 @@ _ALL: Final = (
     Kind("stiffness", Dimension(0, 1, -2), ("N/m",)),
     Kind("compliance", Dimension(0, -1, 2), ("m/N", "mm/N")),
     Kind("volume compliance", Dimension(4, -1, 2), ("m^3/Pa",)),
+    Kind("volume flow", Dimension(3, 0, -1), ("mL/s", "L/min", "m^3/s")),
+    Kind("mass flow", Dimension(0, 1, -1), ("g/s", "kg/s")),
+    Kind("conductance", Dimension(4, -1, 1), ("L/s/bar", "m^3/s/Pa")),
+    Kind("viscosity", Dimension(-1, 1, -1), ("Pa*s",)),
     Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
     Kind("number", Dimension(), ()),
 )

@@ -5,7 +5,8 @@ import type { Metric } from "../../src/protocol";
 const metric = (takes: Partial<Metric>): Metric => ({
   name: "max_stress",
   kind: "pressure",
-  ...{ needs_probe: false, needs_cavity: false, takes_percentile: false, needs_object: false },
+  ...{ needs_probe: false, needs_base: false, needs_cavity: false },
+  ...{ takes_percentile: false, needs_object: false },
   ...takes,
 });
 
@@ -15,6 +16,18 @@ it("keeps a percentile only where the next metric takes one", () => {
   expect(fittingKeys(metric({}), value, [])).toEqual({ max: "20 kPa" });
   expect(fittingKeys(metric({ needs_probe: true }), value, ["tip"])).toEqual({
     max: "20 kPa",
+    probe: "tip",
+  });
+});
+
+it("gives a line another probe to begin at", () => {
+  const line = metric({ needs_probe: true, needs_base: true });
+  expect(fittingKeys(line, {}, ["base", "tip"])).toEqual({ probe: "base", base: "tip" });
+  expect(fittingKeys(line, { probe: "tip" }, ["base", "tip"])).toEqual({
+    probe: "tip",
+    base: "base",
+  });
+  expect(fittingKeys(metric({ needs_probe: true }), { probe: "tip", base: "base" }, [])).toEqual({
     probe: "tip",
   });
 });

@@ -62,6 +62,7 @@ pub struct HyperelasticMaterial {
     density: f64,
     fibers: Vec<Fiber>,
     prony: Vec<(f64, f64)>,
+    swelling: f64,
 }
 
 impl HyperelasticMaterial {
@@ -94,6 +95,7 @@ impl HyperelasticMaterial {
             density,
             fibers: Vec::new(),
             prony: Vec::new(),
+            swelling: 1.0,
         })
     }
 
@@ -115,6 +117,27 @@ impl HyperelasticMaterial {
             }
         }
         Ok(Self { fibers, ..self })
+    }
+
+    /// The same material swollen (or shrunk): free of stress it is so many times as long along every axis as the body at
+    /// rest, `F = Fₑ λ`. Its mass stays.
+    pub fn with_swelling(self, stretch: f64) -> Result<Self, ProblemError> {
+        if !(stretch > 0.0 && stretch.is_finite()) {
+            let what = "stretch of a swollen material";
+            return Err(ProblemError::NotPositive {
+                what,
+                value: stretch,
+            });
+        }
+        Ok(Self {
+            swelling: stretch,
+            ..self
+        })
+    }
+
+    /// By how much it is longer free of stress than in the body at rest; 1 where it is not swollen.
+    pub fn swelling(&self) -> f64 {
+        self.swelling
     }
 
     /// The same material with branches that relax: pairs of the share `g` of the instantaneous modulus

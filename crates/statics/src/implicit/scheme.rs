@@ -16,6 +16,8 @@ use voxsoft_solid::vector::{Vec3, add, scale};
 pub(crate) struct Start {
     /// `σ` in 1/s.
     pub rate: f64,
+    /// `a₁` and `a₂`.
+    pub weights: [f64; 2],
     /// `x̂` in m.
     pub positions: Vec<Vec3>,
     /// `v̂` in m/s.
@@ -28,6 +30,7 @@ impl Start {
         let Some(before) = before else {
             return Self {
                 rate: 1.0 / step,
+                weights: [1.0, 0.0],
                 positions: now.positions.clone(),
                 velocities: now.velocities.clone(),
             };
@@ -43,6 +46,7 @@ impl Start {
         };
         Self {
             rate: (1.0 + 2.0 * ratio) / ((1.0 + ratio) * step),
+            weights: [first, second],
             positions: mix(&now.positions, &before.positions),
             velocities: mix(&now.velocities, &before.velocities),
         }

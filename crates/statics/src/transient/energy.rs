@@ -125,7 +125,9 @@ impl Run<'_> {
 
     pub(super) fn is_at_rest(&self, residual: f64) -> bool {
         let tolerance = self.settings.tolerance;
+        let fluid = self.problem.fluid();
         self.state.time >= loads_end(self.problem)
+            && fluid.is_none_or(|fluid| fluid.is_at_rest(tolerance))
             && residual <= tolerance
             && is_still_with(self.problem, self.now.elastic, self.now.kinetic, tolerance)
     }

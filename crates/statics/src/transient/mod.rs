@@ -110,6 +110,9 @@ impl Transient {
             contact.start(&start.positions);
         }
         problem.start_loads();
+        if let Some(fluid) = problem.fluid() {
+            fluid.start(&start.positions, Some(start.time));
+        }
         let means = Means {
             solver: LinearSolver::Auto,
             memory: self.memory,
@@ -310,6 +313,9 @@ impl Run<'_> {
         }
         let factor_of = |load: &Load| load.history.at(next.time);
         self.problem.accept_loads(&next.positions, &factor_of);
+        if let Some(fluid) = self.problem.fluid() {
+            fluid.take_step(&next.positions);
+        }
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }

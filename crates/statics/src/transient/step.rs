@@ -32,6 +32,9 @@ impl Run<'_> {
         self.inertia.set(start.rate * braked, free.collect());
         self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
         let time = self.state.time + step;
+        if let Some(fluid) = self.problem.fluid() {
+            fluid.begin(time, start.rate, start.weights);
+        }
         let point = Point::at(time);
         let mut positions = self.best_prediction(step, before, point)?;
         self.settle(&mut positions, point, observer)?;

@@ -30,6 +30,7 @@ function MetricFields(props: {
   const probes = Object.keys((source.probes as object | undefined) ?? {});
   const metric = metrics?.find((one) => one.name === props.metric);
   const probe = String(props.value.probe ?? "");
+  const base = String(props.value.base ?? "");
   const object = String(props.value.object ?? "");
   return (
     <>
@@ -51,6 +52,17 @@ function MetricFields(props: {
             probe,
           )}
           onChange={(next) => props.onKey("probe", next)}
+        />
+      )}
+      {metric?.needs_base && (
+        <Select
+          label="From"
+          value={base}
+          options={withCurrent(
+            probes.filter((name) => name !== probe).map((name) => ({ value: name, label: name })),
+            base,
+          )}
+          onChange={(next) => props.onKey("base", next)}
         />
       )}
       {metric?.needs_probe && (
@@ -128,11 +140,14 @@ export function fittingKeys(
   value: Table,
   probes: readonly string[],
 ): Record<string, unknown> {
-  const { probe: _p, axis: _a, cavity: _c, percentile, object, ...kept } = value;
+  const { probe: _p, base: _b, axis: _a, cavity: _c, percentile, object, ...kept } = value;
   if (metric?.needs_probe) {
+    const probe = value.probe ?? probes[0] ?? "";
+    const base = value.base ?? probes.find((name) => name !== probe) ?? "";
     return {
       ...kept,
-      probe: value.probe ?? probes[0] ?? "",
+      probe,
+      ...(metric.needs_base ? { base } : {}),
       ...(value.axis ? { axis: value.axis } : {}),
     };
   }

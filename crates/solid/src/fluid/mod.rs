@@ -1,0 +1,588 @@
+//! Chambers as volumes of gas or liquid: what drives them is a mass, a syringe, a source or a pump, and their pressure is what
+//! comes of that and of the volume that the body's walls leave.
+//!
+//! [`Network`] says which pressures go with which volumes; [`Fluid`] puts them on the walls. A pressure `p(V)` that falls with
+//! the volume does the work `W(V) = ∫ p dV`, so that its forces have the potential `−W` and the stiffness
+//!
+//! ```text
+//! −p ∂²V/∂x² + g (−∂p/∂V) gᵀ,   g = ∂V/∂x.
+//! ```
+//!
+//! The first part joins neighbors, as that of a pressure does; the second one, of the rank of the number of chambers, joins all
+//! of a chamber's wall, and solvers take it apart from the rest ([`Coupling`]).
+
+mod line;
+mod medium;
+mod network;
+mod small;
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use crate::assembly::Visitor;
+use crate::loads::{ExternalForce, Pressure, Vertices};
+use crate::vector::{Vec3, axpy};
+use crate::{History, Load, LoadKind, PointForces, ProblemError};
+
+pub use line::{Curve, Flow, Line, Tube, Valve};
+pub use medium::Medium;
+pub use network::{Branch, Chamber, Course, End, Network, Pressures, Pump, Ramp, Source, Step};
+pub use small::solve_small;
+
+/// Points and weights of the formula of Gauss and Legendre on 0 to 1, five of them: exact for polynomials up to the ninth power.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_0, 0.118_463_442_528_094_5),
+    (0.230_765_344_947_158_4, 0.239_314_335_249_683_2),
+    (0.5, 0.284_444_444_444_444_4),
+    (0.769_234_655_052_841_6, 0.239_314_335_249_683_2),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_5),
+];
+/// Into how many parts of equal ratio the way from one volume to another is cut for it.
+const PARTS: i32 = 4;
+
+/// The walls of a chamber, each with its weight in place of a pressure: both ways to cut them have a half.
+pub type Walls = Vec<Pressure>;
+
+/// Gas or liquid in the chambers of a body.
+#[derive(Debug, Clone)]
+pub struct Fluid {
+    network: Arc<Network>,
+    walls: Arc<Vec<Walls>>,
+    /// A load whose factor is the part of the way from the unloaded body.
+    part: Load,
+    state: Arc<Mutex<State>>,
+}
+
+/// What it remembers between steps and iterations.
+#[derive(Debug, Default)]
+struct State {
+    step: Option<Step>,
+    /// Pressures that Newton's method carries along.
+    carried: Option<Vec<f64>>,
+    /// Masses that have been exchanged since the start, now and a step ago, kg.
+    exchanged: Vec<f64>,
+    before: Vec<f64>,
+    last: Option<Last>,
+    /// The largest pressure so far, of either sign, Pa.
+    largest: f64,
+    /// Work on the walls and energy given so far, J, for each chamber.
+    work: Vec<f64>,
+    energy: Vec<f64>,
+}
+
+/// The last accepted state.
+#[derive(Debug, Clone)]
+struct Last {
+    volumes: Vec<f64>,
+    pressures: Vec<f64>,
+    part: f64,
+    time: f64,
+    power: Vec<f64>,
+    masses: Vec<f64>,
+}
+
+/// A chamber as it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reading {
+    /// Pa
+    pub pressure: f64,
+    /// Of its cavities, m³.
+    pub volume: f64,
+    /// With that in lines and syringes, kg.
+    pub mass: f64,
+    /// Into it, kg/s.
+    pub flow: f64,
+    /// On the walls, J.
+    pub work: f64,
+    /// What it took, J.
+    pub energy: f64,
+}
+
+impl Reading {
+    /// Its numbers in the order above.
+    pub fn numbers(self) -> [f64; 6] {
+        let Self {
+            pressure,
+            volume,
+            mass,
+            flow,
+            work,
+            energy,
+        } = self;
+        [pressure, volume, mass, flow, work, energy]
+    }
+}
+
+/// The part of a stiffness that joins all of the walls: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
+#[derive(Debug, Clone)]
+pub struct Coupling {
+    /// The derivative of each volume by all positions, m².
+    pub gradients: Vec<Vec<Vec3>>,
+    /// `C`, row by row, Pa/m³.
+    pub stiffness: Vec<f64>,
+}
+
+impl Fluid {
+    /// A fluid behind walls, a list of surfaces for each chamber of the network.
+    pub fn new(network: Network, walls: Vec<Walls>) -> Result<Self, ProblemError> {
+        network
+            .check()
+            .map_err(|what| ProblemError::NotFinite { what })?;
+        if walls.len() != network.chambers.len() {
+            return Err(ProblemError::Length {
+                what: "walls of chambers",
+                got: walls.len(),
+                expected: network.chambers.len(),
+            });
+        }
+        let count = walls.len();
+        Ok(Self {
+            network: Arc::new(network),
+            walls: Arc::new(walls),
+            part: Load {
+                kind: LoadKind::Forces(PointForces {
+                    vertices: Vec::new(),
+                    forces: Vec::new(),
+                }),
+                history: History::constant(),
+            },
+            state: Arc::new(Mutex::new(State {
+                exchanged: vec![0.0; count],
+                before: vec![0.0; count],
+                work: vec![0.0; count],
+                energy: vec![0.0; count],
+                ..State::default()
+            })),
+        })
+    }
+
+    /// The same in a state of its own.
+    pub fn anew(&self) -> Result<Self, ProblemError> {
+        Self::new((*self.network).clone(), (*self.walls).clone())
+    }
+
+    /// Checks indices against the number of vertices.
+    pub fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+        self.walls
+            .iter()
+            .flatten()
+            .try_for_each(|wall| wall.check(vertices))
+    }
+
+    /// Whether its forces have a potential.
+    pub fn is_conservative(&self) -> bool {
+        !self.network.joins()
+            && self
+                .walls
+                .iter()
+                .flatten()
+                .all(ExternalForce::is_conservative)
+    }
+
+    /// When nothing is changed from outside any more, s.
+    pub fn end(&self) -> f64 {
+        self.network.end()
+    }
+
+    /// What the factor of a load is the part of the way for.
+    pub fn part(&self, factor_of: &dyn Fn(&Load) -> f64) -> f64 {
+        factor_of(&self.part)
+    }
+
+    /// The triangles that it pushes.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
+        self.walls
+            .iter()
+            .flatten()
+            .flat_map(|wall| wall.triangles.iter().copied())
+    }
+
+    fn state(&self) -> MutexGuard<'_, State> {
+        // A panic of another thread leaves numbers that the next step overwrites.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The volume of each chamber, m³.
+    pub fn volumes(&self, positions: &[Vec3]) -> Vec<f64> {
+        let on = bare(positions);
+        let volume = |walls: &Walls| walls.iter().map(|wall| wall.work(on)).sum();
+        self.walls.iter().map(volume).collect()
+    }
+
+    /// The pressures that push, those whose stiffness the walls feel, and how pressures follow volumes.
+    fn answer(&self, volumes: &[f64], part: f64) -> (Pressures, Vec<f64>) {
+        let state = self.state();
+        let found = match (&state.carried, &state.step) {
+            (Some(near), Some(step)) => self.network.along_end_of(step, near, volumes),
+            (Some(near), None) => self.network.along_rest(near, volumes, part, f64::INFINITY),
+            (None, Some(step)) => self.network.at_end_of(step, volumes),
+            (None, None) => self.network.at_rest(volumes, part, f64::INFINITY),
+        };
+        let n = volumes.len();
+        let found = found.unwrap_or_else(|| Pressures {
+            pressures: vec![f64::NAN; n],
+            stiffness: vec![f64::NAN; n * n],
+        });
+        let bent = state
+            .carried
+            .clone()
+            .unwrap_or_else(|| found.pressures.clone());
+        (found, bent)
+    }
+
+    /// Adds the forces (N) on the walls.
+    pub fn add_forces(&self, positions: &[Vec3], part: f64, forces: &mut [Vec3]) {
+        let (found, _) = self.answer(&self.volumes(positions), part);
+        let on = bare(positions);
+        for (walls, pressure) in self.walls.iter().zip(found.pressures) {
+            walls
+                .iter()
+                .for_each(|wall| wall.add_forces(on, pressure, forces));
+        }
+    }
+
+    /// Its potential (J), up to a constant of the step.
+    pub fn potential(&self, positions: &[Vec3], part: f64) -> f64 {
+        let volumes = self.volumes(positions);
+        let step = self.state().step.clone();
+        match step {
+            Some(step) if !self.network.is_closed() => -self.work_in(&step, &volumes),
+            Some(step) => -self.network.work_at_rest(&volumes, 1.0, step.time),
+            None => -self.network.work_at_rest(&volumes, part, f64::INFINITY),
+        }
+    }
+
+    /// The work up to these volumes from those that a step counts from.
+    fn work_in(&self, step: &Step, volumes: &[f64]) -> f64 {
+        let mut work = 0.0;
+        for number in 0..PARTS {
+            let between = |part: i32| {
+                let share = f64::from(part) / f64::from(PARTS);
+                let pairs = step.from.iter().zip(volumes);
+                pairs
+                    .map(move |(a, b)| a * (b / a).powf(share))
+                    .collect::<Vec<f64>>()
+            };
+            let (start, end) = (between(number), between(number + 1));
+            let ways: Vec<f64> = start.iter().zip(&end).map(|(a, b)| b - a).collect();
+            for (place, weight) in GAUSS {
+                let at: Vec<f64> = start
+                    .iter()
+                    .zip(&ways)
+                    .map(|(a, way)| a + place * way)
+                    .collect();
+                let Some(found) = self.network.at_end_of(step, &at) else {
+                    return f64::NAN;
+                };
+                let along: f64 = found
+                    .pressures
+                    .iter()
+                    .zip(&ways)
+                    .map(|(p, way)| p * way)
+                    .sum();
+                work += weight * along;
+            }
+        }
+        work
+    }
+
+    /// Hands over the part of the stiffness that joins neighbors (N/m).
+    pub fn visit_stiffness(&self, positions: &[Vec3], part: f64, visit: Visitor<'_>) {
+        let (_, bent) = self.answer(&self.volumes(positions), part);
+        for (walls, pressure) in self.walls.iter().zip(bent) {
+            for wall in walls {
+                wall.visit_stiffness(positions, pressure, visit);
+            }
+        }
+    }
+
+    /// Hands over the vertices of every piece of that.
+    pub fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.walls
+            .iter()
+            .flatten()
+            .for_each(|wall| wall.visit_pattern(visit));
+    }
+
+    /// The part of the stiffness that joins all of the walls.
+    pub fn coupling(&self, positions: &[Vec3], part: f64) -> Coupling {
+        let (found, _) = self.answer(&self.volumes(positions), part);
+        Coupling {
+            gradients: self.gradients(positions),
+            stiffness: found.stiffness,
+        }
+    }
+
+    fn gradients(&self, positions: &[Vec3]) -> Vec<Vec<Vec3>> {
+        let on = bare(positions);
+        let gradient = |walls: &Walls| {
+            let mut gradient = vec![[0.0; 3]; positions.len()];
+            walls
+                .iter()
+                .for_each(|wall| wall.add_forces(on, 1.0, &mut gradient));
+            gradient
+        };
+        self.walls.iter().map(gradient).collect()
+    }
+
+    /// Whether Newton's method carries its pressures along.
+    pub fn is_stiff(&self) -> bool {
+        self.network.is_stiff()
+    }
+
+    /// From here on forces and stiffness are those of pressures that are carried along; none lets them go.
+    pub fn carry(&self, pressures: Option<Vec<f64>>) {
+        self.state().carried = pressures;
+    }
+
+    /// The pressures to carry along after a move of the vertices, to first order.
+    pub fn carried_on(&self, positions: &[Vec3], part: f64, moves: &[Vec3]) -> Vec<f64> {
+        let (found, _) = self.answer(&self.volumes(positions), part);
+        let grown: Vec<f64> = (self.gradients(positions).iter())
+            .map(|gradient| {
+                let pairs = gradient.as_flattened().iter().zip(moves.as_flattened());
+                pairs.map(|(a, b)| a * b).sum()
+            })
+            .collect();
+        let n = grown.len();
+        let fall = |row: usize| -> f64 {
+            let entries = &found.stiffness[row * n..(row + 1) * n];
+            entries.iter().zip(&grown).map(|(c, way)| c * way).sum()
+        };
+        (0..n).map(|row| found.pressures[row] - fall(row)).collect()
+    }
+
+    /// Starts a path from rest, or a motion: nothing has been exchanged.
+    pub fn start(&self, positions: &[Vec3], time: Option<f64>) {
+        let volumes = self.volumes(positions);
+        let network = &self.network;
+        let (part, moment) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
+        let n = volumes.len();
+        // What has not been joined yet is as it was put in.
+        let alone = Network {
+            branches: Vec::new(),
+            pumps: Vec::new(),
+            ..(**network).clone()
+        };
+        let found = if time.is_some() {
+            alone.at_rest(&volumes, part, moment)
+        } else {
+            network.at_rest(&volumes, part, moment)
+        };
+        let pressures = found.map_or(vec![f64::NAN; n], |found| found.pressures);
+        let power = match time {
+            Some(time) => network.power(&pressures, time),
+            None => vec![0.0; n],
+        };
+        let masses = network.masses(&volumes, &pressures, part, moment);
+        *self.state() = State {
+            step: None,
+            carried: None,
+            largest: 0.0,
+            exchanged: vec![0.0; n],
+            before: vec![0.0; n],
+            work: vec![0.0; n],
+            energy: vec![0.0; n],
+            last: Some(Last {
+                volumes,
+                pressures,
+                part,
+                time: moment,
+                power,
+                masses,
+            }),
+        };
+        if let Some(time) = time {
+            self.begin(time, f64::INFINITY, [1.0, 0.0]);
+        }
+    }
+
+    /// Begins a step of a motion to `time`, at whose end the derivative of the masses is `rate` times what they differ by from
+    /// a mean of those now and a step ago, with these weights.
+    pub fn begin(&self, time: f64, rate: f64, [now, ago]: [f64; 2]) {
+        let mut state = self.state();
+        let pairs = state.exchanged.iter().zip(&state.before);
+        let exchanged = pairs.map(|(a, b)| now * a + ago * b).collect();
+        let (from, guess) = match &state.last {
+            Some(last) => (last.volumes.clone(), last.pressures.clone()),
+            None => return,
+        };
+        state.step = Some(Step {
+            time,
+            rate,
+            exchanged,
+            from,
+            guess,
+        });
+    }
+
+    /// Takes a state as the end of a step of a motion.
+    pub fn take_step(&self, positions: &[Vec3]) {
+        let volumes = self.volumes(positions);
+        let mut state = self.state();
+        let Some(step) = state.step.clone() else {
+            return;
+        };
+        let Some(found) = self.network.at_end_of(&step, &volumes) else {
+            return;
+        };
+        let flows = self.network.flows_at(&found.pressures, step.time);
+        let masses = self
+            .network
+            .masses(&volumes, &found.pressures, 1.0, step.time);
+        let put_in = self.network.put_in(step.time);
+        let exchanged = (0..volumes.len())
+            .map(|chamber| {
+                if self.network.is_held(chamber) {
+                    masses[chamber] - put_in[chamber]
+                } else {
+                    step.exchanged[chamber] + flows[chamber] / step.rate
+                }
+            })
+            .collect();
+        state.before = std::mem::replace(&mut state.exchanged, exchanged);
+        let power = self.network.power(&found.pressures, step.time);
+        state.count(
+            &self.network,
+            Last {
+                volumes,
+                pressures: found.pressures,
+                part: 1.0,
+                time: step.time,
+                power,
+                masses,
+            },
+        );
+    }
+
+    /// Takes a state as a point of a path of equilibria.
+    pub fn take_rest(&self, positions: &[Vec3], part: f64) {
+        let volumes = self.volumes(positions);
+        if let Some(found) = self.network.at_rest(&volumes, part, f64::INFINITY) {
+            let power = vec![0.0; volumes.len()];
+            let masses = self
+                .network
+                .masses(&volumes, &found.pressures, part, f64::INFINITY);
+            self.state().count(
+                &self.network,
+                Last {
+                    volumes,
+                    pressures: found.pressures,
+                    part,
+                    time: f64::INFINITY,
+                    power,
+                    masses,
+                },
+            );
+        }
+    }
+
+    /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
+    pub fn is_at_rest(&self, tolerance: f64) -> bool {
+        let state = self.state();
+        let (Some(last), Some(step)) = (&state.last, &state.step) else {
+            return true;
+        };
+        let settled = self
+            .network
+            .settled(&last.volumes, &state.exchanged, step.time);
+        let Some(settled) = settled else { return false };
+        let pairs = settled.iter().zip(&last.pressures);
+        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        off <= tolerance * state.largest
+    }
+
+    /// Every chamber where the vertices are at `positions`.
+    pub fn read(&self, positions: &[Vec3], part: f64) -> Vec<Reading> {
+        let volumes = self.volumes(positions);
+        let (found, _) = self.answer(&volumes, part);
+        let state = self.state();
+        let time = state.step.as_ref().map_or(f64::INFINITY, |step| step.time);
+        let masses = self.network.masses(&volumes, &found.pressures, part, time);
+        let flows: Vec<f64> = match &state.step {
+            Some(step) if step.rate.is_finite() => {
+                let flows = self.network.flows_at(&found.pressures, step.time);
+                let put_in = self.network.put_in(step.time);
+                (0..volumes.len())
+                    .map(|chamber| {
+                        if self.network.is_held(chamber) {
+                            let gained = masses[chamber] - put_in[chamber];
+                            step.rate * (gained - step.exchanged[chamber])
+                        } else {
+                            flows[chamber]
+                        }
+                    })
+                    .collect()
+            }
+            Some(step) => self.network.flows_at(&found.pressures, step.time),
+            None => vec![0.0; volumes.len()],
+        };
+        (0..volumes.len())
+            .map(|chamber| Reading {
+                pressure: found.pressures[chamber],
+                volume: volumes[chamber],
+                mass: masses[chamber],
+                flow: flows[chamber],
+                work: state.work[chamber],
+                energy: state.energy[chamber],
+            })
+            .collect()
+    }
+}
+
+impl State {
+    /// Adds up work and energy on the way to a state, by the trapezoidal rule.
+    fn count(&mut self, network: &Network, now: Last) {
+        if let Some(last) = &self.last {
+            let step = if now.time.is_finite() {
+                now.time - last.time
+            } else {
+                0.0
+            };
+            let pairs = last.pressures.iter().zip(&now.pressures);
+            let mean: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
+            let moments = [(last.part, last.time), (now.part, now.time)];
+            let put_in = network.energy_put_in(&mean, moments);
+            let pairs = now.masses.iter().zip(&last.masses);
+            let gained: Vec<f64> = pairs.map(|(now, last)| now - last).collect();
+            let held = network.energy_held(&mean, &gained, now.time);
+            for chamber in 0..mean.len() {
+                self.work[chamber] +=
+                    mean[chamber] * (now.volumes[chamber] - last.volumes[chamber]);
+                let power = 0.5 * (last.power[chamber] + now.power[chamber]);
+                self.energy[chamber] += put_in[chamber] + held[chamber] + step * power;
+            }
+        }
+        let sizes = now.pressures.iter().map(|p| p.abs());
+        self.largest = sizes.fold(self.largest, f64::max);
+        self.last = Some(now);
+    }
+}
+
+impl Coupling {
+    /// Adds its product with a field to another one.
+    pub fn add_product(&self, field: &[Vec3], product: &mut [Vec3]) {
+        let n = self.gradients.len();
+        let along: Vec<f64> = (self.gradients.iter())
+            .map(|gradient| {
+                let pairs = gradient.as_flattened().iter().zip(field.as_flattened());
+                pairs.map(|(a, b)| a * b).sum()
+            })
+            .collect();
+        for (row, gradient) in self.gradients.iter().enumerate() {
+            let entries = &self.stiffness[row * n..(row + 1) * n];
+            let size: f64 = entries.iter().zip(&along).map(|(c, a)| c * a).sum();
+            for (value, slope) in product.iter_mut().zip(gradient) {
+                axpy(value, size, *slope);
+            }
+        }
+    }
+}
+
+/// Vertices for walls, which ask for their positions alone.
+fn bare(positions: &[Vec3]) -> Vertices<'_> {
+    Vertices {
+        rest: positions,
+        positions,
+        masses: &[],
+    }
+}

@@ -1,0 +1,74 @@
+"""Error bars along a path: the same path on voxels of another size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from voxsoft.comparison.bars import Announce, ErrorBar, ErrorBars, error_bars
+from voxsoft.design import Design
+from voxsoft.simulation import LoadPath, Result, follow
+
+
+def path_error_bars(
+    path: LoadPath,
+    *,
+    progress: Callable[[int, float, float], None] | None = None,
+    announce: Announce | None = None,
+) -> tuple[ErrorBars, ...]:
+    """Estimate the discretization errors at each value of a path.
+
+    Parameters
+    ----------
+    path
+        The path. Its design's ``solver.error`` and ``solver.accuracy`` say which voxels are tried.
+    progress, announce
+        As for :func:`voxsoft.error_bars`.
+
+    Returns
+    -------
+    tuple of ErrorBars
+        One for each equilibrium, as :func:`voxsoft.error_bars` gives it.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> beam = families.beam(length="40 mm").with_values("parts.0.material=ecoflex-00-30")
+    >>> bars = path_error_bars(vs.follow(beam, "loads[0].value=0..9.81 m/s^2/3"))
+    >>> [bar.metrics["max_displacement"].error > 0.0 for bar in bars]
+    [False, True, True]
+    """
+    paths: dict[float, LoadPath] = {}
+
+    def announce_all(size: float, voxels: int, seconds: float) -> None:
+        if announce is not None and size not in paths:
+            announce(size, voxels, seconds * len(path.results))
+
+    def at(number: int) -> Callable[[Design, Result | None], Result]:
+        def solve(design: Design, _: Result | None) -> Result:
+            size = design.voxel_size
+            if size not in paths:
+                # That of one value has its histories at their end; the path's own has all of them.
+                other = path.design.with_values(f"voxel_size={size * 1e3!r} mm")
+                over = path.over.up_to(len(path.results))
+                paths[size] = follow(other, over, progress=progress)
+            return paths[size].results[min(number, len(paths[size].results) - 1)]
+
+        return solve
+
+    return tuple(
+        error_bars(result, progress=progress, announce=announce_all, solve=at(number))
+        for number, result in enumerate(path.results)
+    )
+
+
+def bars_of(name: str, bars: Sequence[ErrorBars]) -> Iterator[ErrorBar | None]:
+    """The error bar of one column of a path at each of its values; None where there is none."""
+    probe, _, axis = name.rpartition(".")
+    for each in bars:
+        if name in each.metrics:
+            yield each.metrics[name]
+        elif probe in each.probes and axis in ("x", "y", "z"):
+            yield each.probes[probe]["xyz".index(axis)]
+        else:
+            yield None

@@ -1,0 +1,38 @@
+"""What supplies do: pressures, work and the energy that it takes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Final
+
+from voxsoft.design.chamber import chosen_cavities
+from voxsoft.metrics.definition import Metric, State, Supplied, Target
+
+
+def _pressure(state: State, target: Target) -> float:
+    """In the chamber; of several the highest, and without any that of the atmosphere."""
+    chosen = chosen_cavities(target.cavity, state.mesh, "cavity")
+    return max((state.cavity_pressures[index] for index in chosen), default=0.0)
+
+
+def _chosen(state: State, target: Target) -> Iterator[Supplied]:
+    chosen = set(chosen_cavities(target.cavity, state.mesh, "cavity"))
+    return (each for each in state.supplies if chosen & set(each.cavities))
+
+
+def _work(state: State, target: Target) -> float:
+    return sum(each.work for each in _chosen(state, target))
+
+
+def _energy(state: State, target: Target) -> float:
+    return sum(each.energy for each in _chosen(state, target))
+
+
+# Without slopes: pressures follow from volumes that themselves depend on what is varied.
+CHAMBER_PRESSURE: Final = Metric(
+    "chamber_pressure", "pressure", _pressure, None, takes=frozenset({"cavity"})
+)
+SUPPLIED_WORK: Final = Metric("supplied_work", "energy", _work, None, takes=frozenset({"cavity"}))
+SUPPLIED_ENERGY: Final = Metric(
+    "supplied_energy", "energy", _energy, None, takes=frozenset({"cavity"})
+)

@@ -1,0 +1,366 @@
+"""A path of equilibria: a value of a design, or the time of its histories, changes step by step.
+
+Each equilibrium begins where the one before ended, with its contact: friction remembers the way,
+so that a way there and back is a loop. Loads and motions are made histories of one body, which is
+meshed once.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from voxsoft.design import Design, Solver, require_design
+from voxsoft.design.history import History
+from voxsoft.design.tendon import Tendon
+from voxsoft.errors import DesignError, SimulationError
+from voxsoft.metrics import METRICS, Target
+from voxsoft.simulation.choice import method_of
+from voxsoft.simulation.equilibrium import LoadControl, Stretch, find_equilibrium
+from voxsoft.simulation.materials import core_materials
+from voxsoft.simulation.over import TIME, Over
+from voxsoft.simulation.result import Result
+from voxsoft.simulation.run import ProgressCallback, result_of
+from voxsoft.simulation.sector_setup import SectorSetup
+from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.start import Start
+from voxsoft.simulation.touching import refuse_contact
+
+#: The longest step of a path on which the answer depends, as a part of all of it.
+_LONGEST: Final = 0.05
+#: What may change along a path: the rest of the design says what is meshed.
+_ALONG: Final = ("loads", "tendons", "clamps", "objects")
+#: Values are the same to this part of the largest.
+_SAME: Final = 1e-9
+
+#: Called with (number of equilibria found, number asked for).
+Step = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class LoadPath:
+    """The equilibria along a path.
+
+    Attributes
+    ----------
+    design
+        What was asked for, with the settings that were used.
+    over
+        What changes, and its values.
+    results
+        The equilibrium at each value that was reached; where the path was lost the last one is not
+        at rest.
+    """
+
+    design: Design
+    over: Over
+    results: tuple[Result, ...]
+
+    @property
+    def status(self) -> str:
+        """That of the last equilibrium."""
+        return self.results[-1].status
+
+    @property
+    def message(self) -> str:
+        """How it ended, and where."""
+        found, asked = len(self.results), len(self.over.values)
+        last = self.results[-1]
+        if last.status == "ok":
+            iterations = sum(result.steps for result in self.results)
+            return f"{found} equilibria, {iterations} Newton iterations"
+        where = self.over.in_words(self.over.values[found - 1])
+        return f"lost at {where}, after {found - 1} of {asked} equilibria: {last.message}"
+
+    @property
+    def values(self) -> tuple[float, ...]:
+        """The values that were reached, in SI units."""
+        return self.over.values[: len(self.results)]
+
+    @cached_property
+    def columns(self) -> Mapping[str, tuple[str, tuple[float, ...]]]:
+        """The kind and the values of each number along the path, by its name.
+
+        Metrics first, then the components of the displacement of each probe, then volumes and
+        pressures of chambers.
+        """
+        design = self.results[0].design
+        asked: dict[str, Target] = {**design.objectives, **design.constraints}
+        found: dict[str, tuple[str, tuple[float, ...]]] = {}
+        for name in self.results[0].metrics:
+            metric = asked[name].metric if name in asked else name
+            values = tuple(float(result.metrics[name]) for result in self.results)
+            found[name] = (METRICS[metric].kind, values)
+        for probe in self.results[0].probes:
+            for axis, letter in enumerate("xyz"):
+                moved = tuple(float(result.probes[probe][axis]) for result in self.results)
+                found[f"{probe}.{letter}"] = ("length", moved)
+        for index, cavity in enumerate(self.results[0].mesh.cavities):
+            name = cavity.name or f"cavity {index}"
+            volumes = tuple(result.cavity_volumes[index] for result in self.results)
+            found[f"{name}.volume"] = ("volume", volumes)
+        return found
+
+    def summary(self) -> dict[str, Any]:
+        """Plain data in SI units: ``over``, ``values`` and for each of them what ``run`` gives."""
+        return {
+            "status": self.status,
+            "message": self.message,
+            "over": self.over.key,
+            "path": [
+                {"value": value, **result.summary()}
+                for value, result in zip(self.values, self.results, strict=True)
+            ],
+            "seconds": sum(result.seconds for result in self.results),
+        }
+
+
+def follow(
+    design: Design,
+    over: Over | str,
+    values: Sequence[float | str] | None = None,
+    *,
+    progress: ProgressCallback | None = None,
+    step: Step | None = None,
+    **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
+) -> LoadPath:
+    """Follow equilibria along the values of a load, a motion or a parameter of them.
+
+    Parameters
+    ----------
+    design
+        What is loaded.
+    over
+        The key that changes, as :meth:`~voxsoft.Design.with_values` names keys
+        (``"loads[0].value"``, or a parameter), or ``"time"``: then loads and motions are those of
+        their histories at given instants, as if nothing had mass. With its values in one text:
+        ``"loads[0].value=0..30 kPa/16"`` (:class:`Over` reads it).
+    values
+        In SI units or with their unit, in the order in which they are reached; a way there and
+        back may show a loop.
+    progress
+        As for :func:`voxsoft.simulate`.
+    step
+        Called with (number of equilibria found, number asked for) after each.
+    **settings
+        Fields of :class:`voxsoft.design.Solver` that replace the design's own.
+
+    Returns
+    -------
+    LoadPath
+        Up to the first value at which no equilibrium was found.
+
+    Raises
+    ------
+    DesignError
+        A value that changes the body itself, or a load's direction; a value that is not valid.
+    SimulationError
+        The design asks for motion over time, arc length or volume control.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> path = vs.follow(families.pneunet(chambers=2), "loads[0].value=0..1 kPa/3")
+    >>> [round(1e3 * z, 1) for z in path.columns["tip.z"][1]]
+    [0.0, -0.6, -1.2]
+    """
+    given = require_design(design).assembled
+    asked = over if isinstance(over, Over) else _read(over, values, given)
+    solver = given.solver if not settings else given.solver.replace(**settings)
+    _check(given, solver)
+    designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
+    timed, instants = _joined(designs, asked, given)
+    setup = Setup.of(timed, refine=solver.refine)
+    part = SectorSetup.part_of(setup)
+    solved = setup if part is None else part
+    swells = any(each.activations != given.activations for each in designs)
+    if swells:
+        refuse_contact(given, "a path of activations")
+    method = method_of(given, solver)
+    tolerance = {"tolerance": method.tolerance} if isinstance(method, LoadControl) else {}
+    statics = LoadControl(**tolerance)
+    results: list[Result] = []
+    start: Start | None = None
+    before: float | None = None
+    share = max(1, len(instants) - 1)
+    for number, instant in enumerate(instants):
+        started = time.perf_counter()
+        own = core_materials(designs[number], setup.materials) if swells else None
+        used, report = find_equilibrium(
+            solved,
+            statics,
+            progress,
+            None if own is None else solved.problem.with_materials(own),
+            start=start,
+            stretch=Stretch(before, instant, min(1.0, _LONGEST * share)),
+        )
+        used["refine"] = solver.refine
+        result = result_of(solved, used, report, time.perf_counter() - started)
+        start, before = Start(result.positions), instant
+        whole = result if part is None else part.unfolded(result)
+        results.append(replace(whole, design=designs[number]))
+        if step is not None:
+            step(len(results), len(instants))
+        if result.status != "ok":
+            break
+    return LoadPath(given.replace(solver=solver), asked, tuple(results))
+
+
+def _read(over: str, values: Sequence[float | str] | None, design: Design) -> Over:
+    """A key with its values, given in one text or apart."""
+    return Over.read(over) if values is None else Over.of(over, values, design)
+
+
+def _check(design: Design, solver: Solver) -> None:
+    """Refuse what knows no equilibrium, or looks for the load by itself."""
+    if not method_of(design, solver).to_rest or solver.is_timed:
+        raise SimulationError(
+            "solver",
+            "asks for motion over time, and a path is made of equilibria",
+            "leave out end_time and other settings of motion",
+        )
+    if solver.control not in (None, "auto", "load"):
+        raise SimulationError(
+            "solver.control",
+            f'is "{solver.control}", which looks for the load by itself',
+            'leave it out for a path over a value, or write control = "load"',
+        )
+
+
+def _with_value(design: Design, over: Over, number: int) -> Design:
+    """The design at one of the values."""
+    value = over.values[number]
+    if over.key == TIME:
+        return _at_instant(design, value)
+    return design.with_values(f"{over.key}={over.toml(value)}").assembled
+
+
+def _at_instant(design: Design, instant: float) -> Design:
+    """The design whose loads and motions are those of an instant."""
+
+    def history(own: History | None) -> History | None:
+        return own if own is None else History(time=(0.0,), factor=(own.at(instant),))
+
+    return _with_histories(design, history, history)
+
+
+def _with_histories(
+    design: Design,
+    of_load: Callable[[History | None], History | None],
+    of_motion: Callable[[History | None], History | None],
+) -> Design:
+    """The design with other histories."""
+
+    def moved(holder: Any) -> Any:  # noqa: ANN401 - a clamp or an object
+        motion = holder.motion
+        if not hasattr(motion, "history"):
+            return holder
+        return holder.replace(motion=motion.replace(history=of_motion(motion.history)))
+
+    return design.replace(
+        loads=tuple(load.replace(history=of_load(load.history)) for load in design.loads),
+        tendons=tuple(each.replace(history=of_load(each.history)) for each in design.tendons),
+        clamps=tuple(moved(clamp) for clamp in design.clamps),
+        objects=tuple(moved(each) for each in design.objects),
+    )
+
+
+def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, list[float]]:
+    """One design whose loads and motions have the values as histories, and its instants."""
+    if over.key == TIME:
+        return given, list(over.values)
+    instants = [float(number) for number in range(len(designs))]
+    first = designs[0]
+    for other in designs[1:]:
+        for name in Design.model_fields:
+            if name in (*_ALONG, "activations", "parameters", "included"):
+                continue
+            if getattr(first, name) != getattr(other, name):
+                raise DesignError(
+                    over.key,
+                    f"changes {name}, and a path keeps the body as it is",
+                    "vary a load, a motion, or a parameter that only these use; a study varies "
+                    "the body",
+                )
+    changes: dict[str, Any] = {}
+    for name in _ALONG:
+        lists = [getattr(design, name) for design in designs]
+        changes[name] = tuple(
+            _one_of([each[index] for each in lists], instants, f"{name}[{index}]", over)
+            for index in range(len(lists[0]))
+        )
+    return first.replace(**changes), instants
+
+
+def _one_of(variants: list[Any], instants: list[float], where: str, over: Over) -> Any:  # noqa: ANN401
+    """One load, clamp or object with the values of all variants as its history."""
+    if all(each == variants[0] for each in variants):
+        return _at_the_end(variants[0])
+    if not hasattr(variants[0], "motion"):
+        size = variants[0].drive if isinstance(variants[0], Tendon) else "value"
+        values = [getattr(each, size) for each in variants]
+        if any(value is None for value in values):
+            raise DesignError(over.key, f"changes how {where} is pulled", f"vary its {size}")
+        sizes = [np.atleast_1d(np.asarray(value, dtype=float)) for value in values]
+        largest, factors = _factors(sizes, where, over)
+        same = [each.replace(**{size: values[largest]}) for each in variants]
+        history = _history(variants, factors, instants)
+        joined = [each.replace(history=history) for each in same]
+    else:
+        motions = [each.motion for each in variants]
+        if not all(hasattr(motion, "history") for motion in motions):
+            raise DesignError(over.key, f"changes what {where} is", "vary how far it moves")
+        sizes = [
+            np.array([*m.displacement, m.rotation.angle if m.rotation else 0.0]) for m in motions
+        ]
+        largest, factors = _factors(sizes, where, over)
+        history = _history(motions, factors, instants)
+        joined = [
+            each.replace(motion=motions[largest].replace(history=history)) for each in variants
+        ]
+    if any(each != joined[0] for each in joined):
+        raise DesignError(
+            over.key, f"changes more of {where} than how large it is", "vary its value alone"
+        )
+    return joined[0]
+
+
+def _at_the_end(item: Any) -> Any:  # noqa: ANN401 - a load, clamp or object
+    """The same for ever as after its history, which is what equilibria have."""
+    holder = item if hasattr(item, "history") else getattr(item, "motion", None)
+    history = getattr(holder, "history", None)
+    if holder is None or history is None:
+        return item
+    ended = holder.replace(history=History(time=(0.0,), factor=(history.factor[-1],)))
+    return ended if holder is item else item.replace(motion=ended)
+
+
+def _factors(sizes: list[np.ndarray[Any, Any]], where: str, over: Over) -> tuple[int, list[float]]:
+    """The number of the largest of some vectors, and all of them as multiples of it."""
+    lengths = [float(np.linalg.norm(size)) for size in sizes]
+    largest = int(np.argmax(lengths))
+    axis = sizes[largest]
+    factors = [float(size @ axis) / lengths[largest] ** 2 for size in sizes]
+    for size, factor in zip(sizes, factors, strict=True):
+        if np.abs(size - factor * axis).max() > _SAME * lengths[largest]:
+            raise DesignError(
+                over.key,
+                f"changes the direction of {where}",
+                "vary how large it is; make two of it, one for each direction or axis",
+            )
+    return largest, factors
+
+
+def _history(holders: list[Any], factors: list[float], instants: list[float]) -> History:
+    """Factors at instants, on top of what the histories end with."""
+    ends = [1.0 if each.history is None else each.history.factor[-1] for each in holders]
+    return History(
+        time=tuple(instants),
+        factor=tuple(factor * end for factor, end in zip(factors, ends, strict=True)),
+    )

@@ -1,0 +1,99 @@
+"""Natural frequencies and modes of small vibrations about an equilibrium."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft import _core
+from voxsoft._memory import memory_limit
+from voxsoft.errors import SimulationError
+from voxsoft.simulation.equilibrium import too_large_a_tangent
+from voxsoft.simulation.result import Result
+from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import has_contact
+
+#: How many modes there are unless it is said.
+DEFAULT_COUNT: Final = 6
+
+
+@dataclass(frozen=True)
+class Modes:
+    """Small vibrations about an equilibrium, the slowest first.
+
+    Attributes
+    ----------
+    frequencies
+        In Hz, (k,).
+    shapes
+        How each vertex moves, (k, n, 3), scaled so that the one that moves farthest moves by 1.
+    """
+
+    frequencies: NDArray[np.float64]
+    shapes: NDArray[np.float64]
+
+    def summary(self) -> dict[str, Any]:
+        """The frequencies in Hz as plain data."""
+        return {"frequencies": self.frequencies.tolist()}
+
+
+def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
+    """Find the slowest natural vibrations of a loaded body.
+
+    Solves ``K φ = ω² M φ`` with the tangent of the elastic forces and loads at the equilibrium, and
+    the masses of the vertices, by subspace iteration. Pressures keep their value, and nothing is
+    damped. Of a body with planes of symmetry the modes are those of the whole, the odd ones too.
+
+    Parameters
+    ----------
+    result
+        An equilibrium.
+    count
+        How many.
+
+    Returns
+    -------
+    Modes
+        In order of their frequency.
+
+    Raises
+    ------
+    SimulationError
+        The result is no stable equilibrium, something touches, or the tangent does not fit in
+        memory.
+
+    Examples
+    --------
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> beam = families.beam(length="60 mm").with_values("parts.0.material=ecoflex-00-30")
+    >>> [round(f, 1) for f in vs.modes(vs.simulate(beam), 2).frequencies.tolist()]
+    [5.2, 5.4]
+    """
+    if result.status != "ok":
+        raise SimulationError("modes", f"the run is {result.status}", "bring it to rest first")
+    if count < 1:
+        raise SimulationError("count", f"is {count}", "ask for one mode or more")
+    if has_contact(result.design):
+        raise SimulationError(
+            "modes", "are not known of bodies in contact", "leave contact and objects out"
+        )
+    return modes_of(Setup(result.design, result.mesh), result.positions, count)
+
+
+def modes_of(setup: Setup, positions: NDArray[np.float64], count: int) -> Modes:
+    """The same of an equilibrium of a setup without contact."""
+    try:
+        squares, shapes = _core.modes(setup.problem, positions, count, memory=memory_limit())
+    except MemoryError as error:
+        (needed,) = error.args
+        what = too_large_a_tangent(len(positions), needed)
+        raise SimulationError("modes", what, "use larger voxels") from None
+    except ArithmeticError:
+        what = "the body moves freely, or its equilibrium is not stable"
+        raise SimulationError("modes", what, "hold it, or lower the load") from None
+    largest = np.linalg.norm(shapes, axis=2).max(axis=1)
+    return Modes(np.sqrt(squares) / (2.0 * np.pi), shapes / largest[:, None, None])

@@ -1,0 +1,179 @@
+"""Parts that swell, grow warm or shrink, beside closed forms."""
+
+import numpy as np
+import pytest
+
+import voxsoft as vs
+from voxsoft.comparison.bricks import BrickModel
+from voxsoft.design import Body, Contact, Objective
+from voxsoft.errors import DesignError, SimulationError
+from voxsoft.simulation import Setup, gradient
+from voxsoft.units import kPa, mm
+
+LONG, THICK = 100 * mm, 5 * mm
+YOUNG = 100 * kPa
+ABOUT_Y = {"probe": "tip", "axis": "y"}
+
+
+def rubber(young, poisson=0.3):
+    return vs.NeoHookean(young=young, poisson=poisson, density=1000.0)
+
+
+def bilayer(value, ratio=1.0, layers=2, **changes):
+    """Two strips of equal thickness, the upper `ratio` times as stiff; the root may warp."""
+
+    def strip(low):
+        return vs.Box(size=(LONG, THICK, THICK), corner=(0, 0, low))
+
+    design = vs.Design(
+        name="bilayer",
+        voxel_size=THICK / layers,
+        parts=[
+            vs.Part(name="upper", shape=strip(THICK), material=rubber(ratio * YOUNG)),
+            vs.Part(name="lower", shape=strip(0.0), material=rubber(YOUNG)),
+        ],
+        activations=[vs.Strain(part="upper", value=value)],
+        clamps=[
+            vs.Clamp(region=vs.Region(x=(0, 0)), axes="x"),
+            vs.Clamp(region=vs.Region(y=(THICK / 2, THICK / 2)), axes="y"),
+            vs.Clamp(region=vs.Region(x=(0, 0), z=(THICK, THICK)), axes="z"),
+        ],
+        probes={"base": vs.Probe(x=(0, 0)), "tip": vs.Probe(x=(LONG, LONG))},
+    )
+    return design.replace(**changes)
+
+
+def timoshenko(strain, ratio):
+    """Curvature of a bimetal of equal thicknesses (Timoshenko 1925, doi 10.1364/JOSA.11.000233)."""
+    return 24.0 * strain / (2.0 * THICK * (12.0 + (1.0 + ratio) * (1.0 + 1.0 / ratio)))
+
+
+@pytest.mark.parametrize("ratio", [1.0, 4.0])
+def test_a_bilayer_bends_as_a_bimetal(ratio):
+    strain = 1e-3
+    result = vs.simulate(bilayer(strain, ratio))
+    assert result.status == "ok"
+    # Measured: -0.5 and -0.1 % with two voxels through a layer, -0.3 and +0.2 % with four; at the
+    # free ends the layers meet as no beam does.
+    turned = result.metric("rotation", **ABOUT_Y)
+    assert turned == pytest.approx(timoshenko(strain, ratio) * LONG, rel=0.01)
+    assert result.metric("curvature", probe="tip", base="base", axis="y") == pytest.approx(
+        timoshenko(strain, ratio), rel=0.02
+    )
+
+
+def test_what_is_free_swells_without_stress():
+    block = vs.Design(
+        name="gel",
+        voxel_size=5 * mm,
+        parts=[
+            vs.Part(name="gel", shape=vs.Box(size=("10 mm",) * 3), material=rubber(YOUNG, 0.49))
+        ],
+        activations=[vs.Swelling(part="gel", value=0.728)],
+        clamps=[vs.Clamp(region=vs.Region(**{axis: (0, 0)}), axes=axis) for axis in "xyz"],
+        probes={"corner": vs.Probe(point=(10 * mm,) * 3)},
+    )
+    result = vs.simulate(block)
+    assert result.probes["corner"] == pytest.approx(np.full(3, 0.2 * 10 * mm), rel=1e-6)
+    assert result.fields.percentile("von_mises") < 1e-6 * YOUNG
+    assert result.elastic_energy < 1e-12 * YOUNG * 1e-6
+    # The dry mass.
+    assert result.mass == pytest.approx(1000.0 * 1e-6)
+
+
+def test_what_is_held_all_round_is_pressed_by_its_bulk_modulus():
+    strain, poisson = 0.01, 0.3
+    held = vs.Design(
+        name="held",
+        voxel_size=5 * mm,
+        parts=[
+            vs.Part(name="a", shape=vs.Box(size=("10 mm",) * 3), material=rubber(YOUNG, poisson))
+        ],
+        activations=[vs.Strain(part="a", value=strain)],
+        clamps=[
+            vs.Clamp(region=vs.Region(**{axis: (side, side)}), axes=axis)
+            for axis in "xyz"
+            for side in (0.0, 10 * mm)
+        ],
+        probes={"side": vs.Probe(x=(10 * mm, 10 * mm))},
+    )
+    result = vs.simulate(held)
+    bulk = YOUNG / (3 * (1 - 2 * poisson))
+    # W = λ³ K/2 (J/λ³ − 1)² at J = 1, per volume at rest.
+    stretch = 1.01
+    energy = 0.5 * bulk * stretch**3 * (stretch**-3 - 1) ** 2
+    assert result.elastic_energy == pytest.approx(energy * 1e-6, rel=1e-9)
+
+
+def test_a_large_strain_comes_on_in_steps_and_along_a_path():
+    design = bilayer(0.2)
+    result = vs.simulate(design)
+    assert result.status == "ok"
+    path = vs.follow(design, "activations[0].value=0..0.2/5")
+    assert path.status == "ok"
+    angles = [each.metric("rotation", **ABOUT_Y) for each in path.results]
+    assert np.all(np.diff(angles) > 0.5)
+    assert angles[-1] == pytest.approx(result.metric("rotation", **ABOUT_Y), rel=1e-6)
+    assert path.results[2].design.activations[0].value == pytest.approx(0.1)
+
+
+def test_the_derivative_by_a_strain():
+    design = bilayer(0.02)
+    target = {"turn": Objective(maximize="rotation", **ABOUT_Y)}
+    found = gradient(vs.simulate(design, tolerance=1e-12), target, ["activations.0.value"])
+    step = 1e-5
+    high, low = (
+        vs.simulate(bilayer(0.02 + sign * step), tolerance=1e-12).metric("rotation", **ABOUT_Y)
+        for sign in (1, -1)
+    )
+    assert found["turn"]["activations.0.value"] == pytest.approx(
+        (high - low) / (2 * step), rel=1e-5
+    )
+
+
+def test_two_activations_of_a_part_multiply():
+    once = vs.simulate(bilayer(1.01 * 1.02 - 1))
+    both = [vs.Strain(part="upper", value=0.01), vs.Strain(part="upper", value=0.02)]
+    twice = vs.simulate(bilayer(0.0, activations=both))
+    assert twice.positions == pytest.approx(once.positions, abs=1e-9)
+
+
+def test_a_part_of_a_body_of_its_own_design():
+    pair = vs.Design(
+        name="pair",
+        voxel_size=THICK / 2,
+        bodies=[Body(name="left", design=bilayer(1e-3))],
+        contact=Contact(),
+        solver={"method": "statics"},
+    )
+    alone = vs.simulate(bilayer(1e-3))
+    assert [each.part for each in Setup.of(pair).design.activations] == ["left.upper"]
+    tip = vs.simulate(pair).probes["left.tip"]
+    assert tip == pytest.approx(alone.probes["tip"], rel=1e-4, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("activation", "words"),
+    [
+        (vs.Strain(part="uper", value=0.1), 'no part "uper".*upper'),
+        ({"kind": "strain", "part": "upper", "value": -1.0}, "nothing would be left"),
+        ({"kind": "warm", "part": "upper", "value": 1.0}, "kind"),
+    ],
+)
+def test_bad_activations_are_refused(activation, words):
+    with pytest.raises(DesignError, match=words):
+        bilayer(0.1, activations=[activation])
+
+
+def test_outside_codes_are_refused():
+    with pytest.raises(SimulationError, match="outside code"):
+        BrickModel.of(Setup.of(bilayer(0.1)))
+
+
+def test_lattices_and_paths_in_contact_are_refused():
+    lattice = vs.Lattice(edge=20 * kPa, bulk=40 * kPa)
+    parts = [part.replace(material=lattice) for part in bilayer(0.1).parts]
+    with pytest.raises(DesignError, match="swells hyperelastic parts"):
+        vs.simulate(bilayer(0.1, parts=parts))
+    with pytest.raises(DesignError, match="path of activations"):
+        vs.follow(bilayer(0.1, contact=Contact()), "activations[0].value=0..0.1/3")
