@@ -54,6 +54,10 @@ def test_a_tension_along_the_axis_compresses_the_bar():
     state = result.tendons["t"]
     assert (state.tension, state.anchor_tension, state.slack) == (tension, tension, 0.0)
     assert state.shortening == pytest.approx(-moved(result), rel=1e-3), "the cap hardly gives way"
+    assert result.metric("tendon_tension") == tension
+    assert result.metric("tendon_length", tendon="t") == state.length
+    with pytest.raises(DesignError, match='no tendon "u"'):
+        result.metric("tendon_length", tendon="u")
 
 
 @pytest.mark.parametrize("drive", ["shortening", "length"])

@@ -46,6 +46,8 @@ class Objective(Record):
     object
         What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
         body with itself. Default: the only object there is.
+    tendon
+        The name of a tendon, for a metric of one. Default: the only one there is.
 
     Examples
     --------
@@ -62,6 +64,7 @@ class Objective(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    tendon: Name | None = None
 
     @model_validator(mode="after")
     def _one_direction(self) -> Objective:
@@ -87,7 +90,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object
+    probe, base, axis, cavity, percentile, object, tendon
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -107,6 +110,7 @@ class Constraint(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    tendon: Name | None = None
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None
     kind: str = "number"
