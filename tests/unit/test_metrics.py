@@ -39,8 +39,10 @@ def test_a_name_that_is_no_metric_is_refused(pressed):
         pressed.metric("roundness")
 
 
-#: Those of contact have no value where a design has none.
-WITHOUT_CONTACT = sorted(name for name in BUILT_IN if "object" not in METRICS[name].needs)
+#: Those of contact and tendons have no value where a design has none.
+WITHOUT_CONTACT = sorted(
+    name for name in BUILT_IN if not {"object", "tendon"} & METRICS[name].needs
+)
 
 
 @pytest.mark.parametrize("name", WITHOUT_CONTACT)
@@ -58,12 +60,18 @@ def test_a_result_and_the_state_that_derivatives_use_agree(pressed, name):
 @pytest.mark.parametrize("name", sorted(BUILT_IN))
 def test_keys_that_a_metric_does_not_use_are_refused(pressed, name):
     """Whatever is accepted is used: an axis of a mass, a cavity of a displacement are not."""
-    given = {"probe": "top", "axis": "z", "cavity": 0, "object": "plate"}
+    given = {"probe": "top", "axis": "z", "cavity": 0, "object": "plate", "tendon": "pull"}
+    pull = {"name": "pull", "through": [[0, 0, 0], [0, 0, "1 mm"]], "tension": "1 N"}
     plate = {"name": "plate", "shape": {"kind": "sphere", "radius": "1 mm"}}
     used = METRICS[name].needs | METRICS[name].takes
     for option, value in given.items():
         objectives = {"aim": {"maximize": name, option: value}}
-        changes = {"objectives": objectives, "constraints": {}, "objects": [plate]}
+        changes = {
+            "objectives": objectives,
+            "constraints": {},
+            "objects": [plate],
+            "tendons": [pull],
+        }
         document = {**families.cylinder().document, **changes}
         design = families.cylinder().from_document(document)
         if option in used:

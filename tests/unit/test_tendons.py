@@ -54,6 +54,10 @@ def test_a_tension_along_the_axis_compresses_the_bar():
     state = result.tendons["t"]
     assert (state.tension, state.anchor_tension, state.slack) == (tension, tension, 0.0)
     assert state.shortening == pytest.approx(-moved(result), rel=1e-3), "the cap hardly gives way"
+    assert result.metric("tendon_tension") == tension
+    assert result.metric("tendon_length", tendon="t") == state.length
+    with pytest.raises(DesignError, match='no tendon "u"'):
+        result.metric("tendon_length", tendon="u")
 
 
 @pytest.mark.parametrize("drive", ["shortening", "length"])
@@ -135,13 +139,13 @@ def wrapped(angle, friction, **changes):
     first = np.array(post[0]) - 20 * mm * np.array([0.0, 1.0, 0.0])
     tail = np.array(post[-1]) + 5 * mm * heading
     through = [{"fixed": tuple(at)} for at in (first, *post, tail)]
-    return vs.Tendon(through=[*through, AXIS[1]], friction=friction, name="t", **changes), tail
+    return vs.Tendon(through=[*through, AXIS[1]], friction=friction, name="t", **changes)
 
 
 @pytest.mark.parametrize("turns", [0.25, 0.5, 0.75, 1.0])
 def test_a_belt_has_the_tension_of_the_capstan(turns):
     friction, angle = 0.2, 2 * np.pi * turns
-    tendon, tail = wrapped(angle, friction, tension=0.2)
+    tendon = wrapped(angle, friction, tension=0.2)
     result = simulate(bar([tendon]))
     state = result.tendons["t"]
     # On the post alone; the polygon turns by the whole angle, and by no more.
@@ -154,18 +158,18 @@ def test_a_line_that_is_eased_keeps_its_tension_until_it_slides_back():
     ratio = np.exp(friction * angle)
     seen = []
     for eased in (1.0, 0.6, 0.2, 0.05):
-        history = {"time": [0, 0.2, 0.4], "factor": [0, 1, eased]}
-        tendon, _ = wrapped(angle, friction, tension=0.2, history=history)
+        history = {"time": [0, 1, 2, 3], "factor": [0, 1, 1, eased]}
+        tendon = wrapped(angle, friction, tension=0.2, history=history)
         design = bar([tendon]).replace(solver={})
-        result = simulate(design, method="dynamics", end_time=0.5, time_step=0.005, damping=200.0)
+        result = simulate(design, end_time=3.5, time_step=0.02, damping="critical")
         state = result.tendons["t"]
         seen.append(state.tensions[-2] / 0.2)
         assert state.tension == pytest.approx(0.2 * eased)
     pulled, sticks, back, farther = seen
-    assert pulled == pytest.approx(1 / ratio, rel=1e-6)
-    # It is inside the cone of 0.6 e^(±μθ). The body still settles, and stretches what sticks.
-    assert sticks == pytest.approx(1 / ratio, rel=5e-3)
-    assert back == pytest.approx(1 / ratio, rel=5e-3)
+    assert pulled == pytest.approx(1 / ratio, rel=5e-3)
+    # It is inside the cones of 0.6 and 0.2 e^(±μθ). The body had half a percent of its way to go.
+    assert sticks == pytest.approx(1 / ratio, rel=1e-2)
+    assert back == pytest.approx(1 / ratio, rel=1e-2)
     assert farther == pytest.approx(0.05 * ratio, rel=1e-6)
 
 

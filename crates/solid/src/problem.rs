@@ -163,6 +163,14 @@ impl Problem {
         self.add_scaled_loads(positions, &|load| load.history.at(time), forces);
     }
 
+    /// The same without what holds a length: a motion that it prescribes would count as a vibration against its stiffness.
+    pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
+        let on = self.vertices(positions);
+        for load in self.loads.iter().filter(|load| !load.kind.holds_length()) {
+            load.kind.add_forces(on, load.history.at(time), forces);
+        }
+    }
+
     /// Adds the external forces (N) with a factor of the caller's for each load.
     pub fn add_scaled_loads(
         &self,
@@ -245,6 +253,15 @@ impl Problem {
             load.kind = load.kind.held();
         }
         self.conservative = self.loads.iter().all(|load| load.kind.is_conservative());
+        self
+    }
+
+    /// The same with loads that remember on their own, whatever copies of this problem do.
+    #[must_use]
+    pub fn with_own_memory(mut self) -> Self {
+        for load in &mut self.loads {
+            load.kind = load.kind.with_own_memory();
+        }
         self
     }
 

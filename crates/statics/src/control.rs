@@ -8,7 +8,7 @@ use crate::bordered::{
     Bordered, Constraint, DIRECTION_TOLERANCE, Missing, Place, Unknown, assemble, product,
 };
 use crate::equilibrium::{Equilibrium, Failure};
-use crate::path::{Ending, LONGEST_OF_WAY, Path, status_of};
+use crate::path::{Ending, Path, longest_step, status_of};
 use crate::point::Point;
 use crate::settings::Settings;
 use crate::settle::AtLoad;
@@ -158,7 +158,7 @@ impl Walk {
             unit: 0.05 * size * (equilibrium.system.size() as f64).sqrt(),
             length,
             longest: if equilibrium.problem.depends_on_way() {
-                LONGEST_OF_WAY
+                longest_step(equilibrium.problem)
             } else {
                 f64::INFINITY
             },

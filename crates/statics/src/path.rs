@@ -29,7 +29,19 @@ const LARGEST_TURN: f64 = 1.0;
 /// The turn of the step that is taken instead.
 const GOOD_TURN: f64 = 0.5;
 /// The longest step along a path on which the answer depends: with friction, or bonds that may break.
-pub(crate) const LONGEST_OF_WAY: f64 = 0.05;
+const LONGEST_OF_WAY: f64 = 0.05;
+/// The same where only loads know the way: what a tendon slides over is found from one state to the next, and slides on in
+/// the same sense under loads that grow together.
+const LONGEST_OF_LOADS: f64 = 0.25;
+
+/// The longest step along the path of a problem, as a part of all of it.
+pub(crate) fn longest_step(problem: &Problem) -> f64 {
+    match problem.contact() {
+        Some(contact) if contact.depends_on_way() => LONGEST_OF_WAY,
+        _ if problem.depends_on_way() => LONGEST_OF_LOADS,
+        _ => 1.0,
+    }
+}
 /// The longest step where fluids do work, which is added up by the trapezoidal rule: it is good to some parts in a thousand then.
 const LONGEST_OF_WORK: f64 = 0.125;
 /// How much of the load, or of the growth of a volume, comes on while the body snaps.
@@ -292,7 +304,7 @@ impl Path<'_, '_> {
         let longest = match settings.control {
             _ if !self.equilibrium.problem.depends_on_way() => 1.0,
             Control::Time { longest, .. } => longest,
-            _ => LONGEST_OF_WAY,
+            _ => longest_step(self.equilibrium.problem),
         };
         let longest = match self.equilibrium.problem.fluid() {
             Some(_) => f64::min(longest, LONGEST_OF_WORK),

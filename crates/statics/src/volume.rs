@@ -14,7 +14,7 @@ use crate::bordered::{
 };
 use crate::equilibrium::{Equilibrium, Failure};
 use crate::loose::Loose;
-use crate::path::{Ending, LONGEST_OF_WAY, Path, SNAP, UNSTABLE_CUTS, status_of};
+use crate::path::{Ending, Path, SNAP, UNSTABLE_CUTS, longest_step, status_of};
 use crate::point::Point;
 use crate::settings::Settings;
 
@@ -117,9 +117,7 @@ impl Growth {
         if contact.is_some() {
             scale = WITH_CONTACT;
         }
-        if path.equilibrium.problem.depends_on_way() {
-            longest = longest.min(LONGEST_OF_WAY);
-        }
+        longest = longest.min(longest_step(path.equilibrium.problem));
         let shortest = match contact {
             Some(_) => settings.least_step.min(longest),
             None => SHORTEST * longest,

@@ -47,6 +47,7 @@ __all__ = [
     "Force",
     "Gas",
     "Gravity",
+    "Guide",
     "History",
     "Layer",
     "Liquid",

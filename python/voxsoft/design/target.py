@@ -49,6 +49,8 @@ class Objective(Record):
     object
         What touches the body, for a metric of contact: the name of an object, or ``"body"`` for the
         body with itself. Default: the only object there is.
+    tendon
+        The name of a tendon, for a metric of one. Default: the only one there is.
 
     Examples
     --------
@@ -65,6 +67,7 @@ class Objective(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    tendon: Name | None = None
     accuracy: Proportion | None = None
 
     @model_validator(mode="after")
@@ -91,7 +94,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object, accuracy
+    probe, base, axis, cavity, percentile, object, tendon, accuracy
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -111,6 +114,7 @@ class Constraint(Record):
     cavity: CavityChoice | None = None
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
+    tendon: Name | None = None
     accuracy: Proportion | None = None
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None

@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 #: What asks for a metric, with its place and its direction.
 Target = Objective | Constraint
 #: Keys of a target that say where, along what or of which voxels a metric is measured.
-Option = Literal["probe", "base", "axis", "cavity", "percentile", "object"]
+Option = Literal["probe", "base", "axis", "cavity", "percentile", "object", "tendon"]
 
 #: What a metric lacks that does not take a key.
 _LACKS: Final[Mapping[Option, str]] = {
@@ -28,6 +28,7 @@ _LACKS: Final[Mapping[Option, str]] = {
     "cavity": "is not measured in a cavity",
     "percentile": "is not one number for each voxel",
     "object": "is not measured between the body and an object",
+    "tendon": "is not that of a tendon",
 }
 
 
@@ -99,6 +100,18 @@ class Supplied(Protocol):
         """That this took, J."""
 
 
+class Pulled(Protocol):
+    """A tendon; :class:`~voxsoft.simulation.tendons.TendonState` says more."""
+
+    @property
+    def tension(self) -> float:
+        """At the pulled end, N."""
+
+    @property
+    def length(self) -> float:
+        """Of its way, m."""
+
+
 class State(Protocol):
     """What the value of a metric may look at: a body where it is now.
 
@@ -161,6 +174,10 @@ class State(Protocol):
     @property
     def supplies(self) -> Sequence[Supplied]:
         """The volumes of gas and liquid."""
+
+    @property
+    def tendons(self) -> Mapping[str, Pulled]:
+        """By name."""
 
 
 class SlopeState(State, Protocol):

@@ -20,6 +20,7 @@ from voxsoft.metrics.stress import MAX_STRESS
 from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
 from voxsoft.metrics.supplies import CHAMBER_PRESSURE, SUPPLIED_ENERGY, SUPPLIED_WORK
 from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
+from voxsoft.metrics.tendon import TENDON_LENGTH, TENDON_TENSION
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
 from voxsoft.records import closest
 
@@ -54,6 +55,8 @@ _ALL: Final[dict[str, Metric]] = {
         CHAMBER_PRESSURE,
         SUPPLIED_WORK,
         SUPPLIED_ENERGY,
+        TENDON_TENSION,
+        TENDON_LENGTH,
     )
 }
 

@@ -19,6 +19,7 @@ from voxsoft.plot.objects import cut, near, objects_of, with_objects
 from voxsoft.plot.quantities import Scale, scale_for
 from voxsoft.plot.raster import Raster, rasterize
 from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
+from voxsoft.plot.tendons import draw_tendons
 from voxsoft.records import closest
 from voxsoft.simulation import Result
 
@@ -60,7 +61,7 @@ def plot_body(
     objects: bool | None = None,
     title: str | None = None,
 ) -> Figure:
-    """Draw a body: shaded, deformed as it is, with a scale bar.
+    """Draw a body: shaded, deformed as it is, with its tendons and a scale bar.
 
     Parameters
     ----------
@@ -117,6 +118,8 @@ def plot_body(
     rigid = objects_of(body) if covered and isinstance(body, Result) else None
     if rigid is not None:
         shown.append(near(rigid, positions))
+    tendons = body.tendons if isinstance(body, Result) else {}
+    shown += [tendon.points for tendon in tendons.values()]
     camera = Camera.around(np.concatenate(shown), view, PIXELS * _FINER)
     plane = _plane(mesh, section, camera)
     surface = boundary_of(mesh, _kept(mesh, plane))
@@ -128,7 +131,9 @@ def plot_body(
     if rigid is not None:
         picture = with_objects(picture, seen, cut(rigid, *plane) if plane else rigid, camera)
     name = body.design.name if isinstance(body, Result) else ""
-    return _figure(picture, camera, colors, name if title is None else title)
+    figure = _figure(picture, camera, colors, name if title is None else title)
+    draw_tendons(figure.axes[0], tendons, camera, _FINER)
+    return figure
 
 
 def body_image(

@@ -64,7 +64,7 @@ class Carrier(ABC):
         return vertices[kept], weights[kept] / len(found)
 
     def _ball(self, point: Floats, radius: float) -> Floats:
-        """Points evenly in a ball, as close as half an element or a quarter of the radius, (n, 3)."""
+        """Points evenly in a ball, by half an element or a quarter of the radius, (n, 3)."""
         step = min(0.5 * self.size, 0.25 * radius)
         count = int(radius / step)
         if count > _MOST_ACROSS:
@@ -135,9 +135,10 @@ class _Tets(Carrier):
 
     @cached_property
     def _frames(self) -> tuple[Floats, Floats]:
-        corners = self.mesh.vertices[self.mesh.tets]
+        corners: Floats = self.mesh.vertices[self.mesh.tets]
         edges = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-        return corners, np.linalg.inv(edges)
+        inverse: Floats = np.asarray(np.linalg.inv(edges), dtype=np.float64)
+        return corners, inverse
 
     def nearest(self, point: Floats) -> tuple[Integers, Floats, float]:
         corners, inverse = self._frames

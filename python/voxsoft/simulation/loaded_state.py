@@ -25,6 +25,7 @@ from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.result import pressures_of
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState
 from voxsoft.simulation.vibration import modes_of
 
@@ -122,6 +123,13 @@ class LoadedState:
     def supplies(self) -> tuple[()]:
         """None: slopes know no supplies."""
         return ()
+
+    @property
+    def tendons(self) -> dict[str, TendonState]:
+        """The tendons by name, as if they had been pulled here at once."""
+        own = self.setup.tendons
+        found = self.setup.problem.tendons(self.positions) if own else []
+        return {each.name: each.state(one) for each, one in zip(own, found, strict=True)}
 
     def gap_to(self, name: str) -> float:
         """The smallest distance of the body and an object, m."""

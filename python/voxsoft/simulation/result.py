@@ -20,6 +20,7 @@ from voxsoft.geometry import mean_displacement
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Place, Target, metric_named
 from voxsoft.metrics.contact import object_problems
+from voxsoft.metrics.tendon import tendon_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
@@ -232,6 +233,7 @@ class Result(Shown):
         cavity: int | str | None = None,
         percentile: float | None = None,
         object: str | None = None,
+        tendon: str | None = None,
     ) -> float:
         """Return one metric in SI units.
 
@@ -253,6 +255,8 @@ class Result(Shown):
         object
             What touches the body: an object by its name, or ``"body"`` for the body with itself;
             default: the only object there is.
+        tendon
+            The tendon, by its name; default: the only one there is.
 
         Raises
         ------
@@ -267,9 +271,14 @@ class Result(Shown):
             cavity=cavity,
             percentile=percentile,
             object=object,
+            tendon=tendon,
         )
         metric = metric_named(name)
-        problems = [*metric.refusals(target), *object_problems(metric, target, self.design)]
+        problems = [
+            *metric.refusals(target),
+            *object_problems(metric, target, self.design),
+            *tendon_problems(metric, target, self.design),
+        ]
         if problems:
             raise DesignError.listing(problems)
         return self._value(target)

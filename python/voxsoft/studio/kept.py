@@ -49,7 +49,7 @@ def keep(shown: Shown, base: Path, folder: Path) -> str:
 
 
 def with_live_loads(shown: Shown) -> str:
-    """The text of the design with loads and tendons as they are, where they were changed by hand."""
+    """The text of the design with loads and tendons as they are where hands changed them."""
     text = shown.text
     live = shown.body.under(shown.factors).design.document
     written = read_document(text, shown.name)

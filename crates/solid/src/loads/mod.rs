@@ -58,6 +58,11 @@ pub trait ExternalForce: Debug + Send + Sync {
         true
     }
 
+    /// Whether it holds a length, stiffer than any body.
+    fn holds_length(&self) -> bool {
+        false
+    }
+
     /// Whether its stiffness joins vertices that are near each other, so that multigrid on the voxels converges with it.
     fn is_local(&self) -> bool {
         true
@@ -125,6 +130,14 @@ impl LoadKind {
     pub(crate) fn held(&self) -> Self {
         match self {
             Self::Tendon(tendon) => Self::Tendon(tendon.held()),
+            other => other.clone(),
+        }
+    }
+
+    /// The same with a memory of its own, where it has one.
+    pub(crate) fn with_own_memory(&self) -> Self {
+        match self {
+            Self::Tendon(tendon) => Self::Tendon(tendon.with_own_memory()),
             other => other.clone(),
         }
     }

@@ -48,10 +48,10 @@ impl Implicit {
         let before = &self.state.positions;
         // The loads as they are now, so that one that has changed counts as no stiffness.
         let mut loads = vec![[0.0; 3]; before.len()];
-        self.problem.add_loads(before, next.time, &mut loads);
+        self.problem.add_soft_loads(before, next.time, &mut loads);
         let mut after = vec![[0.0; 3]; before.len()];
         self.problem
-            .add_loads(&next.positions, next.time, &mut after);
+            .add_soft_loads(&next.positions, next.time, &mut after);
         let (mut stiffness, mut inertia) = (0.0, 0.0);
         for (vertex, mass) in self.problem.body().masses().iter().enumerate() {
             let way = sub(next.positions[vertex], before[vertex]);

@@ -95,14 +95,16 @@ impl Run<'_> {
     /// motion over the motion's inertia is a Rayleigh quotient of `M⁻¹ K`.
     pub(super) fn frequency(&self, next: &State, found: &Now) -> f64 {
         // The loads as they are now, so that one that has changed counts as no stiffness.
-        let mut before = vec![[0.0; 3]; next.positions.len()];
+        let [mut before, mut after] = [(); 2].map(|()| vec![[0.0; 3]; next.positions.len()]);
         self.problem
-            .add_loads(&self.state.positions, next.time, &mut before);
+            .add_soft_loads(&self.state.positions, next.time, &mut before);
+        self.problem
+            .add_soft_loads(&next.positions, next.time, &mut after);
         let (mut stiffness, mut inertia) = (0.0, 0.0);
         for (vertex, mass) in self.problem.body().masses().iter().enumerate() {
             let way = sub(next.positions[vertex], self.state.positions[vertex]);
             let internal = sub(self.now.internal[vertex], found.internal[vertex]);
-            let external = sub(before[vertex], found.external[vertex]);
+            let external = sub(before[vertex], after[vertex]);
             stiffness += dot(way, add(internal, external));
             inertia += mass * dot(way, way);
         }

@@ -101,6 +101,7 @@ impl Transient {
     /// Moves a problem on from a state.
     pub fn follow(&self, problem: &Problem, start: State, observer: &mut Observer<'_>) -> Solution {
         let inertia = Arc::new(Inertia::new(problem.body().masses()));
+        let problem = &problem.clone().with_held_loads();
         let moving = problem
             .clone()
             .with_term(Arc::clone(&inertia) as Arc<dyn Term>);

@@ -14,8 +14,8 @@ pub(super) enum Hold {
     Slides(f64),
     /// The line sticks: it follows what is beyond.
     Sticks,
-    /// It has a ratio to the first one that does not change.
-    Fixed,
+    /// It differs from the one before by what changes with the length beyond by so many N/m.
+    Differs(f64),
 }
 
 /// Tensions along a tendon, and what keeps each.

@@ -2,46 +2,37 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Tensions (N) and lengths (m) of all segments; of copies of one problem the same. Empty before anything was accepted.
+/// A state.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Memory(Arc<Mutex<(Vec<f64>, Vec<f64>)>>);
+pub(super) struct Kept {
+    /// Of each segment, in N.
+    pub tensions: Vec<f64>,
+    /// Of each segment, in m.
+    pub lengths: Vec<f64>,
+    /// `e^{−μθ}` of each bend.
+    pub decays: Vec<f64>,
+}
+
+/// Of copies of one problem the same; nothing before a state was accepted.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Memory(Arc<Mutex<Option<Kept>>>);
 
 impl Memory {
-    fn look<T>(&self, act: impl FnOnce(&mut (Vec<f64>, Vec<f64>)) -> T) -> T {
-        // Values are replaced whole, so that a thread that died leaves none half written.
+    fn look<T>(&self, act: impl FnOnce(&mut Option<Kept>) -> T) -> T {
+        // States are replaced whole, so that a thread that died leaves none half written.
         act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Those that were there; where nothing was accepted yet, none and the lengths at rest.
-    pub fn tensions_and_lengths(&self, rest: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        self.look(|(tensions, lengths)| {
-            if lengths.is_empty() {
-                (vec![0.0; rest.len()], rest.to_vec())
-            } else {
-                (tensions.clone(), lengths.clone())
-            }
-        })
-    }
-
-    pub fn keep(&self, tensions: Vec<f64>, lengths: Vec<f64>) {
-        self.look(|kept| *kept = (tensions, lengths));
+    pub fn keep(&self, state: Kept) {
+        self.look(|kept| *kept = Some(state));
     }
 
     pub fn forget(&self) {
-        self.keep(Vec::new(), Vec::new());
+        self.look(|kept| *kept = None);
     }
 
-    /// The ratio of each tension to the first, one where nothing was pulled; and the lengths that were there.
-    pub fn ratios_and_lengths(&self, segments: usize) -> (Vec<f64>, Option<Vec<f64>>) {
-        self.look(|(tensions, lengths)| {
-            let lengths = (!lengths.is_empty()).then(|| lengths.clone());
-            match tensions.first() {
-                Some(first) if *first > 0.0 => {
-                    (tensions.iter().map(|t| t / first).collect(), lengths)
-                }
-                _ => (vec![1.0; segments], lengths),
-            }
-        })
+    pub fn kept(&self) -> Option<Kept> {
+        self.look(|kept| kept.clone())
     }
 }
 

@@ -3,9 +3,10 @@
 //! A tendon of length `L(x)` that is pulled by a tension `T` has the potential `T L`. One that is drawn in is a spring of
 //! the stiffness `EA` over its length without tension `M`, which the puller makes shorter: `EA (L − M)²/2M`, and nothing
 //! where it is slack. With friction the tension falls along it ([`capstan`]), and there is no potential; the tangent is
-//! exact, and not symmetric. Dynamics holds the ratios of the tensions during a step, between which there is a potential.
+//! exact, and not symmetric. Dynamics holds the bounds of friction during a step, and has a potential then ([`held`]).
 
 mod capstan;
+mod held;
 mod memory;
 mod polyline;
 
@@ -17,7 +18,8 @@ use crate::assembly::{Visitor, check_indices};
 use crate::vector::{Vec3, axpy};
 
 use capstan::{Hold, Tensions};
-use memory::Memory;
+use held::HeldBend;
+use memory::{Kept, Memory};
 pub use polyline::Place;
 use polyline::Polyline;
 
@@ -50,7 +52,7 @@ pub struct Tendon {
     /// The tensions that were there, which friction remembers.
     #[serde(skip)]
     memory: Memory,
-    /// Whether ratios of tensions are those that were there.
+    /// Whether friction has the bounds of the state that was accepted last.
     #[serde(skip)]
     held: bool,
     /// Whether it goes on as it is where it would become slack.
@@ -58,8 +60,9 @@ pub struct Tendon {
     taut: bool,
 }
 
-/// What sticks without a stiffness of its own stretches by a ten-thousandth under the whole tension: what it then moves
-/// before it slides is less than a tendon's length is known to.
+/// What sticks stretches by a ten-thousandth under the whole tension, or more if that is its own stiffness: what it then
+/// moves before it slides is less than a tendon's length is known to. Stiffer, and Newton's method would have to find where
+/// it slides to that much less.
 const STICK: f64 = 1e4;
 
 /// A tendon at some positions.
@@ -77,8 +80,8 @@ pub struct TendonState {
 struct Pulled {
     line: Polyline,
     tensions: Tensions,
-    /// How the tension of the first segment changes with all lengths and ratios: `EA`, or zero where it is given.
-    elastic: f64,
+    /// How much all segments together stretch by the first tension, in m/N; `None` where that is given, or there is none.
+    compliance: Option<f64>,
 }
 
 impl Tendon {
@@ -115,11 +118,17 @@ impl Tendon {
         points.collect()
     }
 
-    /// The same, with a memory of its own, with the ratios of tensions held as they were accepted last: it has a potential
-    /// then.
+    /// The same with the bounds of friction held as they were accepted last: it has a potential then.
     pub fn held(&self) -> Self {
         Self {
             held: true,
+            ..self.clone()
+        }
+    }
+
+    /// The same with a memory of its own.
+    pub fn with_own_memory(&self) -> Self {
+        Self {
             memory: Memory::default(),
             ..self.clone()
         }
@@ -133,6 +142,10 @@ impl Tendon {
         }
     }
 
+    fn is_held(&self) -> bool {
+        self.held && self.has_friction()
+    }
+
     fn has_friction(&self) -> bool {
         self.friction > 0.0
     }
@@ -144,7 +157,7 @@ impl Tendon {
 
     fn pulled(&self, positions: &[Vec3], factor: f64) -> Pulled {
         let line = Polyline::new(&self.places, positions);
-        let (tensions, elastic) = if self.held && self.has_friction() {
+        let (tensions, compliance) = if self.is_held() {
             self.held_tensions(&line, factor)
         } else {
             self.tensions(&line, factor)
@@ -152,33 +165,33 @@ impl Tendon {
         Pulled {
             line,
             tensions,
-            elastic,
+            compliance,
         }
     }
 
-    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
+    fn decays(&self, line: &Polyline) -> Vec<f64> {
         let decay = |angle: f64| libm::exp(-self.friction * angle);
-        let decays: Vec<f64> = line.angles().into_iter().map(decay).collect();
+        line.angles().into_iter().map(decay).collect()
+    }
+
+    fn tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+        let decays = self.decays(line);
         let sticking = self.sticking(line);
         match self.drive {
             Drive::Tension(tension) => {
                 let first = (factor * tension).max(0.0);
-                (Tensions::from_first(first, &sticking, &decays), 0.0)
+                (Tensions::from_first(first, &sticking, &decays), None)
             }
             Drive::Shortening { by, stiffness } => {
                 let stretch = line.length() - self.material(by, factor);
                 let compliances = self.compliances(stiffness);
-                let found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                let mut found = Tensions::from_stretch(stretch, &compliances, &sticking, &decays);
+                let is_taut = self.taut || found.values[0] > 0.0;
                 if self.taut {
-                    let taut = found.taut(stretch, &compliances, &sticking, &decays);
-                    return (taut, stiffness);
+                    found = found.taut(stretch, &compliances, &sticking, &decays);
                 }
-                let elastic = if found.values[0] > 0.0 {
-                    stiffness
-                } else {
-                    0.0
-                };
-                (found, elastic)
+                let compliance = dot_of(&found.by_first, &compliances);
+                (found, is_taut.then_some(compliance))
             }
         }
     }
@@ -186,47 +199,97 @@ impl Tendon {
     /// The tension of each segment if the line sticks at the bend before it: what it was, and what the way from there to
     /// the anchor has become longer since, over the compliance of the line that lies on it.
     fn sticking(&self, line: &Polyline) -> Vec<f64> {
-        let (mut tensions, then) = self.memory.tensions_and_lengths(&self.lengths);
+        let (mut tensions, then, first) = match self.memory.kept() {
+            Some(kept) => {
+                let first = kept.tensions[0];
+                (kept.tensions, kept.lengths, Some(first))
+            }
+            None => (vec![0.0; self.lengths.len()], self.lengths.clone(), None),
+        };
         let (mut longer, mut material) = (0.0, 0.0);
         for segment in (1..self.lengths.len()).rev() {
             longer += line.lengths[segment] - then[segment];
             material += self.lengths[segment];
-            tensions[segment] += self.stick_stiffness() / material * longer;
+            tensions[segment] += self.stick_stiffness(first) / material * longer;
         }
         tensions
     }
 
-    /// `EA` of what sticks, in N.
-    fn stick_stiffness(&self) -> f64 {
+    /// `EA` of what sticks, in N, after a tension at the pulled end: its own, but no more than stretches by a little.
+    fn stick_stiffness(&self, before: Option<f64>) -> f64 {
         match self.drive {
             Drive::Tension(tension) => STICK * tension,
-            Drive::Shortening { stiffness, .. } => stiffness,
+            Drive::Shortening { stiffness, .. } => match before {
+                Some(before) => stiffness.min(STICK * before),
+                None => stiffness,
+            },
         }
     }
 
-    /// With the ratios `r` that were there: `T₁ = EA (Σ r_j (l_j − l_j⁰) + L⁰ − M)/Σ r_j m_j`, which is that of
-    /// [`Tensions::from_stretch`] at the lengths `l⁰` that were there.
-    fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, f64) {
-        let (ratios, then) = self.memory.ratios_and_lengths(self.lengths.len());
-        let (first, elastic) = match self.drive {
-            Drive::Tension(tension) => ((factor * tension).max(0.0), 0.0),
+    /// With friction as [`held`] has it. Of a line that is drawn in the first tension is `(L − M)/Σ c_j r_j`, as at the
+    /// ratios `r` that were there.
+    fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+        let kept = self.memory.kept();
+        let first_before = kept.as_ref().map_or(0.0, |kept| kept.tensions[0]);
+        let (first, compliance) = match self.drive {
+            Drive::Tension(tension) => ((factor * tension).max(0.0), None),
             Drive::Shortening { by, stiffness } => {
-                let then = then.unwrap_or_else(|| line.lengths.clone());
-                let mut stretch = then.iter().sum::<f64>() - self.material(by, factor);
-                for ((ratio, now), then) in ratios.iter().zip(&line.lengths).zip(&then) {
-                    stretch += ratio * (now - then);
-                }
-                let compliance = dot_of(&ratios, &self.compliances(stiffness));
-                let first = (stretch / compliance).max(0.0);
-                (first, if first > 0.0 { stiffness } else { 0.0 })
+                let compliances = self.compliances(stiffness);
+                let compliance = match &kept {
+                    Some(kept) if first_before > 0.0 => {
+                        dot_of(&kept.tensions, &compliances) / first_before
+                    }
+                    _ => compliances.iter().sum(),
+                };
+                let stretch = (line.length() - self.material(by, factor)).max(0.0);
+                (stretch / compliance, (stretch > 0.0).then_some(compliance))
             }
         };
-        let found = Tensions {
-            values: ratios.iter().map(|ratio| ratio * first).collect(),
-            holds: vec![Hold::Fixed; ratios.len() - 1],
-            by_first: ratios,
+        let mut found = Tensions {
+            values: vec![first],
+            holds: Vec::new(),
+            by_first: vec![1.0],
         };
-        (found, elastic)
+        for (bend, (held, slip)) in self.held_bends(line, first).iter().enumerate() {
+            let taken = held.taken(*slip);
+            found.values.push(found.values[bend] - taken.force);
+            found.by_first.push(found.by_first[bend] - taken.by_first);
+            found.holds.push(Hold::Differs(taken.by_slip));
+        }
+        let segments = self.lengths.len();
+        found.values.resize(segments, first);
+        found.by_first.resize(segments, 1.0);
+        found.holds.resize(segments - 1, Hold::Differs(0.0));
+        (found, compliance)
+    }
+
+    /// Each bend during a step, and by how much the line has slid over it; none in the first step.
+    fn held_bends(&self, line: &Polyline, first: f64) -> Vec<(HeldBend, f64)> {
+        let Some(kept) = self.memory.kept() else {
+            return Vec::new();
+        };
+        // Where a tension is given, it has changed already where the line was; that of a line that is drawn in is found
+        // in the step.
+        let (before, slopes) = match self.drive {
+            Drive::Tension(_) => {
+                let now = Tensions::from_first(first, &kept.tensions, &kept.decays);
+                (now.values, now.by_first)
+            }
+            Drive::Shortening { .. } => (kept.tensions.clone(), vec![0.0; kept.tensions.len()]),
+        };
+        let stick = self.stick_stiffness(Some(kept.tensions[0]));
+        let (mut longer, mut material) = (0.0, 0.0);
+        let mut bends = Vec::with_capacity(kept.decays.len());
+        for (bend, decay) in kept.decays.iter().enumerate().rev() {
+            longer += line.lengths[bend + 1] - kept.lengths[bend + 1];
+            material += self.lengths[bend + 1];
+            let sides = [before[bend], before[bend + 1]];
+            let by_first = [slopes[bend], slopes[bend + 1]];
+            let held = HeldBend::new(sides, by_first, *decay, stick / material);
+            bends.push((held, -longer));
+        }
+        bends.reverse();
+        bends
     }
 
     fn compliances(&self, stiffness: f64) -> Vec<f64> {
@@ -238,8 +301,7 @@ impl Tendon {
 
     /// Whether segments pull without knowing of each other.
     fn is_in_pieces(&self) -> bool {
-        let free = !self.has_friction() || self.held;
-        free && matches!(self.drive, Drive::Tension(_))
+        !self.has_friction() && matches!(self.drive, Drive::Tension(_))
     }
 
     /// The vertices of places, each once.
@@ -266,9 +328,11 @@ impl Tendon {
         let Pulled {
             line,
             tensions,
-            elastic,
+            compliance,
         } = pulled;
         let width = 3 * self.places.len();
+        let before = self.memory.kept().map(|kept| kept.tensions[0]);
+        let stick = self.stick_stiffness(before);
         // With the first tension as it is.
         let mut rows = vec![vec![0.0; width]];
         for (bend, hold) in tensions.holds.iter().enumerate() {
@@ -286,38 +350,35 @@ impl Tendon {
                     }
                 }
                 Hold::Sticks => {
-                    let beyond = bend + 1..self.lengths.len();
-                    let material: f64 = self.lengths[beyond.clone()].iter().sum();
-                    let weight = self.stick_stiffness() / material;
-                    beyond.for_each(|segment| line.add_length_slope(segment, weight, &mut row));
+                    let material: f64 = self.lengths[bend + 1..].iter().sum();
+                    add_beyond(line, bend, stick / material, &mut row);
                 }
-                Hold::Fixed => {}
+                Hold::Differs(stiffness) => {
+                    row.clone_from(&rows[bend]);
+                    add_beyond(line, bend, *stiffness, &mut row);
+                }
             }
             rows.push(row);
         }
-        if *elastic == 0.0 {
+        let (Some(compliance), Drive::Shortening { stiffness, .. }) = (compliance, self.drive)
+        else {
             return rows;
-        }
+        };
         // The stretch Σ l_j − M stays Σ c_j T_j, of which the first tension takes what the others do not.
-        let compliances = self.compliances(*elastic);
         let mut first = vec![0.0; width];
         for segment in 0..self.lengths.len() {
-            let weight = if self.held && self.has_friction() {
-                tensions.by_first[segment]
-            } else {
-                1.0
-            };
-            line.add_length_slope(segment, weight, &mut first);
+            line.add_length_slope(segment, 1.0, &mut first);
         }
-        for (row, compliance) in rows.iter().zip(&compliances) {
-            for (sum, x) in first.iter_mut().zip(row) {
-                *sum -= compliance * x;
+        if !self.is_held() {
+            for (row, part) in rows.iter().zip(self.compliances(stiffness)) {
+                for (sum, x) in first.iter_mut().zip(row) {
+                    *sum -= part * x;
+                }
             }
         }
-        let all = dot_of(&tensions.by_first, &compliances);
         for (row, slope) in rows.iter_mut().zip(&tensions.by_first) {
             for (x, first) in row.iter_mut().zip(&first) {
-                *x += slope * first / all;
+                *x += slope * first / compliance;
             }
         }
         rows
@@ -341,6 +402,14 @@ impl Tendon {
             }
         }
         matrix
+    }
+}
+
+/// Adds `weight` times the derivative of the length of all segments beyond a bend.
+fn add_beyond(line: &Polyline, bend: usize, weight: f64, row: &mut [f64]) {
+    if weight > 0.0 {
+        let beyond = bend + 1..line.lengths.len();
+        beyond.for_each(|segment| line.add_length_slope(segment, weight, row));
     }
 }
 
@@ -466,22 +535,25 @@ impl ExternalForce for Tendon {
         -self.potential(on, 1.0)
     }
 
-    /// With friction, which has none, that of tensions whose ratios stay.
+    /// With friction, which has none, that of a step in which it is held.
     fn potential(&self, on: Vertices<'_>, factor: f64) -> f64 {
-        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
-        match self.drive {
-            Drive::Tension(_) => {
-                let ways = line.lengths.iter().zip(&self.lengths);
-                let pairs = tensions.values.iter().zip(ways);
-                pairs
-                    .map(|(tension, (now, rest))| tension * (now - rest))
-                    .sum()
-            }
-            Drive::Shortening { stiffness, .. } => {
-                let compliance = dot_of(&tensions.by_first, &self.compliances(stiffness));
-                0.5 * compliance * tensions.values[0].powi(2)
-            }
-        }
+        let Pulled {
+            line,
+            tensions,
+            compliance,
+        } = self.pulled(on.positions, factor);
+        let first = tensions.values[0];
+        let pulled = match self.drive {
+            Drive::Tension(_) => first * (line.length() - self.lengths.iter().sum::<f64>()),
+            Drive::Shortening { .. } => 0.5 * compliance.unwrap_or(0.0) * first.powi(2),
+        };
+        let held = if self.has_friction() {
+            self.held_bends(&line, first)
+        } else {
+            Vec::new()
+        };
+        let rubbed = held.iter().map(|(bend, slip)| bend.potential(*slip));
+        pulled + rubbed.sum::<f64>()
     }
 
     fn add_slopes(&self, on: Vertices<'_>, factor: f64, weight: f64, forces: &mut [Vec3]) {
@@ -489,9 +561,8 @@ impl ExternalForce for Tendon {
         let first = match self.drive {
             Drive::Tension(tension) if factor >= 0.0 => tension,
             Drive::Tension(_) => 0.0,
-            Drive::Shortening { .. } if pulled.elastic == 0.0 => 0.0,
-            Drive::Shortening { by, stiffness } => {
-                by / dot_of(&pulled.tensions.by_first, &self.compliances(stiffness))
+            Drive::Shortening { by, .. } => {
+                pulled.compliance.map_or(0.0, |compliance| by / compliance)
             }
         };
         let pulls: Vec<f64> = pulled
@@ -515,6 +586,10 @@ impl ExternalForce for Tendon {
         !self.has_friction() || self.held
     }
 
+    fn holds_length(&self) -> bool {
+        matches!(self.drive, Drive::Shortening { .. })
+    }
+
     fn is_local(&self) -> bool {
         self.is_in_pieces()
     }
@@ -528,11 +603,22 @@ impl ExternalForce for Tendon {
     }
 
     fn accept(&self, on: Vertices<'_>, factor: f64) {
-        if self.has_friction() {
-            let line = Polyline::new(&self.places, on.positions);
-            let (found, _) = self.tensions(&line, factor);
-            self.memory.keep(found.values, line.lengths);
+        if !self.has_friction() {
+            return;
         }
+        let Pulled { line, tensions, .. } = self.pulled(on.positions, factor);
+        let decays = self.decays(&line);
+        let tensions = if self.is_held() {
+            // The bounds are those of this state from now on.
+            Tensions::from_first(tensions.values[0], &tensions.values, &decays).values
+        } else {
+            tensions.values
+        };
+        self.memory.keep(Kept {
+            tensions,
+            lengths: line.lengths,
+            decays,
+        });
     }
 
     fn visit_stiffness(&self, positions: &[Vec3], factor: f64, visit: Visitor<'_>) {

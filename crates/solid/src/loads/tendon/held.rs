@@ -1,0 +1,95 @@
+//! Friction during a step over time: with bounds from the state before, it has a potential.
+//!
+//! At bend `i` friction takes `q_i = T_i − T_{i+1}`, and the line slides toward the motor by `s_i = −Σ_{j>i} (l_j − l_jⁿ)`,
+//! by what is beyond has become shorter. Coulomb's law with the bounds of the state before is the derivative of
+//! `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and its energy.
+
+/// A bend during a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeldBend {
+    /// What friction takes without slip, and what it can take, in N.
+    before: f64,
+    low: f64,
+    high: f64,
+    /// The derivatives of these three by the tension at the pulled end.
+    by_first: [f64; 3],
+    /// By which it takes more where the line sticks, in N/m.
+    stiffness: f64,
+}
+
+/// What friction takes at a bend, in N, and its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Taken {
+    pub force: f64,
+    /// By the slip, in N/m.
+    pub by_slip: f64,
+    /// By the tension at the pulled end.
+    pub by_first: f64,
+}
+
+impl HeldBend {
+    /// From the tensions ahead of it and beyond before the step, their derivatives by the first one, `e^{−μθ}`, and the stiffness
+    /// of what sticks.
+    pub fn new(
+        [ahead, beyond]: [f64; 2],
+        [by_ahead, by_beyond]: [f64; 2],
+        decay: f64,
+        stiffness: f64,
+    ) -> Self {
+        let (least, most) = (1.0 - 1.0 / decay, 1.0 - decay);
+        Self {
+            before: (ahead - beyond).clamp(ahead * least, ahead * most),
+            low: ahead * least,
+            high: ahead * most,
+            by_first: [by_ahead - by_beyond, by_ahead * least, by_ahead * most],
+            stiffness,
+        }
+    }
+
+    /// Where the line has slid by `slip` (m).
+    pub fn taken(&self, slip: f64) -> Taken {
+        let sticking = self.before + self.stiffness * slip;
+        let [before, low, high] = self.by_first;
+        let (force, by_slip, by_first) = if sticking <= self.low {
+            (self.low, 0.0, low)
+        } else if sticking >= self.high {
+            (self.high, 0.0, high)
+        } else {
+            (sticking, self.stiffness, before)
+        };
+        Taken {
+            force,
+            by_slip,
+            by_first,
+        }
+    }
+
+    /// The integral of that from no slip on, J.
+    pub fn potential(&self, slip: f64) -> f64 {
+        let Taken { force, by_slip, .. } = self.taken(slip);
+        if by_slip > 0.0 || self.stiffness == 0.0 {
+            return 0.5 * (self.before + force) * slip;
+        }
+        // It slides from where it reaches its bound.
+        let until = (force - self.before) / self.stiffness;
+        0.5 * (self.before + force) * until + force * (slip - until)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_force_is_the_slope_of_the_potential() {
+        let bend = HeldBend::new([5.0, 4.6], [0.0; 2], 0.8, 1e3);
+        for slip in [-5e-3, -1e-3, -1e-4, 0.0, 2e-4, 5e-4, 4e-3] {
+            let step = 1e-8;
+            let slope = (bend.potential(slip + step) - bend.potential(slip - step)) / (2.0 * step);
+            assert!((slope - bend.taken(slip).force).abs() < 1e-5, "{slip}");
+        }
+        assert_eq!(bend.taken(1.0).force, 5.0 * (1.0 - 0.8));
+        assert_eq!(bend.taken(-1.0).force, 5.0 * (1.0 - 1.0 / 0.8));
+        assert_eq!(bend.potential(0.0), 0.0);
+    }
+}
