@@ -90,7 +90,8 @@ pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model};
 pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use loads::{
-    ExternalForce, Gravity, Load, LoadKind, PointForces, Pressure, Vertices, enclosed_volume,
+    ExternalForce, Gravity, Hydrostatic, Load, LoadKind, PointForces, Pressure, Vertices,
+    enclosed_volume,
 };
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};

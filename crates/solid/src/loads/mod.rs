@@ -1,6 +1,7 @@
 //! External loads: each kind is a file here, a variant of [`LoadKind`], and nothing else in the core.
 
 mod gravity;
+mod hydrostatic;
 mod point_forces;
 mod pressure;
 
@@ -13,6 +14,7 @@ use crate::vector::Vec3;
 use crate::{History, Mirrored, ProblemError};
 
 pub use gravity::Gravity;
+pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
 
@@ -81,6 +83,8 @@ pub enum LoadKind {
     Pressure(Pressure),
     /// Forces on vertices.
     Forces(PointForces),
+    /// The weight of a liquid in a cavity.
+    Hydrostatic(Hydrostatic),
     /// A pressure on a surface that crosses planes of symmetry.
     MirroredPressure(Mirrored<Pressure>),
 }
@@ -93,6 +97,7 @@ impl std::ops::Deref for LoadKind {
             Self::Gravity(gravity) => gravity,
             Self::Pressure(pressure) => pressure,
             Self::Forces(forces) => forces,
+            Self::Hydrostatic(weight) => weight,
             Self::MirroredPressure(pressure) => pressure,
         }
     }
@@ -113,6 +118,12 @@ impl From<Pressure> for LoadKind {
 impl From<Mirrored<Pressure>> for LoadKind {
     fn from(pressure: Mirrored<Pressure>) -> Self {
         Self::MirroredPressure(pressure)
+    }
+}
+
+impl From<Hydrostatic> for LoadKind {
+    fn from(weight: Hydrostatic) -> Self {
+        Self::Hydrostatic(weight)
     }
 }
 
