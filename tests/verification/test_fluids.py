@@ -366,3 +366,24 @@ def test_the_pressures_of_a_path_are_those_of_its_states():
     (cavity, _) = Setup.of(design).mesh.cavities
     volumes = [cavity.volume_at(frame) for frame in found.recording.frames]
     assert recorded.volume == pytest.approx(volumes, rel=1e-12)
+
+
+def test_a_liquid_weighs_on_its_walls():
+    """The supports carry it, about its own center, and its pressure is that of a column."""
+    gravity = vs.Gravity()
+    water = vs.PressureSupply(chamber="left", value=0.0, fluid="water")
+    found = simulate(pair(water, loads=[gravity]))
+    (chamber,) = found.supplies
+    assert chamber.mass == pytest.approx(WATER.density * chamber.volume, rel=1e-12)
+    weight = gravity.value * (found.mass + WATER.density * chamber.volume)
+    assert found.load == pytest.approx((0.0, 0.0, -weight), abs=1e-9 * weight)
+    assert found.reaction[2] == pytest.approx(weight, rel=1e-9)
+    middle = WALL + INSIDE / 2
+    # Without the body's own moment: rubber weighs on both sides of the middle alike, within what
+    # the walls give way.
+    own = found.mass * gravity.value * (3 * WALL + 2 * INSIDE) / 2
+    moment = WATER.density * chamber.volume * gravity.value * middle + own
+    assert found.load_moment[1] == pytest.approx(moment, rel=1e-3)
+    # Above its middle its pressure is below zero and draws the roof down; below, the plate holds.
+    dry = simulate(pair(water.replace(fluid="air"), loads=[gravity]))
+    assert chamber.volume < dry.supplies[0].volume
