@@ -7,6 +7,15 @@ from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
+from voxsoft.design import (
+    Connection,
+    FlowSupply,
+    Gas,
+    Liquid,
+    MassSupply,
+    PressureSupply,
+    VolumeSupply,
+)
 from voxsoft.design.fluid import ROOM
 from voxsoft.errors import DesignError, NoCavityError, SimulationError
 from voxsoft.simulation import Setup, simulate
@@ -32,26 +41,26 @@ def cube(*supplies, open_to_the_air=False, **changes):
     return vs.Design(**(entries | changes))
 
 
-SYRINGE = vs.VolumeSupply(chamber="inside", value="20 uL")
+SYRINGE = VolumeSupply(chamber="inside", value="20 uL")
 
 
 @pytest.mark.parametrize(
     "supply",
     [
-        vs.PressureSupply(chamber="inside", value="-20 kPa", leak={"conductance": "1 L/s/bar"}),
-        vs.VolumeSupply(chambers=("inside",), value="-1 mL", fluid="water", name="syringe"),
-        vs.MassSupply(chamber=0, temperature="60 degC", fill_temperature="10 degC"),
-        vs.MassSupply(chamber="all", value="1 g", fluid=vs.Liquid(density="900 kg/m^3")),
-        vs.FlowSupply(
+        PressureSupply(chamber="inside", value="-20 kPa", leak={"conductance": "1 L/s/bar"}),
+        VolumeSupply(chambers=("inside",), value="-1 mL", fluid="water", name="syringe"),
+        MassSupply(chamber=0, temperature="60 degC", fill_temperature="10 degC"),
+        MassSupply(chamber="all", value="1 g", fluid=Liquid(density="900 kg/m^3")),
+        FlowSupply(
             chamber="inside",
             source="50 kPa",
             valve={"conductance": "0.1 L/s/bar", "critical_ratio": 0.4},
             tube={"length": "1 m", "diameter": "2 mm"},
             line_volume="2 mL",
-            fluid=vs.Gas(gas_constant=188.9),
+            fluid=Gas(gas_constant=188.9),
             history={"time": (0, "1 s"), "factor": (0, 1)},
         ),
-        vs.FlowSupply(chamber="inside", pump={"flow": ("2 L/min", 0), "pressure": (0, "40 kPa")}),
+        FlowSupply(chamber="inside", pump={"flow": ("2 L/min", 0), "pressure": (0, "40 kPa")}),
     ],
     ids=lambda supply: supply.kind,
 )
@@ -65,9 +74,9 @@ def test_what_is_written_is_what_was_read(supply):
 
 
 def test_temperatures_have_units():
-    assert vs.MassSupply(chamber=0, temperature="60 degC").temperature == 333.15
-    assert vs.MassSupply(chamber=0, temperature="300 K").temperature == 300.0
-    assert vs.MassSupply(chamber=0).temperature == ROOM
+    assert MassSupply(chamber=0, temperature="60 degC").temperature == 333.15
+    assert MassSupply(chamber=0, temperature="300 K").temperature == 300.0
+    assert MassSupply(chamber=0).temperature == ROOM
 
 
 def refusal(error, make):
@@ -77,7 +86,7 @@ def refusal(error, make):
 
 
 @pytest.mark.parametrize(
-    ("kind", "entries", "said"),
+    ("kind", "entries", "expected"),
     [
         ("pressure", {"value": "-150 kPa"}, "no absolute pressure is below zero"),
         ("flow", {"source": "-2 bar", "valve": {"conductance": 1e-9}}, "absolute pressure"),
@@ -102,11 +111,11 @@ def refusal(error, make):
         ("volume", {"value": "5 mL", "chamber": "outside"}, 'no chamber "outside"'),
     ],
 )
-def test_what_no_supply_can_be_is_refused_with_its_place(kind, entries, said):
+def test_what_no_supply_can_be_is_refused_with_its_place(kind, entries, expected):
     message = refusal(
         DesignError, lambda: cube({"chamber": "inside", "kind": kind, "line_volume": 0} | entries)
     )
-    assert said in message
+    assert expected in message
     assert "supplies[0]" in message
     assert "Try: " in message
 
@@ -131,9 +140,9 @@ def test_two_that_drive_one_chamber_contradict(other):
 
 def test_a_connection_joins_two_chambers():
     tube = {"length": "1 m", "diameter": "1 mm"}
-    message = refusal(DesignError, lambda: vs.Connection(chambers=(0, 0), tube=tube))
+    message = refusal(DesignError, lambda: Connection(chambers=(0, 0), tube=tube))
     assert "does not join two chambers" in message
-    message = refusal(DesignError, lambda: vs.Connection(chambers=(0, 1)))
+    message = refusal(DesignError, lambda: Connection(chambers=(0, 1)))
     assert "neither a valve nor a tube" in message
 
 
@@ -169,8 +178,8 @@ def test_results_and_metrics_tell_what_supplies_do():
     assert found.metric("chamber_pressure", cavity="inside") == chamber.pressure
     assert found.metric("supplied_work") == chamber.work > 0.0
     assert found.metric("supplied_energy") == chamber.energy > chamber.work
-    (told,) = found.summary()["supplies"]
-    assert told["efficiency"] == chamber.work / chamber.energy
+    (summary,) = found.summary()["supplies"]
+    assert summary["efficiency"] == chamber.work / chamber.energy
     assert found.summary()["cavities"][0]["pressure"] == chamber.pressure
 
 
@@ -202,7 +211,7 @@ def test_the_command_line_tells_them_too(tmp_path, monkeypatch):
     cube(SYRINGE).save(file)
     monkeypatch.chdir(tmp_path)
     done = CliRunner().invoke(app, ["run", str(file), "--json", "--error", "off"])
-    (told,) = json.loads(done.stdout)["supplies"]
-    assert told["name"] == "inside"
-    assert told["pressure"] > 0.0
-    assert set(told) >= {"volume", "mass", "flow", "work", "energy", "efficiency"}
+    (printed,) = json.loads(done.stdout)["supplies"]
+    assert printed["name"] == "inside"
+    assert printed["pressure"] > 0.0
+    assert set(printed) >= {"volume", "mass", "flow", "work", "energy", "efficiency"}

@@ -4,9 +4,9 @@ use voxsoft_solid::assembly::Visitor;
 use voxsoft_solid::conformance::{Broken, Law, check_load, check_term};
 use voxsoft_solid::vector::{Vec3, add, axpy, norm, scale, sub};
 use voxsoft_solid::{
-    Body, ExternalForce, Fiber, Gravity, Hydrostatic, HyperelasticMaterial, Images,
-    LatticeMaterial, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, PointForces,
-    Pressure, ProblemError, Strain, Term, Vertices, elastic,
+    Body, ExternalForce, Fiber, Gravity, HyperelasticMaterial, Images, LatticeMaterial, Material,
+    Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, PointForces, Pressure, ProblemError,
+    Strain, Term, Vertices, elastic,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -348,14 +348,6 @@ fn every_kind_of_load_keeps_the_laws() {
     check(pressure(3, vec![])).unwrap();
     check(pressure(4, vec![([0, 1, 2, 3], 0.4)])).unwrap();
     check(Mirrored::new(images(), pressure(4, vec![]))).unwrap();
-    let Pressure { triangles, .. } = pressure(4, vec![]);
-    check(Hydrostatic {
-        triangles,
-        voids: vec![([0, 1, 2, 3], 0.4)],
-        slope: [0.3, -0.2, -2.0],
-        origin: [0.4, 0.1, 0.3],
-    })
-    .unwrap();
 }
 
 /// Corners two of which are images of the third and fourth of a tetrahedron across planes.

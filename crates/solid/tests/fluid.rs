@@ -1,10 +1,11 @@
 //! Gas and liquid behind walls: forces from a potential, their stiffness with what joins all of a wall, and masses that are kept.
 
+use voxsoft_solid::conformance::check_load;
 use voxsoft_solid::fluid::{
     Branch, Chamber, Course, End, Fluid, Line, Medium, Network, Ramp, Source, Tube, Valve,
 };
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{ExternalForce, Pressure};
+use voxsoft_solid::{ExternalForce, Hydrostatic, Pressure, Vertices};
 
 const ATMOSPHERE: f64 = 1e5;
 const AIR: Medium = Medium::Gas { constant: 287.0 };
@@ -39,7 +40,7 @@ fn wall(weight: f64) -> Pressure {
 }
 
 fn volume() -> f64 {
-    let on = voxsoft_solid::Vertices {
+    let on = Vertices {
         rest: &corners(),
         positions: &corners(),
         masses: &[],
@@ -211,6 +212,22 @@ fn what_two_chambers_exchange_is_not_lost() {
     assert!(a.pressure > b.pressure && b.pressure > 0.2e5);
     assert!(a.flow < 0.0 && (a.flow + b.flow).abs() < 1e-12 * b.flow);
     assert!(!fluid.is_at_rest(1e-3));
+}
+
+#[test]
+fn the_weight_of_a_liquid_keeps_the_laws_of_loads() {
+    let weight = Hydrostatic {
+        triangles: wall(1.0).triangles,
+        voids: vec![([0, 1, 2, 3], 0.4)],
+        slope: [0.3, -0.2, -2.0],
+        origin: [0.4, 0.1, 0.3],
+    };
+    let on = Vertices {
+        rest: &corners(),
+        positions: &moved(0.02, 1),
+        masses: &[1.0; 4],
+    };
+    check_load(&weight, on).unwrap();
 }
 
 #[test]
