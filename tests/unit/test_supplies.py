@@ -79,6 +79,13 @@ def test_temperatures_have_units():
     assert MassSupply(chamber=0).temperature == ROOM
 
 
+def test_a_file_gives_temperatures_a_unit():
+    document = cube(MassSupply(chamber=0)).document
+    document["supplies"][0]["temperature"] = 300.0
+    with pytest.raises(DesignError, match=r"supplies\[0\].temperature: 300.0 has no unit"):
+        vs.Design.from_document(document)
+
+
 def refusal(error, make):
     with pytest.raises(error) as caught:
         make()
