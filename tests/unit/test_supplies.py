@@ -222,3 +222,16 @@ def test_the_command_line_tells_them_too(tmp_path, monkeypatch):
     assert printed["name"] == "inside"
     assert printed["pressure"] > 0.0
     assert set(printed) >= {"volume", "mass", "flow", "work", "energy", "efficiency"}
+
+
+def test_what_leaves_the_laws_is_reported_with_its_place():
+    """A syringe that draws water below its vapor pressure, and a thin tube with a strong source."""
+    drawn = simulate(cube(VolumeSupply(chamber="inside", value="-60 uL", fluid="water")))
+    assert drawn.supplies[0].pressure < -101 * kPa
+    (found,) = (each for each in drawn.warnings if "boils" in each.what)
+    assert found.where == "supplies[0]"
+    short = {"length": "20 mm", "diameter": "0.5 mm"}
+    jet = FlowSupply(chamber="inside", source="300 kPa", tube=short, line_volume="50 mL")
+    blown = simulate(cube(jet), method="dynamics", end_time=0.01, time_step=0.002)
+    (found,) = (each for each in blown.warnings if "Reynolds" in each.what)
+    assert found.where == "supplies[0].tube"

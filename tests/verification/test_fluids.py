@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import voxsoft as vs
+from voxsoft import _core
 from voxsoft.design import Connection, FlowSupply, Liquid, MassSupply, PressureSupply, VolumeSupply
 from voxsoft.design.fluid import ATMOSPHERE, FLUIDS, ROOM
 from voxsoft.simulation import Setup, simulate
@@ -386,3 +387,45 @@ def test_a_liquid_weighs_on_its_walls():
     # Above its middle its pressure is below zero and draws the roof down; below, the plate holds.
     dry = simulate(pair(water.replace(fluid="air"), loads=[gravity]))
     assert chamber.volume < dry.supplies[0].volume
+
+
+@pytest.mark.parametrize("fluid", ["air", "water"])
+def test_derivatives_go_through_what_is_sealed_in(fluid):
+    """Beside differences over two parts in ten thousand, which are good to the square of that."""
+    value, young = 1e-7, 200 * kPa
+    tip = {"probes": {"top": vs.Probe(z=(INSIDE + 2 * WALL,) * 2)}}
+    rise = vs.Objective(maximize="displacement", probe="top", axis="z")
+    design = pair(
+        VolumeSupply(chamber="left", value=value, fluid=fluid), **tip, objectives={"rise": rise}
+    )
+    slopes = vs.gradient(simulate(design), "rise", ["supplies.0.value", "parts.0.material.young"])
+
+    def difference(change):
+        high, low = (simulate(design.with_values(change(1 + s))) for s in (1e-4, -1e-4))
+        return (high.metrics["rise"] - low.metrics["rise"]) / 2e-4
+
+    by_value = difference(lambda f: f"supplies.0.value={value * f!r} m^3") / value
+    by_young = difference(lambda f: f"parts.0.material.young={young * f!r} Pa") / young
+    assert slopes["rise"]["supplies.0.value"] == pytest.approx(by_value, rel=1e-6)
+    # Water keeps the volume whatever the stiffness: next to nothing is left of that slope.
+    small = 1e-4 * abs(by_value) * value / young
+    assert slopes["rise"]["parts.0.material.young"] == pytest.approx(by_young, rel=1e-6, abs=small)
+
+
+@pytest.mark.parametrize("fluid", ["air", "water"])
+def test_multigrid_and_a_direct_factor_find_the_same(fluid):
+    """Also past the limit of a balloon, where only what is in it holds the body."""
+    ratio = 4.0 if fluid == "air" else 2.0
+    mass = ratio * 4.2e-6 * (WATER.density if fluid == "water" else 1.1 * ATMOSPHERE / RT)
+    setup = Setup.of(ball(MassSupply(chamber=0, value=mass, fluid=fluid)))
+    found = {
+        linear: _core.equilibrium(setup.problem, tolerance=1e-8, linear=linear)
+        for linear in ("direct", "iterative")
+    }
+    one, other = found.values()
+    assert one.status == other.status == _core.Status.AT_REST
+    size = np.abs(one.positions - setup.mesh.vertices).max()
+    assert np.abs(one.positions - other.positions).max() < 1e-5 * size
+    assert one.path.stable
+    assert other.path.stable
+    assert one.chambers[0, 0] == pytest.approx(other.chambers[0, 0], rel=1e-5)

@@ -23,7 +23,8 @@ from voxsoft.metrics.contact import object_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.fluids import ChamberHistory, ChamberState
+from voxsoft.simulation.fluid_limits import doubtful_fluids
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState, Fluids
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -308,6 +309,9 @@ class Result(Shown):
     def warnings(self) -> tuple[Diagnostic, ...]:
         """What is doubtful about this result: where, what, and what to try; empty if nothing is."""
         found = warnings_at(self.design, self.mesh, self.positions, self.fields)
+        if self.supplies:
+            fluids = Fluids(self.design, self.mesh)
+            found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)

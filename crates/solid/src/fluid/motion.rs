@@ -190,6 +190,13 @@ impl Fluid {
         }
     }
 
+    /// Those of the last accepted state, Pa.
+    pub fn last_pressures(&self) -> Vec<f64> {
+        let state = self.state();
+        let last = state.last.as_ref();
+        last.map_or(vec![0.0; self.walls.len()], |last| last.pressures.clone())
+    }
+
     /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
     pub fn is_at_rest(&self, tolerance: f64) -> bool {
         let state = self.state();
