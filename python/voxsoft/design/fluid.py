@@ -51,9 +51,9 @@ Temperature = Annotated[
     PlainSerializer(lambda value: f"{value!r} K", return_type=str, when_used="json"),
     WithJsonSchema(
         {
-            "type": ["string", "number"],
+            "type": "string",
             "description": 'A temperature with its unit, such as "20 degC" or "293.15 K".',
-            "x-kind": "temperature",
+            "examples": ["20 degC"],
         }
     ),
 ]
