@@ -34,6 +34,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.simulation.chambers import center_of
 from voxsoft.simulation.loads import LoadReading, readings
 from voxsoft.simulation.touching import times_and_factors
+from voxsoft.units import format_quantity
 
 #: What supplies do about flow, or fill, that has no limit of its own.
 _NO_SOURCE: Final[dict[str, Any]] = {"held": None}
@@ -99,6 +100,19 @@ class ChamberState:
     def efficiency(self) -> float | None:
         """Work on the walls over the energy that it took; None where it took none."""
         return self.work / self.energy if self.energy > 0.0 else None
+
+    @property
+    def sentence(self) -> str:
+        """Its pressure, volume and mass in words."""
+        shown = [
+            format_quantity(float(f"{number:.4g}"), kind)
+            for number, kind in (
+                (self.pressure, "pressure"),
+                (self.volume, "volume"),
+                (self.mass, "mass"),
+            )
+        ]
+        return f"{self.name}: {shown[0]}, {shown[1]}, {shown[2]} of fluid"
 
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units."""

@@ -337,6 +337,7 @@ class Result(Shown):
         for name, target in asked.items():
             kind = METRICS[target.metric].kind
             yield f"{name}: {format_quantity(rounded(self.metrics[name]), kind)}"
+        yield from shortened([supply.sentence for supply in self.supplies])
         yield from shortened([contact.sentence for contact in self.contacts])
         yield from shortened([f"warning: {found}" for found in self.warnings])
 
