@@ -19,10 +19,12 @@ from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
+from voxsoft.design.line import Pump, Valve
 from voxsoft.design.object import Object
 from voxsoft.design.part import Part
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
+from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Card, Fiber, StretchRange
@@ -97,6 +99,17 @@ SPECIAL: dict[tuple[type, str], tuple[Any, ...]] = {
     (Parameter, "kind"): tuple(sorted(KINDS)),
     (Constraint, "kind"): tuple(sorted(KINDS)),
     (StretchRange, "largest"): (4.0, 1 + 1 / 3, np.float32(2.5), "4"),
+    (Pump, "flow"): (("2 L/min", 0), [1e-5 / 3, "3 mL/s", "0 L/min"], ("= p_volume_flow", 0)),
+    (Pump, "pressure"): ((0, "40 kPa"), [0, 1e4 / 3], (0, "= p_pressure")),
+    **{
+        (supply, name): ("20 degC", 300.1 / 3, "293.15 K", np.float64(310.0))
+        for supply, name in ((Supply, "temperature"), (MassSupply, "fill_temperature"))
+    },
+    (Supply, "chambers"): (("plain", 0), [1, "all"]),
+    (Supply, "leak"): ({"conductance": "0.1 L/s/bar"}, {"conductance": 1e-9 / 3}),
+    (FlowSupply, "valve"): ({"conductance": "0.1 L/s/bar"}, {"conductance": 1e-9 / 3}),
+    (Connection, "chambers"): (("plain", 0), [0, 1]),
+    (Connection, "valve"): ({"conductance": "0.1 L/s/bar"}, {"conductance": 1e-9 / 3}),
     (Card, "calibration"): (
         {},
         {"voxel size": "5 mm", "errors": [0.1, {"of": True}], "seed": 3},
@@ -130,6 +143,7 @@ NEEDS: dict[type, dict[str, Any]] = {
     Rotation: {"axis": (0, 0, 1)},
     Fiber: {"direction": (0, 0, 1)},
     Parameter: {"value": "5 mm"},
+    Valve: {"conductance": "0.1 L/s/bar"},
 }
 
 #: What goes with a field, or (None) cannot stand beside it.
@@ -150,6 +164,9 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Body, "design"): {"parts": None},
     **{(Body, name): {"parts": None, "design": INNER} for name in ("set", "mirror", "motion")},
     (Object, "mass"): {"motion": "free"},
+    (Supply, "chambers"): {"chamber": None},
+    (Valve, "area"): {"conductance": None},
+    (FlowSupply, "pump"): {"source": None, "valve": None},
 }
 
 

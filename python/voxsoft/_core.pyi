@@ -255,6 +255,14 @@ class ProblemParts:
         pressure: float,
         history: _History = None,
     ) -> None: ...
+    def hydrostatic(
+        self,
+        triangles: NDArray[np.uint32],
+        slope: Sequence[float],
+        origin: Sequence[float],
+        history: _History = None,
+        voids: tuple[NDArray[np.uint32], NDArray[np.float64]] | None = None,
+    ) -> None: ...
     def fluid(
         self,
         network: str,

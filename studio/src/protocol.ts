@@ -68,6 +68,10 @@ export const KINDS = {
   "stiffness": {"si": "N/m", "written": "N/m", "called": "a stiffness", "dimension": [0, 1, -2, 0]},
   "compliance": {"si": "m/N", "written": "m/N", "called": "a compliance", "dimension": [0, -1, 2, 0]},
   "volume compliance": {"si": "m^3/Pa", "written": "m^3/Pa", "called": "a volume compliance", "dimension": [4, -1, 2, 0]},
+  "volume flow": {"si": "m^3/s", "written": "mL/s", "called": "a volume flow", "dimension": [3, 0, -1, 0]},
+  "mass flow": {"si": "kg/s", "written": "g/s", "called": "a mass flow", "dimension": [0, 1, -1, 0]},
+  "conductance": {"si": "m^3/s/Pa", "written": "L/s/bar", "called": "a conductance", "dimension": [4, -1, 1, 0]},
+  "viscosity": {"si": "Pa*s", "written": "Pa*s", "called": "a viscosity", "dimension": [-1, 1, -1, 0]},
   "energy": {"si": "J", "written": "J", "called": "an energy", "dimension": [2, 1, -2, 0]},
   "number": {"si": "1", "written": "", "called": "a plain number", "dimension": [0, 0, 0, 0]},
 } as const;

@@ -11,9 +11,9 @@ use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Fluid, Gravity, History, Images, Load,
-    LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored, Motion, PointForces,
-    Pressure, Problem, ProblemError, State, Term, elastic,
+    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Fluid, Gravity, History, Hydrostatic,
+    Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored,
+    Motion, PointForces, Pressure, Problem, ProblemError, State, Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -166,6 +166,26 @@ impl PyProblemParts {
         let forces = rows("forces", &forces)?;
         let vertices = vertices.as_array().to_vec();
         self.load(PointForces { vertices, forces }, history)
+    }
+
+    /// The weight of a liquid within triangles and the given parts of cut tetrahedra: its pressure grows by `slope` (Pa/m)
+    /// from `origin` (m).
+    #[pyo3(signature = (triangles, slope, origin, history=None, voids=None))]
+    fn hydrostatic(
+        &mut self,
+        triangles: PyReadonlyArray2<'_, u32>,
+        slope: Vec3,
+        origin: Vec3,
+        history: HistoryArgument,
+        voids: VoidsArgument<'_>,
+    ) -> PyResult<()> {
+        let load = Hydrostatic {
+            triangles: rows("triangles", &triangles)?,
+            voids: self::voids(voids)?,
+            slope,
+            origin,
+        };
+        self.load(load, history)
     }
 
     /// Gas or liquid in chambers: a network as JSON, and for each chamber of it walls, as triangles with their voids and

@@ -90,8 +90,8 @@ pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model};
 pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use loads::{
-    Drive, ExternalForce, Gravity, Load, LoadKind, Place, PointForces, Pressure, Tendon,
-    TendonState, Vertices, enclosed_volume,
+    Drive, ExternalForce, Gravity, Hydrostatic, Load, LoadKind, Place, PointForces, Pressure,
+    Tendon, TendonState, Vertices, enclosed_volume,
 };
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};

@@ -127,6 +127,20 @@ impl Coupled {
         negative + positive == roots.len()
     }
 
+    /// The columns of `G L`, whose products with themselves sum up to `G C Gᵀ`, which is symmetric.
+    pub fn columns(&self) -> Vec<Vec<f64>> {
+        let column = |root: &Vec<f64>| {
+            let mut sum = vec![0.0; self.gradients[0].len()];
+            for (part, gradient) in root.iter().zip(&self.gradients) {
+                sum.iter_mut()
+                    .zip(gradient)
+                    .for_each(|(x, g)| *x += part * g);
+            }
+            sum
+        };
+        self.roots().iter().map(column).collect()
+    }
+
     /// Columns of `L`: a Cholesky factor with the largest pivots first.
     fn roots(&self) -> Vec<Vec<f64>> {
         let n = self.gradients.len();

@@ -329,7 +329,7 @@ impl<'a> Equilibrium<'a> {
         let opening = self.opening.take();
         let mut strains = opening.map(|p| Strains::with_pressures(body, positions, &p));
         let fluid = self.problem.fluid().filter(|fluid| fluid.is_stiff());
-        let mut carried: Option<Vec<f64>> = None;
+        let mut carried = fluid.map(Fluid::last_pressures);
         let mut lowest = f64::INFINITY;
         let mut since_lowest = 0;
         let mut previous = f64::INFINITY;
@@ -350,6 +350,8 @@ impl<'a> Equilibrium<'a> {
             let carrying = Carrying::along(fluid, carried.take());
             if let Some(strains) = &strains {
                 forces.free = self.predicted_forces(strains, positions, point);
+            } else if fluid.is_some() {
+                forces.free = self.forces(positions, point).free;
             }
             // While clamps have yet to move, the residual is that of the last equilibrium.
             if jump.is_none() {

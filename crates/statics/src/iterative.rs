@@ -42,6 +42,9 @@ pub(crate) struct IterativeSystem {
     /// By what part of itself the diagonal has been lifted.
     lifted: f64,
     hierarchy: Hierarchy,
+    /// Vectors by rows whose products with themselves are added to the tangent, which its preconditioner does not know: each
+    /// costs an iteration or two.
+    coupled: Vec<Vec<Vec3>>,
 }
 
 /// What is to be solved with the tangent.
@@ -115,6 +118,7 @@ impl IterativeSystem {
             matrix,
             lifted: 0.0,
             hierarchy,
+            coupled: Vec::new(),
         }))
     }
 
@@ -158,6 +162,20 @@ impl IterativeSystem {
                 matrices,
             });
         });
+    }
+
+    /// Adds the products of vectors of free coordinates with themselves to the assembled tangent.
+    pub fn couple(&mut self, vectors: &[Vec<f64>]) {
+        self.coupled = vectors.iter().map(|vector| self.by_rows(vector)).collect();
+    }
+
+    /// The product with the tangent and what is coupled to it.
+    fn multiply(&self, vector: &[Vec3], image: &mut [Vec3]) {
+        self.matrix.multiply(vector, image);
+        for coupled in &self.coupled {
+            let along = sum(self.places.len(), |row| dot(coupled[row], vector[row]));
+            for_each(image, |row, image| axpy(image, along, coupled[row]));
+        }
     }
 
     /// Makes the diagonal of the assembled tangent `1 + shift` times what it was, where it is positive.
@@ -293,7 +311,7 @@ impl IterativeSystem {
         let goal = tolerance * tolerance * sum(count, |row| dot(residual[row], work.answer(row)));
         if let Some(guess) = equation.guess {
             answer = self.by_rows(guess);
-            self.matrix.multiply(&answer, &mut image);
+            self.multiply(&answer, &mut image);
             for_each(&mut residual, |row, r| axpy(r, -1.0, image[row]));
             preconditioner.apply(&residual, &mut work);
         }
@@ -306,7 +324,7 @@ impl IterativeSystem {
             if iteration % LOOK == 0 && stop() {
                 return (answer, End::Cancelled);
             }
-            self.matrix.multiply(&direction, &mut image);
+            self.multiply(&direction, &mut image);
             if let Some(Border { vector, factor }) = &equation.border {
                 let part = factor * inner(vector, &direction);
                 for_each(&mut image, |row, image| axpy(image, part, vector[row]));

@@ -2,7 +2,7 @@
 //! distance along the path.
 
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Contact, Observer, Problem};
+use voxsoft_solid::{Contact, Fluid, Observer, Problem};
 
 use crate::equilibrium::{Equilibrium, Failure, Found, Way};
 use crate::point::Point;
@@ -144,8 +144,10 @@ impl Equilibrium<'_> {
 
 /// How Newton's method goes in a round, the first of which has number 0.
 fn way_of(round: usize, problem: &Problem, safe: bool) -> Way {
+    let is_stiff = problem.fluid().is_some_and(Fluid::is_stiff);
     match (problem.contact(), safe) {
-        (Some(_), _) if round > 0 => Way::Again,
+        // A line search that feels a liquid goes by steps that hardly change its volume.
+        (Some(_), _) if round > 0 && !is_stiff => Way::Again,
         (_, true) => Way::Safe,
         (_, false) => Way::Quick,
     }

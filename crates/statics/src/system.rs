@@ -15,7 +15,7 @@ const LARGE: usize = 4_000;
 /// The tangent of a problem, kept with its pattern for many assemblies.
 ///
 /// The direct way runs on one thread; the iterative one on all, with the same bits for any number. What joins all of a
-/// chamber's wall is kept apart ([`crate::coupled`]), and is solved for directly.
+/// chamber's wall is kept apart ([`crate::coupled`]).
 pub(crate) struct System {
     tangent: Tangent,
     coupled: Option<Coupled>,
@@ -80,7 +80,7 @@ impl System {
             LinearSolver::Direct => false,
             LinearSolver::Iterative => true,
             LinearSolver::Auto => large,
-        } && problem.fluid().is_none();
+        };
         let tangent = if iterative && let Some(system) = IterativeSystem::new(problem, held, means)?
         {
             Tangent::Iterative(Box::new(system))
@@ -134,7 +134,13 @@ impl System {
             pairs.for_each(|(side, force)| *side -= force);
         }
         let free = |coupling| Coupled::new(coupling, &|field| self.gather(field));
-        self.coupled = coupling.map(free);
+        let coupled = coupling.map(free);
+        match &mut self.tangent {
+            Tangent::Direct(_) => self.coupled = coupled,
+            Tangent::Iterative(system) => {
+                system.couple(&coupled.map_or(Vec::new(), |coupled| coupled.columns()));
+            }
+        }
     }
 
     /// Factorizes the assembled tangent plus `shift` times its diagonal, whatever its signs.

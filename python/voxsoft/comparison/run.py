@@ -27,6 +27,7 @@ from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
 from voxsoft.simulation.choice import given_settings
+from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.touching import refuse_bodies
 from voxsoft.units import format_quantity, si_value
 
@@ -103,6 +104,7 @@ def compare(
     ('xpbd, 10 mm', 'xpbd, 5 mm')
     """
     refuse_bodies(require_design(design), "comparisons")
+    refuse_supplies(design, "comparisons")
     limit = si_value(time_limit, "time", "time_limit", positive=True)
     splits = [int(split) for split in splits]
     if not solvers:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Annotated, Any, Final, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, ValidationInfo
 from pydantic.functional_serializers import PlainSerializer
 from pydantic.functional_validators import BeforeValidator
 from pydantic.json_schema import WithJsonSchema
@@ -14,6 +14,7 @@ from pydantic.json_schema import WithJsonSchema
 from voxsoft.errors import DesignError, UnitError
 from voxsoft.records import Record
 from voxsoft.units import Dimensionless, Modulus, PositiveDensity, UnitOf
+from voxsoft.units.types import read_from_file
 
 #: The pressure that gauge pressures are counted from [Pa].
 ATMOSPHERE: Final = 101_325.0
@@ -25,8 +26,8 @@ _TEMPERATURE: Final = re.compile(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*(K|kelvin|°
 Viscosity = Annotated[float, UnitOf("viscosity", positive=True)]
 
 
-def _kelvin(value: object) -> object:
-    """Read text with a unit; a plain number is in kelvin."""
+def _kelvin(value: object, info: ValidationInfo) -> object:
+    """Read text with a unit; a plain number is in kelvin, and no file may hold one."""
     if isinstance(value, str):
         found = _TEMPERATURE.fullmatch(value)
         if found is None:
@@ -34,6 +35,9 @@ def _kelvin(value: object) -> object:
             raise UnitError("", what, 'write "20 degC" or "293.15 K"')
         number = float(found[1])
         value = number if found[2].lower() in ("k", "kelvin") else number + _ZERO_CELSIUS
+    elif read_from_file(info) and isinstance(value, (int, float)):
+        what = f"{value!r} has no unit; expected a temperature"
+        raise UnitError("", what, 'write "20 degC" or "293.15 K"')
     if isinstance(value, (int, float)) and not isinstance(value, bool) and value <= 0.0:
         what = f"is {value:g} K, and nothing is colder than 0 K (-273.15 degC)"
         raise DesignError("", what, 'write "20 degC" or "293.15 K"')
@@ -47,9 +51,9 @@ Temperature = Annotated[
     PlainSerializer(lambda value: f"{value!r} K", return_type=str, when_used="json"),
     WithJsonSchema(
         {
-            "type": ["string", "number"],
+            "type": "string",
             "description": 'A temperature with its unit, such as "20 degC" or "293.15 K".',
-            "x-kind": "temperature",
+            "examples": ["20 degC"],
         }
     ),
 ]

@@ -134,6 +134,10 @@ def indices_used(design: Design) -> list[tuple[str, int]]:
     ]
     for table, entries in targets.items():
         found += [(f"{table}.{name}.cavity", each.cavity) for name, each in entries.items()]
+    for number, supply in enumerate(design.supplies):
+        found += [(f"supplies[{number}].chamber", choice) for choice in supply.choices]
+    for number, connection in enumerate(design.connections):
+        found += [(f"connections[{number}].chambers", each) for each in connection.chambers]
     return [(where, choice) for where, choice in found if isinstance(choice, int)]
 
 

@@ -31,7 +31,10 @@ from voxsoft.design.supply import (
 )
 from voxsoft.errors import DesignError, NoCavityError
 from voxsoft.mesh import Mesh
-from voxsoft.simulation.loads import readings
+from voxsoft.simulation.chambers import center_of
+from voxsoft.simulation.loads import LoadReading, readings
+from voxsoft.simulation.touching import times_and_factors
+from voxsoft.units import format_quantity
 
 #: What supplies do about flow, or fill, that has no limit of its own.
 _NO_SOURCE: Final[dict[str, Any]] = {"held": None}
@@ -97,6 +100,19 @@ class ChamberState:
     def efficiency(self) -> float | None:
         """Work on the walls over the energy that it took; None where it took none."""
         return self.work / self.energy if self.energy > 0.0 else None
+
+    @property
+    def sentence(self) -> str:
+        """Its pressure, volume and mass in words."""
+        shown = [
+            format_quantity(float(f"{number:.4g}"), kind)
+            for number, kind in (
+                (self.pressure, "pressure"),
+                (self.volume, "volume"),
+                (self.mass, "mass"),
+            )
+        ]
+        return f"{self.name}: {shown[0]}, {shown[1]}, {shown[2]} of fluid"
 
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units."""
@@ -240,6 +256,25 @@ class Fluids:
             for volume in self.volumes
         ]
         parts.fluid(json.dumps(self.network, allow_nan=False), walls)
+        for reading in readings(self.design):
+            if reading.quantity == "acceleration":
+                self._weigh(parts, reading)
+
+    def _weigh(self, parts: _core.ProblemParts, gravity: LoadReading) -> None:
+        """Give the weight of liquids to the core: pressures count at the centers of chambers."""
+        down = np.asarray(gravity.direction) / np.linalg.norm(gravity.direction)
+        history = times_and_factors(gravity.history)
+        for volume in self.volumes:
+            if not isinstance(volume.medium, Liquid):
+                continue
+            slope = volume.medium.density * gravity.size * down
+            cavities = [self.mesh.cavities[index] for index in volume.cavities]
+            sizes = [float(cavity.volume) for cavity in cavities]
+            centers = [center_of(cavity, self.mesh) for cavity in cavities]
+            origin = np.average(centers, axis=0, weights=sizes).tolist()
+            for cavity in cavities:
+                for triangles, voids, weight in _walls(cavity):
+                    parts.hydrostatic(triangles, (weight * slope).tolist(), origin, history, voids)
 
     @cached_property
     def network(self) -> dict[str, Any]:

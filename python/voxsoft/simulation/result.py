@@ -24,7 +24,8 @@ from voxsoft.metrics.tendon import tendon_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
-from voxsoft.simulation.fluids import ChamberHistory, ChamberState
+from voxsoft.simulation.fluid_limits import doubtful_fluids
+from voxsoft.simulation.fluids import ChamberHistory, ChamberState, Fluids
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
@@ -345,6 +346,9 @@ class Result(Shown):
     def warnings(self) -> tuple[Diagnostic, ...]:
         """What is doubtful about this result: where, what, and what to try; empty if nothing is."""
         found = warnings_at(self.design, self.mesh, self.positions, self.fields)
+        if self.supplies:
+            fluids = Fluids(self.design, self.mesh)
+            found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)
@@ -370,6 +374,7 @@ class Result(Shown):
         for name, target in asked.items():
             kind = METRICS[target.metric].kind
             yield f"{name}: {format_quantity(rounded(self.metrics[name]), kind)}"
+        yield from shortened([supply.sentence for supply in self.supplies])
         yield from shortened([contact.sentence for contact in self.contacts])
         yield from shortened([f"warning: {found}" for found in self.warnings])
 

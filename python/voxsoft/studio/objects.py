@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
@@ -23,6 +24,8 @@ NOT_LIVE: Final = "Live motion knows contact of rubber alone, not of the lattice
 SEVERAL: Final = "Live motion does not know several bodies yet: press Solve."
 #: The same for what is bonded.
 BONDED: Final = "Live motion does not know bonds yet: press Solve."
+#: The same for volumes of gas and liquid.
+SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -48,6 +51,8 @@ def objects_of(setup: Setup) -> list[events.BodyObject]:
 
 def not_live(setup: Setup) -> str:
     """Why time does not run for a body, in a sentence; empty where it does."""
+    if has_supplies(setup.design):
+        return SUPPLIED
     if not has_contact(setup.design):
         return ""
     if setup.design.bodies:

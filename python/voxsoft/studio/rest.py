@@ -12,6 +12,7 @@ from voxsoft.jobs.nearness import digits_lost
 from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.choice import DYNAMICS, kind_of, settings_at_rest
 from voxsoft.simulation.dynamics import DEFAULT_MAX_TIME, DEFAULT_RECORD_INTERVAL
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.touching import has_contact
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.sentences import time_text
@@ -89,9 +90,9 @@ class RestSearch(threading.Thread):
             say()
 
     def _settings(self, setup: Setup) -> dict[str, Any]:
-        """What is solved for: rest, or with contact what the design asks for, as a film."""
+        """What is solved for: rest, or with contact and supplies what is asked for, as a film."""
         design = setup.design
-        if not has_contact(design):
+        if not (has_contact(design) or has_supplies(design)):
             return {**settings_at_rest(), "method": self._method}
         chosen = {} if self._method == "auto" else {"method": self._method}
         solver = design.solver.replace(**chosen)

@@ -13,11 +13,14 @@
 
 mod line;
 mod medium;
+mod motion;
 mod network;
+mod pressures;
 mod small;
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use self::motion::State;
 use crate::assembly::Visitor;
 use crate::loads::{ExternalForce, Pressure, Vertices};
 use crate::vector::{Vec3, axpy};
@@ -25,6 +28,7 @@ use crate::{History, Load, LoadKind, PointForces, ProblemError};
 
 pub use line::{Curve, Flow, Line, Tube, Valve};
 pub use medium::Medium;
+pub use motion::Reading;
 pub use network::{Branch, Chamber, Course, End, Network, Pressures, Pump, Ramp, Source, Step};
 pub use small::solve_small;
 
@@ -50,66 +54,6 @@ pub struct Fluid {
     /// A load whose factor is the part of the way from the unloaded body.
     part: Load,
     state: Arc<Mutex<State>>,
-}
-
-/// What it remembers between steps and iterations.
-#[derive(Debug, Default)]
-struct State {
-    step: Option<Step>,
-    /// Pressures that Newton's method carries along.
-    carried: Option<Vec<f64>>,
-    /// Masses that have been exchanged since the start, now and a step ago, kg.
-    exchanged: Vec<f64>,
-    before: Vec<f64>,
-    last: Option<Last>,
-    /// The largest pressure so far, of either sign, Pa.
-    largest: f64,
-    /// Work on the walls and energy given so far, J, for each chamber.
-    work: Vec<f64>,
-    energy: Vec<f64>,
-}
-
-/// The last accepted state.
-#[derive(Debug, Clone)]
-struct Last {
-    volumes: Vec<f64>,
-    pressures: Vec<f64>,
-    part: f64,
-    time: f64,
-    power: Vec<f64>,
-    masses: Vec<f64>,
-}
-
-/// A chamber as it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reading {
-    /// Pa
-    pub pressure: f64,
-    /// Of its cavities, m³.
-    pub volume: f64,
-    /// With that in lines and syringes, kg.
-    pub mass: f64,
-    /// Into it, kg/s.
-    pub flow: f64,
-    /// On the walls, J.
-    pub work: f64,
-    /// What it took, J.
-    pub energy: f64,
-}
-
-impl Reading {
-    /// Its numbers in the order above.
-    pub fn numbers(self) -> [f64; 6] {
-        let Self {
-            pressure,
-            volume,
-            mass,
-            flow,
-            work,
-            energy,
-        } = self;
-        [pressure, volume, mass, flow, work, energy]
-    }
 }
 
 /// The part of a stiffness that joins all of the walls: `Σ gᵢ Cᵢⱼ gⱼᵀ`.
@@ -349,212 +293,6 @@ impl Fluid {
             entries.iter().zip(&grown).map(|(c, way)| c * way).sum()
         };
         (0..n).map(|row| found.pressures[row] - fall(row)).collect()
-    }
-
-    /// Starts a path from rest, or a motion: nothing has been exchanged.
-    pub fn start(&self, positions: &[Vec3], time: Option<f64>) {
-        let volumes = self.volumes(positions);
-        let network = &self.network;
-        let (part, moment) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
-        let n = volumes.len();
-        // What has not been joined yet is as it was put in.
-        let alone = Network {
-            branches: Vec::new(),
-            pumps: Vec::new(),
-            ..(**network).clone()
-        };
-        let found = if time.is_some() {
-            alone.at_rest(&volumes, part, moment)
-        } else {
-            network.at_rest(&volumes, part, moment)
-        };
-        let pressures = found.map_or(vec![f64::NAN; n], |found| found.pressures);
-        let power = match time {
-            Some(time) => network.power(&pressures, time),
-            None => vec![0.0; n],
-        };
-        let masses = network.masses(&volumes, &pressures, part, moment);
-        *self.state() = State {
-            step: None,
-            carried: None,
-            largest: 0.0,
-            exchanged: vec![0.0; n],
-            before: vec![0.0; n],
-            work: vec![0.0; n],
-            energy: vec![0.0; n],
-            last: Some(Last {
-                volumes,
-                pressures,
-                part,
-                time: moment,
-                power,
-                masses,
-            }),
-        };
-        if let Some(time) = time {
-            self.begin(time, f64::INFINITY, [1.0, 0.0]);
-        }
-    }
-
-    /// Begins a step of a motion to `time`, at whose end the derivative of the masses is `rate` times what they differ by from
-    /// a mean of those now and a step ago, with these weights.
-    pub fn begin(&self, time: f64, rate: f64, [now, ago]: [f64; 2]) {
-        let mut state = self.state();
-        let pairs = state.exchanged.iter().zip(&state.before);
-        let exchanged = pairs.map(|(a, b)| now * a + ago * b).collect();
-        let (from, guess) = match &state.last {
-            Some(last) => (last.volumes.clone(), last.pressures.clone()),
-            None => return,
-        };
-        state.step = Some(Step {
-            time,
-            rate,
-            exchanged,
-            from,
-            guess,
-        });
-    }
-
-    /// Takes a state as the end of a step of a motion.
-    pub fn take_step(&self, positions: &[Vec3]) {
-        let volumes = self.volumes(positions);
-        let mut state = self.state();
-        let Some(step) = state.step.clone() else {
-            return;
-        };
-        let Some(found) = self.network.at_end_of(&step, &volumes) else {
-            return;
-        };
-        let flows = self.network.flows_at(&found.pressures, step.time);
-        let masses = self
-            .network
-            .masses(&volumes, &found.pressures, 1.0, step.time);
-        let put_in = self.network.put_in(step.time);
-        let exchanged = (0..volumes.len())
-            .map(|chamber| {
-                if self.network.is_held(chamber) {
-                    masses[chamber] - put_in[chamber]
-                } else {
-                    step.exchanged[chamber] + flows[chamber] / step.rate
-                }
-            })
-            .collect();
-        state.before = std::mem::replace(&mut state.exchanged, exchanged);
-        let power = self.network.power(&found.pressures, step.time);
-        state.count(
-            &self.network,
-            Last {
-                volumes,
-                pressures: found.pressures,
-                part: 1.0,
-                time: step.time,
-                power,
-                masses,
-            },
-        );
-    }
-
-    /// Takes a state as a point of a path of equilibria.
-    pub fn take_rest(&self, positions: &[Vec3], part: f64) {
-        let volumes = self.volumes(positions);
-        if let Some(found) = self.network.at_rest(&volumes, part, f64::INFINITY) {
-            let power = vec![0.0; volumes.len()];
-            let masses = self
-                .network
-                .masses(&volumes, &found.pressures, part, f64::INFINITY);
-            self.state().count(
-                &self.network,
-                Last {
-                    volumes,
-                    pressures: found.pressures,
-                    part,
-                    time: f64::INFINITY,
-                    power,
-                    masses,
-                },
-            );
-        }
-    }
-
-    /// Whether pressures have come to rest, up to a part of the largest one so far, if volumes stay.
-    pub fn is_at_rest(&self, tolerance: f64) -> bool {
-        let state = self.state();
-        let (Some(last), Some(step)) = (&state.last, &state.step) else {
-            return true;
-        };
-        let settled = self
-            .network
-            .settled(&last.volumes, &state.exchanged, step.time);
-        let Some(settled) = settled else { return false };
-        let pairs = settled.iter().zip(&last.pressures);
-        let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        off <= tolerance * state.largest
-    }
-
-    /// Every chamber where the vertices are at `positions`.
-    pub fn read(&self, positions: &[Vec3], part: f64) -> Vec<Reading> {
-        let volumes = self.volumes(positions);
-        let (found, _) = self.answer(&volumes, part);
-        let state = self.state();
-        let time = state.step.as_ref().map_or(f64::INFINITY, |step| step.time);
-        let masses = self.network.masses(&volumes, &found.pressures, part, time);
-        let flows: Vec<f64> = match &state.step {
-            Some(step) if step.rate.is_finite() => {
-                let flows = self.network.flows_at(&found.pressures, step.time);
-                let put_in = self.network.put_in(step.time);
-                (0..volumes.len())
-                    .map(|chamber| {
-                        if self.network.is_held(chamber) {
-                            let gained = masses[chamber] - put_in[chamber];
-                            step.rate * (gained - step.exchanged[chamber])
-                        } else {
-                            flows[chamber]
-                        }
-                    })
-                    .collect()
-            }
-            Some(step) => self.network.flows_at(&found.pressures, step.time),
-            None => vec![0.0; volumes.len()],
-        };
-        (0..volumes.len())
-            .map(|chamber| Reading {
-                pressure: found.pressures[chamber],
-                volume: volumes[chamber],
-                mass: masses[chamber],
-                flow: flows[chamber],
-                work: state.work[chamber],
-                energy: state.energy[chamber],
-            })
-            .collect()
-    }
-}
-
-impl State {
-    /// Adds up work and energy on the way to a state, by the trapezoidal rule.
-    fn count(&mut self, network: &Network, now: Last) {
-        if let Some(last) = &self.last {
-            let step = if now.time.is_finite() {
-                now.time - last.time
-            } else {
-                0.0
-            };
-            let pairs = last.pressures.iter().zip(&now.pressures);
-            let mean: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
-            let moments = [(last.part, last.time), (now.part, now.time)];
-            let put_in = network.energy_put_in(&mean, moments);
-            let pairs = now.masses.iter().zip(&last.masses);
-            let gained: Vec<f64> = pairs.map(|(now, last)| now - last).collect();
-            let held = network.energy_held(&mean, &gained, now.time);
-            for chamber in 0..mean.len() {
-                self.work[chamber] +=
-                    mean[chamber] * (now.volumes[chamber] - last.volumes[chamber]);
-                let power = 0.5 * (last.power[chamber] + now.power[chamber]);
-                self.energy[chamber] += put_in[chamber] + held[chamber] + step * power;
-            }
-        }
-        let sizes = now.pressures.iter().map(|p| p.abs());
-        self.largest = sizes.fold(self.largest, f64::max);
-        self.last = Some(now);
     }
 }
 

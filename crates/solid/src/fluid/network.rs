@@ -1,33 +1,10 @@
-//! Which pressures go with which volumes: chambers, what joins them, and what drives them.
-//!
-//! At rest nothing flows: joined chambers have one pressure, that of the sources where there are any, else that of all their
-//! contents together. Over time the masses at the end of a step are unknown with the pressures: of a formula that gives
-//! derivatives as `σ (m − m̂)` (see the implicit steps of the statics crate),
-//!
-//! ```text
-//! ρ(p) (V + L) = m̂ + ṁ(p)/σ
-//! ```
-//!
-//! for each chamber, with the volume `V` of the body's walls, that of lines and syringes `L`, and the flows `ṁ` at the end
-//! of the step: stiff lines need no short steps. What leaves one chamber enters another, so that mass is kept to rounding.
+//! Chambers, what joins them and what drives them: masses, flows, and what these are worth.
 
 use serde::{Deserialize, Serialize};
 
 use super::line::{Curve, Line};
 use super::medium::Medium;
-use super::small::solve_small;
 use crate::History;
-
-/// Steps of Newton's method to the pressures, and how often one may be halved.
-const ITERATIONS: u32 = 100;
-const HALVINGS: u32 = 40;
-/// Pressures are known to this part of the absolute ones.
-const PRECISION: f64 = 1e-13;
-/// No absolute pressure falls below this part of itself in a step of Newton's method.
-const LEAST: f64 = 0.1;
-
-/// What equations for pressures are off by, with the derivatives (n × n).
-type Equations<'a> = &'a mut dyn FnMut(&[f64]) -> (Vec<f64>, Vec<f64>);
 
 /// A number that goes from its value at rest to another one as a history goes from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -146,15 +123,15 @@ pub struct Pressures {
 
 /// A chamber at a moment.
 #[derive(Clone, Copy)]
-struct Content {
-    medium: Medium,
-    mass: f64,
-    temperature: f64,
-    outside: f64,
+pub(super) struct Content {
+    pub medium: Medium,
+    pub mass: f64,
+    pub temperature: f64,
+    pub outside: f64,
 }
 
 impl Content {
-    fn amount(self) -> f64 {
+    pub fn amount(self) -> f64 {
         self.medium.amount(self.mass, self.temperature)
     }
 }
@@ -217,7 +194,7 @@ impl Network {
         self.branches.iter().any(joins)
     }
 
-    fn contents(&self, part: f64, time: f64) -> Vec<Content> {
+    pub(super) fn contents(&self, part: f64, time: f64) -> Vec<Content> {
         let at = |chamber: &Chamber| {
             let part = part * chamber.history.at(time);
             Content {
@@ -235,116 +212,13 @@ impl Network {
         self.contents(1.0, time).iter().map(|c| c.mass).collect()
     }
 
-    /// The chambers that lines join, as lists of them, and the pressures that something holds there at `part` of everything;
-    /// none where nothing does, or `None` where that is not found.
-    #[expect(clippy::type_complexity, reason = "lists of groups and what they hold")]
-    fn groups(&self, part: f64, time: f64) -> Option<Vec<(Vec<usize>, Option<Vec<f64>>)>> {
-        let mut group: Vec<usize> = (0..self.chambers.len()).collect();
-        let mut held = vec![false; group.len()];
-        for branch in &self.branches {
-            match branch.ends {
-                [End::Chamber(a), End::Chamber(b)] => {
-                    let (from, to) = (group[a], group[b]);
-                    group
-                        .iter_mut()
-                        .filter(|g| **g == from)
-                        .for_each(|g| *g = to);
-                }
-                [End::Chamber(a), _] | [_, End::Chamber(a)] => held[a] = true,
-                _ => {}
-            }
-        }
-        for pump in &self.pumps {
-            held[pump.chamber] = true;
-        }
-        for (held, chamber) in held.iter_mut().zip(&self.chambers) {
-            *held |= chamber.held.is_some();
-        }
-        let numbers = 0..self.chambers.len();
-        let members = numbers.map(|g| (0..group.len()).filter(|&c| group[c] == g).collect());
-        let members = members.filter(|members: &Vec<usize>| !members.is_empty());
-        let mut steady = None;
-        let mut found = Vec::new();
-        for members in members {
-            let pressures = if members.iter().any(|&c| held[c]) {
-                if steady.is_none() {
-                    steady = Some(self.steady(part, time, &held, &group)?);
-                }
-                let all = steady.as_ref()?;
-                Some(members.iter().map(|&c| all[c]).collect())
-            } else {
-                None
-            };
-            found.push((members, pressures));
-        }
-        Some(found)
-    }
-
-    /// Pressures at which nothing flows into any chamber that something holds.
-    fn steady(&self, part: f64, time: f64, held: &[bool], group: &[usize]) -> Option<Vec<f64>> {
-        let n = self.chambers.len();
-        let is_held =
-            |chamber: usize| (0..n).any(|other| group[other] == group[chamber] && held[other]);
-        let sources = self.sources_at(part, time);
-        let mut pressures: Vec<f64> = (0..n)
-            .map(|c| self.first(c, group, &sources, part, time))
-            .collect();
-        let mut unknown = |pressures: &[f64]| {
-            let (flows, mut slopes) = self.flows(pressures, &sources, part, time);
-            let mut off: Vec<f64> = flows.iter().map(|flow| -flow).collect();
-            slopes.iter_mut().for_each(|slope| *slope = -*slope);
-            for chamber in 0..n {
-                let source = self.chambers[chamber].held;
-                if source.is_some() || !is_held(chamber) {
-                    off[chamber] = source.map_or(0.0, |s| pressures[chamber] - sources[s]);
-                    for other in 0..n {
-                        slopes[chamber * n + other] = f64::from(u8::from(chamber == other));
-                    }
-                }
-            }
-            (off, slopes)
-        };
-        self.newton(&mut pressures, &mut unknown)
-            .then_some(pressures)
-    }
-
-    /// Where to look for a steady pressure: the stall pressure of a pump, else the mean of the sources.
-    fn first(&self, chamber: usize, group: &[usize], sources: &[f64], part: f64, time: f64) -> f64 {
-        let same = |other: usize| group[other] == group[chamber];
-        let mut members = (0..group.len()).filter(|&c| same(c));
-        if let Some(source) = members.find_map(|c| self.chambers[c].held) {
-            return sources[source];
-        }
-        if let Some(pump) = self.pumps.iter().find(|pump| same(pump.chamber)) {
-            return pump.curve.stall() * part * pump.history.at(time);
-        }
-        let of_group = |branch: &&Branch| {
-            branch
-                .ends
-                .iter()
-                .any(|end| matches!(end, End::Chamber(c) if same(*c)))
-        };
-        let ends = self
-            .branches
-            .iter()
-            .filter(of_group)
-            .flat_map(|branch| branch.ends);
-        let found: Vec<f64> = ends
-            .filter_map(|end| match end {
-                End::Source(index) => Some(sources[index]),
-                End::Chamber(_) => None,
-            })
-            .collect();
-        found.iter().sum::<f64>() / found.len().max(1) as f64
-    }
-
-    fn sources_at(&self, part: f64, time: f64) -> Vec<f64> {
+    pub(super) fn sources_at(&self, part: f64, time: f64) -> Vec<f64> {
         let at = |source: &Source| part * source.history.at(time) * source.pressure;
         self.sources.iter().map(at).collect()
     }
 
     /// What flows into each chamber (kg/s), and the derivatives by the pressures (n × n).
-    fn flows(
+    pub(super) fn flows(
         &self,
         pressures: &[f64],
         sources: &[f64],
@@ -430,187 +304,6 @@ impl Network {
         .collect()
     }
 
-    /// Newton's method on equations `off(p) = 0` whose derivatives come with them; whether it found the pressures.
-    fn newton(&self, pressures: &mut Vec<f64>, equations: Equations<'_>) -> bool {
-        let n = pressures.len();
-        let size = |off: &[f64]| off.iter().map(|x| x * x).sum::<f64>();
-        let (mut off, mut slopes) = equations(pressures);
-        for _ in 0..ITERATIONS {
-            let mut change = vec![off.clone()];
-            if size(&off) == 0.0 {
-                return true;
-            }
-            if !solve_small(&mut slopes, &mut change, n) {
-                return false;
-            }
-            let change = &change[0];
-            let mut part = 1.0f64;
-            for (p, change) in pressures.iter().zip(change) {
-                let room = (1.0 - LEAST) * (p + self.atmosphere);
-                if *change > room {
-                    part = part.min(room / change);
-                }
-            }
-            let small =
-                |(p, change): (&f64, &f64)| change.abs() <= PRECISION * (p.abs() + self.atmosphere);
-            let done = pressures.iter().zip(change).all(small);
-            let mut halvings = 0;
-            loop {
-                let trial: Vec<f64> = pressures
-                    .iter()
-                    .zip(change)
-                    .map(|(p, change)| p - part * change)
-                    .collect();
-                let next = equations(&trial);
-                let better = size(&next.0) < size(&off);
-                if better || done || halvings == HALVINGS {
-                    if !better && !done {
-                        return false;
-                    }
-                    *pressures = trial;
-                    (off, slopes) = next;
-                    break;
-                }
-                part /= 2.0;
-                halvings += 1;
-            }
-            if done {
-                return pressures.iter().all(|p| p.is_finite());
-            }
-        }
-        false
-    }
-
-    /// The pressures at rest of chambers with these volumes (m³), where everything has gone `part` of the way from the
-    /// unloaded body to the final values of all histories, or to those at a finite time.
-    pub fn at_rest(&self, volumes: &[f64], part: f64, time: f64) -> Option<Pressures> {
-        self.rest_of(volumes, &self.contents(part, time), part, time)
-    }
-
-    fn rest_of(
-        &self,
-        volumes: &[f64],
-        contents: &[Content],
-        part: f64,
-        time: f64,
-    ) -> Option<Pressures> {
-        let n = volumes.len();
-        let (mut pressures, mut stiffness) = (vec![0.0; n], vec![0.0; n * n]);
-        for (members, held) in self.groups(part, time)? {
-            if let Some(held) = held {
-                members
-                    .iter()
-                    .zip(held)
-                    .for_each(|(&c, p)| pressures[c] = p);
-                continue;
-            }
-            let amount: f64 = members.iter().map(|&c| contents[c].amount()).sum();
-            let volume: f64 = members
-                .iter()
-                .map(|&c| volumes[c] + contents[c].outside)
-                .sum();
-            let medium = contents[members[0]].medium;
-            let (pressure, slope) = medium.pressure_of(amount, volume, self.atmosphere);
-            for &row in &members {
-                pressures[row] = pressure;
-                members
-                    .iter()
-                    .for_each(|&column| stiffness[row * n + column] = slope);
-            }
-        }
-        let found = Pressures {
-            pressures,
-            stiffness,
-        };
-        found.is_finite().then_some(found)
-    }
-
-    /// The work (J) that the contents do on the walls up to these volumes, up to a constant.
-    pub fn work_at_rest(&self, volumes: &[f64], part: f64, time: f64) -> f64 {
-        let contents = self.contents(part, time);
-        let Some(groups) = self.groups(part, time) else {
-            return f64::NAN;
-        };
-        let mut work = 0.0;
-        for (members, held) in groups {
-            if let Some(held) = held {
-                work += members
-                    .iter()
-                    .zip(held)
-                    .map(|(&c, p)| p * volumes[c])
-                    .sum::<f64>();
-                continue;
-            }
-            let amount: f64 = members.iter().map(|&c| contents[c].amount()).sum();
-            let volume: f64 = members
-                .iter()
-                .map(|&c| volumes[c] + contents[c].outside)
-                .sum();
-            work += contents[members[0]]
-                .medium
-                .work(amount, volume, self.atmosphere);
-        }
-        work
-    }
-
-    /// The line through the pressures at rest that touches them where they are `near` (Pa), at these volumes: what a step of
-    /// Newton's method on both volumes and pressures goes along.
-    pub fn along_rest(
-        &self,
-        near: &[f64],
-        volumes: &[f64],
-        part: f64,
-        time: f64,
-    ) -> Option<Pressures> {
-        let n = volumes.len();
-        let contents = self.contents(part, time);
-        let (mut pressures, mut stiffness) = (vec![0.0; n], vec![0.0; n * n]);
-        for (members, held) in self.groups(part, time)? {
-            if let Some(held) = held {
-                members
-                    .iter()
-                    .zip(held)
-                    .for_each(|(&c, p)| pressures[c] = p);
-                continue;
-            }
-            let amount: f64 = members.iter().map(|&c| contents[c].amount()).sum();
-            let volume: f64 = members
-                .iter()
-                .map(|&c| volumes[c] + contents[c].outside)
-                .sum();
-            let medium = contents[members[0]].medium;
-            let touching = medium.volume_of(amount, near[members[0]], self.atmosphere);
-            let (_, slope) = medium.pressure_of(amount, touching, self.atmosphere);
-            for &row in &members {
-                pressures[row] = near[members[0]] - slope * (volume - touching);
-                members
-                    .iter()
-                    .for_each(|&column| stiffness[row * n + column] = slope);
-            }
-        }
-        let found = Pressures {
-            pressures,
-            stiffness,
-        };
-        found.is_finite().then_some(found)
-    }
-
-    /// The pressures at the end of a step of chambers with these volumes then.
-    pub fn at_end_of(&self, step: &Step, volumes: &[f64]) -> Option<Pressures> {
-        if self.is_closed() {
-            return self.at_rest(volumes, 1.0, step.time);
-        }
-        self.end_of(step, &step.guess, volumes, true)
-    }
-
-    /// As [`Network::along_rest`] at the end of a step.
-    pub fn along_end_of(&self, step: &Step, near: &[f64], volumes: &[f64]) -> Option<Pressures> {
-        if self.is_closed() {
-            return self.along_rest(near, volumes, 1.0, step.time);
-        }
-        self.end_of(step, near, volumes, false)
-    }
-
     /// Whether nothing flows anywhere but to what holds its pressure anyway.
     pub fn is_closed(&self) -> bool {
         self.branches.is_empty() && self.pumps.is_empty()
@@ -635,94 +328,10 @@ impl Network {
         .collect()
     }
 
-    /// Pressures from a guess, to the end or one step of Newton's method on.
-    fn end_of(
-        &self,
-        step: &Step,
-        guess: &[f64],
-        volumes: &[f64],
-        exact: bool,
-    ) -> Option<Pressures> {
-        let n = volumes.len();
-        let contents = self.contents(1.0, step.time);
-        let sources = self.sources_at(1.0, step.time);
-        let density = |chamber: usize, pressure: f64| {
-            let content = contents[chamber];
-            content
-                .medium
-                .density(pressure, content.temperature, self.atmosphere)
-        };
-        let mut equations = |pressures: &[f64]| {
-            let (flows, mut slopes) = self.flows(pressures, &sources, 1.0, step.time);
-            slopes.iter_mut().for_each(|slope| *slope /= -step.rate);
-            let mut off = Vec::with_capacity(n);
-            for chamber in 0..n {
-                let content = contents[chamber];
-                let volume = volumes[chamber] + content.outside;
-                let (now, slope) = density(chamber, pressures[chamber]);
-                let before = content.mass + step.exchanged[chamber];
-                off.push(now * volume - before - flows[chamber] / step.rate);
-                slopes[chamber * (n + 1)] += slope * volume;
-                if let Some(source) = self.chambers[chamber].held {
-                    off[chamber] = pressures[chamber] - sources[source];
-                    for other in 0..n {
-                        slopes[chamber * n + other] = f64::from(u8::from(chamber == other));
-                    }
-                }
-            }
-            (off, slopes)
-        };
-        let mut pressures = guess.to_vec();
-        if exact && !self.newton(&mut pressures, &mut equations) {
-            return None;
-        }
-        let (off, mut slopes) = equations(&pressures);
-        let mut columns: Vec<Vec<f64>> = (0..n)
-            .map(|column| {
-                let mut side = vec![0.0; n];
-                if self.chambers[column].held.is_none() {
-                    side[column] = density(column, pressures[column]).0;
-                }
-                side
-            })
-            .collect();
-        columns.push(off);
-        if !solve_small(&mut slopes, &mut columns, n) {
-            return None;
-        }
-        let change = columns.pop()?;
-        if !exact {
-            pressures
-                .iter_mut()
-                .zip(change)
-                .for_each(|(p, change)| *p -= change);
-        }
-        let mut stiffness = vec![0.0; n * n];
-        for (column, values) in columns.iter().enumerate() {
-            for (row, value) in values.iter().enumerate() {
-                stiffness[row * n + column] = *value;
-            }
-        }
-        let found = Pressures {
-            pressures,
-            stiffness,
-        };
-        found.is_finite().then_some(found)
-    }
-
     /// What flows into each chamber at the end of a step, kg/s.
     pub fn flows_at(&self, pressures: &[f64], time: f64) -> Vec<f64> {
         self.flows(pressures, &self.sources_at(1.0, time), 1.0, time)
             .0
-    }
-
-    /// Where pressures come to rest from here if volumes stay, with masses that have been exchanged (kg).
-    pub fn settled(&self, volumes: &[f64], exchanged: &[f64], time: f64) -> Option<Vec<f64>> {
-        let mut contents = self.contents(1.0, time);
-        for (content, exchanged) in contents.iter_mut().zip(exchanged) {
-            content.mass += exchanged;
-        }
-        Some(self.rest_of(volumes, &contents, 1.0, time)?.pressures)
     }
 
     /// The mass in each chamber, kg, from the volumes and pressures.
@@ -746,7 +355,7 @@ impl Network {
 }
 
 impl Pressures {
-    fn is_finite(&self) -> bool {
+    pub(super) fn is_finite(&self) -> bool {
         self.pressures
             .iter()
             .chain(&self.stiffness)

@@ -1,6 +1,7 @@
 //! External loads: each kind is a file here, a variant of [`LoadKind`], and nothing else in the core.
 
 mod gravity;
+mod hydrostatic;
 mod point_forces;
 mod pressure;
 mod tendon;
@@ -14,6 +15,7 @@ use crate::vector::Vec3;
 use crate::{History, Mirrored, ProblemError};
 
 pub use gravity::Gravity;
+pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
 pub use pressure::{Pressure, enclosed_volume};
 pub use tendon::{Drive, Place, Tendon, TendonState};
@@ -119,6 +121,8 @@ pub enum LoadKind {
     Pressure(Pressure),
     /// Forces on vertices.
     Forces(PointForces),
+    /// The weight of a liquid in a cavity.
+    Hydrostatic(Hydrostatic),
     /// A pressure on a surface that crosses planes of symmetry.
     MirroredPressure(Mirrored<Pressure>),
     /// The pull of a tendon.
@@ -151,6 +155,7 @@ impl std::ops::Deref for LoadKind {
             Self::Gravity(gravity) => gravity,
             Self::Pressure(pressure) => pressure,
             Self::Forces(forces) => forces,
+            Self::Hydrostatic(weight) => weight,
             Self::MirroredPressure(pressure) => pressure,
             Self::Tendon(tendon) => tendon,
         }
@@ -178,6 +183,12 @@ impl From<Mirrored<Pressure>> for LoadKind {
 impl From<Tendon> for LoadKind {
     fn from(tendon: Tendon) -> Self {
         Self::Tendon(tendon)
+    }
+}
+
+impl From<Hydrostatic> for LoadKind {
+    fn from(weight: Hydrostatic) -> Self {
+        Self::Hydrostatic(weight)
     }
 }
 

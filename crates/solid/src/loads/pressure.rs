@@ -148,7 +148,7 @@ fn is_closed(triangles: &[[u32; 3]]) -> bool {
         .all(|same| same.iter().map(|&(.., side)| i32::from(side)).sum::<i32>() == 0)
 }
 
-fn closed_stiffness(pressure: f64, corners: [Vec3; 3]) -> [[f64; 9]; 9] {
+pub(super) fn closed_stiffness(pressure: f64, corners: [Vec3; 3]) -> [[f64; 9]; 9] {
     let mut matrix = [[0.0; 9]; 9];
     for (row, column, other) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
         let block = cross_matrix(scale(-pressure / 6.0, corners[other]));

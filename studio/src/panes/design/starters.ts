@@ -24,6 +24,10 @@ const FIRST: Readonly<Record<string, string | number>> = {
   compliance: "0.01 m/N",
   "volume compliance": "1e-12 m^3/Pa",
   energy: "1 mJ",
+  "volume flow": "1 mL/s",
+  "mass flow": "1 g/s",
+  conductance: "0.1 L/s/bar",
+  viscosity: "1e-3 Pa*s",
   number: 1,
 };
 
