@@ -4,8 +4,9 @@
 from a generator of random numbers by kind and number. With the first set at hand the rule of
 `voxsoft.comparison.bars` was made wider; after the second, the floor of 1 % was added; the third
 had no part in it. Each body is run as ``voxsoft run`` does, and its estimate held against the
-truth: the same number on voxels half as large and smaller, extrapolated from the finest sizes. An error bar holds where the truth, give or
-take a fifth of the last change, is within it. Its width is compared with the error of the run.
+truth: the same number on voxels half as large and smaller, extrapolated from the finest sizes.
+An error bar holds where the truth, give or take a fifth of the last change, is within it. Its width
+is compared with the error of the run.
 """
 
 from __future__ import annotations
