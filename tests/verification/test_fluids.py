@@ -169,6 +169,29 @@ def test_a_balloon_is_filled_through_its_limit_point(fluid):
     assert highest == pytest.approx(15 * kPa * expected.limit_factor, rel=0.01)
 
 
+@pytest.mark.parametrize("fluid", ["air", "water"])
+def test_a_balloon_that_is_filled_presses_against_a_wall(fluid):
+    """As under the pressure that it comes to: contact settles in rounds, and pressures with it."""
+    wall = vs.Box(size=(80 * mm, 80 * mm, 5 * mm), center=(0, 0, 19.5 * mm))
+    held = [vs.Clamp(region=vs.Region(**{axis: (0, 0)}), axes=axis) for axis in "xy"]
+    touching = {
+        "clamps": [vs.Clamp(region=vs.Region(z=("-inf", -14.9 * mm))), *held],
+        "objects": [{"name": "wall", "shape": wall}],
+        "contact": {"friction": 0.0},
+    }
+    if fluid == "air":
+        supply = MassSupply(chamber=0, value="15 mg")
+    else:
+        supply = VolumeSupply(chamber=0, value="6 mL", fluid="water")
+    filled = simulate(ball(supply, **touching))
+    assert filled.status == "ok", filled.message
+    (touch,) = filled.contacts
+    assert touch.force[2] < -0.1
+    load = vs.Pressure(value=filled.supplies[0].pressure)
+    # Forces of contact are known to a part in a thousand of the clearance.
+    assert off(filled, simulate(ball(loads=[load], **touching))) < 1e-4
+
+
 def test_gas_that_gives_way_lets_a_balloon_snap():
     """Behind a large tank the pressure hardly falls as the balloon grows: nothing holds it."""
     behind = VolumeSupply(chamber=0, value="10 mL", line_volume="2 L")

@@ -136,11 +136,10 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     for name, metric in metrics.items():
         bar = bars.metrics.get(name) if bars else None
         say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}{_with(bar)}")
-    for sentence in (
-        *(supply.sentence for supply in result.supplies),
-        *(contact.sentence for contact in result.contacts),
-    ):
-        say(plain(sentence))
+    for supply in result.supplies:
+        say(plain(supply.sentence))
+    for contact in result.contacts:
+        say(plain(contact.sentence))
     say(_stress_line(result))
     say(_stretch_line(result))
     for found in result.warnings:
