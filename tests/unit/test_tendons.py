@@ -205,6 +205,18 @@ def test_an_anchor_with_a_radius_pulls_at_a_mean():
     assert tendon.points[-1] == pytest.approx(at["point"])
 
 
+def test_an_anchor_at_a_point_that_pulls_too_hard_is_a_finding():
+    soft = (LENGTH / 2, *MIDDLE)
+    weak, strong = (along(through=[AXIS[0], soft], tension=pull) for pull in (0.1, 0.3))
+    spread = along(through=[AXIS[0], {"point": soft, "radius": 1.5 * mm}], tension=0.3)
+    for tendon, found in ((weak, False), (strong, True), (spread, False)):
+        warned = [each for each in vs.check(bar([tendon])).findings if "tendons" in each.where]
+        assert bool(warned) == found, warned
+        if found:
+            assert warned[0].where == "tendons[0].through[1]"
+            assert "carries 0.2 N" in warned[0].what
+
+
 def test_a_line_over_an_object_pulls_it():
     post = Object(
         name="post", shape=vs.Box(size=(4 * mm, 4 * mm, 4 * mm), corner=(26 * mm, 0, 10 * mm))

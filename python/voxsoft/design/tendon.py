@@ -176,8 +176,8 @@ class Tendon(Record):
     def summary(self) -> str:
         """What it is, in a few words with its size, for pictures and lists."""
         kind = "force" if self.drive == "tension" else "length"
-        said = {"tension": "tendon, ", "length": "tendon of ", "shortening": "tendon drawn in by "}
-        return said[self.drive] + format_quantity(self.value, kind)
+        words = {"tension": "tendon, ", "length": "tendon of ", "shortening": "tendon drawn in by "}
+        return words[self.drive] + format_quantity(self.value, kind)
 
     def with_value(self, value: float) -> Self:
         """Return the same with another tension, length or shortening."""

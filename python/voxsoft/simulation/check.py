@@ -17,6 +17,7 @@ from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import BodyMesh, Mesh
+from voxsoft.simulation.anchors import weak_anchors
 from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.choice import unused_settings
 from voxsoft.simulation.cost import Cost, cost_of
@@ -206,6 +207,7 @@ def examine(
             setup.check()
             is_held = setup.loose_piece is None
             mass = setup.problem.mass
+            findings += weak_anchors(setup)
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]

@@ -51,9 +51,9 @@ class TendonState:
     shortening
         By how much that way is shorter than in the undeformed design [m].
     tensions
-        Of each straight piece from the pulled end on [N], (s,).
+        Of each straight segment from the pulled end on [N], (s,).
     points
-        The points between these pieces now [m], (s + 1, 3).
+        The points between these segments now [m], (s + 1, 3).
     """
 
     tension: float
@@ -93,7 +93,7 @@ class ResolvedTendon:
 
     @property
     def lengths(self) -> Floats:
-        """Of each straight piece in the undeformed design [m]."""
+        """Of each straight segment in the undeformed design [m]."""
         found: Floats = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         return found
 
@@ -303,18 +303,18 @@ class _Way:
 
     def _check_crossing(self, stops: Sequence[_Stop]) -> None:
         """No channel of one line may run through another one of it."""
-        pieces = [
+        channels = [
             (index, before.own, stop.own, before.body)
             for index, (before, stop) in enumerate(pairwise(stops))
             if self._is_channel(before, stop)
         ]
-        for at, (first, a, b, body) in enumerate(pieces):
-            for second, c, d, other in pieces[at + 1 :]:
+        for at, (first, a, b, body) in enumerate(channels):
+            for second, c, d, other in channels[at + 1 :]:
                 if body != other or second == first + 1:
                     continue
                 assert body is not None
                 if _distance(a, b, c, d) < _CROSSING * self.carriers[body][1].size:
-                    what = f"crosses itself: the piece {second} the piece {first}"
+                    what = f"crosses itself: segment {second} meets segment {first}"
                     raise DesignError(self.where, what, "route one beside the other")
 
     def _check(self, found: ResolvedTendon, stops: Sequence[_Stop]) -> None:

@@ -65,7 +65,7 @@ impl Tensions {
     /// `compliance` (m/N): none if that is nothing.
     ///
     /// All tensions grow with the first one, at the least as much as the first does, so that the stretch is a function
-    /// that grows and is linear in pieces: Newton's method, kept between bounds, ends in one of them.
+    /// that grows and is linear between kinks: Newton's method, kept between bounds, ends between two of them.
     pub fn from_stretch(
         stretch: f64,
         compliances: &[f64],

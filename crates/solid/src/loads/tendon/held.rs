@@ -4,6 +4,10 @@
 //! by what is beyond has become shorter. Coulomb's law with the bounds of the state before is the derivative of
 //! `φ(s)`, `φ' = min(max(qⁿ + k s, low), high)`, which is convex: the return mapping of a step and its energy.
 
+use super::capstan::{Hold, Tensions};
+use super::polyline::Polyline;
+use super::{Drive, Tendon, dot_of};
+
 /// A bend during a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HeldBend {
@@ -73,6 +77,74 @@ impl HeldBend {
         // It slides from where it reaches its bound.
         let until = (force - self.before) / self.stiffness;
         0.5 * (self.before + force) * until + force * (slip - until)
+    }
+}
+
+impl Tendon {
+    /// With friction as this module has it. Of a line that is drawn in the first tension is `(L − M)/Σ c_j r_j`, as at the
+    /// ratios `r` that were there.
+    pub(super) fn held_tensions(&self, line: &Polyline, factor: f64) -> (Tensions, Option<f64>) {
+        let kept = self.memory.kept();
+        let first_before = kept.as_ref().map_or(0.0, |kept| kept.tensions[0]);
+        let (first, compliance) = match self.drive {
+            Drive::Tension(tension) => ((factor * tension).max(0.0), None),
+            Drive::Shortening { by, stiffness } => {
+                let compliances = self.compliances(stiffness);
+                let compliance = match &kept {
+                    Some(kept) if first_before > 0.0 => {
+                        dot_of(&kept.tensions, &compliances) / first_before
+                    }
+                    _ => compliances.iter().sum(),
+                };
+                let stretch = (line.length() - self.material(by, factor)).max(0.0);
+                (stretch / compliance, (stretch > 0.0).then_some(compliance))
+            }
+        };
+        let mut found = Tensions {
+            values: vec![first],
+            holds: Vec::new(),
+            by_first: vec![1.0],
+        };
+        for (bend, (held, slip)) in self.held_bends(line, first).iter().enumerate() {
+            let taken = held.taken(*slip);
+            found.values.push(found.values[bend] - taken.force);
+            found.by_first.push(found.by_first[bend] - taken.by_first);
+            found.holds.push(Hold::Differs(taken.by_slip));
+        }
+        let segments = self.lengths.len();
+        found.values.resize(segments, first);
+        found.by_first.resize(segments, 1.0);
+        found.holds.resize(segments - 1, Hold::Differs(0.0));
+        (found, compliance)
+    }
+
+    /// Each bend during a step, and by how much the line has slid over it; none in the first step.
+    pub(super) fn held_bends(&self, line: &Polyline, first: f64) -> Vec<(HeldBend, f64)> {
+        let Some(kept) = self.memory.kept() else {
+            return Vec::new();
+        };
+        // Where a tension is given, it has changed already where the line was; that of a line that is drawn in is found
+        // in the step.
+        let (before, slopes) = match self.drive {
+            Drive::Tension(_) => {
+                let now = Tensions::from_first(first, &kept.tensions, &kept.decays);
+                (now.values, now.by_first)
+            }
+            Drive::Shortening { .. } => (kept.tensions.clone(), vec![0.0; kept.tensions.len()]),
+        };
+        let stick = self.stick_stiffness(Some(kept.tensions[0]));
+        let (mut longer, mut material) = (0.0, 0.0);
+        let mut bends = Vec::with_capacity(kept.decays.len());
+        for (bend, decay) in kept.decays.iter().enumerate().rev() {
+            longer += line.lengths[bend + 1] - kept.lengths[bend + 1];
+            material += self.lengths[bend + 1];
+            let sides = [before[bend], before[bend + 1]];
+            let by_first = [slopes[bend], slopes[bend + 1]];
+            let held = HeldBend::new(sides, by_first, *decay, stick / material);
+            bends.push((held, -longer));
+        }
+        bends.reverse();
+        bends
     }
 }
 
