@@ -31,8 +31,8 @@ def weak_anchors(setup: Setup) -> Iterator[Diagnostic]:
         vertices = tendon.places[-1].get("vertices", [])
         if tendon.tendon.drive != "tension" or anchor.radius is not None or not vertices:
             continue
-        around = np.isin(mesh.tets, np.array(vertices)).all(axis=1)
-        parts = np.unique(mesh.tet_part[around]) if around.any() else np.unique(mesh.tet_part)
+        around = np.isin(mesh.tets, np.array(vertices)).any(axis=1)
+        parts = np.unique(mesh.tet_part[around])
         size = mesh.voxel_size or setup.design.voxel_size
         young = max(setup.materials[part - 1].young(size) for part in parts)
         pull, carried = tendon.size * tendon.final_factor, _MOST * young * size**2
