@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 from voxsoft._lazy import lazy_names
 
 if TYPE_CHECKING:
-    from voxsoft.comparison.bars import ErrorBar, ErrorBars, error_bars
+    from voxsoft.comparison.bars import error_bars
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
+    from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
     from voxsoft.comparison.path_bars import path_error_bars
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
@@ -32,8 +33,8 @@ __all__ = [
 _HOMES = {
     "Comparison": "voxsoft.comparison.comparison",
     "Confirmation": "voxsoft.comparison.confirmation",
-    "ErrorBar": "voxsoft.comparison.bars",
-    "ErrorBars": "voxsoft.comparison.bars",
+    "ErrorBar": "voxsoft.comparison.error_bar",
+    "ErrorBars": "voxsoft.comparison.error_bar",
     "Estimate": "voxsoft.comparison.richardson",
     "Run": "voxsoft.comparison.comparison",
     "compare": "voxsoft.comparison.run",

@@ -12,11 +12,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.design.discretize import voxels_of
@@ -26,7 +27,6 @@ from voxsoft.metrics import METRICS
 from voxsoft.simulation import Result, simulate
 from voxsoft.simulation.choice import kind_of
 from voxsoft.simulation.touching import has_contact
-from voxsoft.units import KINDS, format_quantity, si_value
 
 #: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
 FINER_UP_TO: Final = 20_000
@@ -60,156 +60,6 @@ Announce = Callable[[float, int, float], None]
 
 #: Solves a design, given the run on voxels twice as large where that is known.
 Solve = Callable[[Design, Result | None], Result]
-
-
-@dataclass(frozen=True)
-class ErrorBar:
-    """One number with its error.
-
-    Attributes
-    ----------
-    value
-        On the voxels of the design, in SI units.
-    estimate
-        What it comes to on ever smaller voxels.
-    error
-        How far that may be off, to either side.
-    kind
-        A key of :data:`voxsoft.units.KINDS`.
-    """
-
-    value: float
-    estimate: float
-    error: float
-    kind: str
-
-    def __str__(self) -> str:
-        """The estimate with its error, in a unit that suits both.
-
-        Examples
-        --------
-        >>> str(ErrorBar(-0.0123, -0.01304, 0.00052, "length"))
-        '-13.04 ± 0.52 mm'
-        """
-        unit, factor = _unit_of([self])
-        if self.estimate == self.error == 0.0:
-            return "0"
-        return f"{self.in_unit(factor)} {unit}".rstrip()
-
-    def in_unit(self, factor: float) -> str:
-        """Both numbers in a unit: two digits of the error, and five of the estimate at most."""
-        if self.estimate == self.error == 0.0:
-            return "0"
-        largest = max(abs(self.estimate), self.error) / factor
-        digits = 4 - math.floor(math.log10(largest)) if largest > 0.0 else 0
-        if self.error > 0.0:
-            digits = min(digits, 1 - math.floor(math.log10(self.error / factor)))
-        digits = max(digits, 0)
-        shown = [round(each / factor, digits) + 0.0 for each in (self.estimate, self.error)]
-        return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f}"
-
-    def summary(self) -> dict[str, float]:
-        """Plain data in SI units."""
-        return {"value": self.value, "estimate": self.estimate, "error": self.error}
-
-
-def vector_in_words(components: Sequence[ErrorBar]) -> str:
-    """Write the components of a vector with their errors, in one unit.
-
-    Examples
-    --------
-    >>> x = ErrorBar(0.0, 0.0, 0.0, "length")
-    >>> z = ErrorBar(-0.0123, -0.01304, 0.00052, "length")
-    >>> vector_in_words([x, x, z])
-    '(0, 0, -13.04 ± 0.52) mm'
-    """
-    unit, factor = _unit_of(components)
-    return f"({', '.join(bar.in_unit(factor) for bar in components)}) {unit}".rstrip()
-
-
-def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
-    """A unit that suits the largest of some numbers, and its factor."""
-    kind = bars[0].kind
-    largest = max(max(abs(bar.estimate), bar.error) for bar in bars)
-    units = KINDS[kind].units
-    if not units:
-        return "", 1.0
-    unit = "deg" if kind == "angle" else format_quantity(largest, kind).partition(" ")[2]
-    factors = {each: si_value(f"1 {each}", kind, "unit") for each in {*units, unit} - {""}}
-    if unit == "" or largest < 0.1 * factors[unit]:
-        unit = min(factors, key=lambda each: factors[each])
-    return unit, factors[unit]
-
-
-@dataclass(frozen=True)
-class ErrorBars:
-    """The discretization errors of a run.
-
-    Attributes
-    ----------
-    probes
-        Of the components of each probe's displacement.
-    metrics
-        Of each metric; without those that grow without a limit at sharp corners.
-    volumes
-        Of the volume of each cavity, in the order of the mesh's cavities.
-    voxel_sizes
-        In m, falling; empty if there are no error bars.
-    voxels
-        How many there are of each size.
-    regular
-        Whether all sizes hold the same body with two voxels or more through each wall; if not,
-        the bars are wide, and may be too small where walls are single voxels.
-    missing
-        Why there are no error bars, or why an accuracy was not reached; empty otherwise.
-    hint
-        What to do about that.
-    seconds
-        That the further runs took.
-    """
-
-    probes: Mapping[str, tuple[ErrorBar, ErrorBar, ErrorBar]]
-    metrics: Mapping[str, ErrorBar]
-    volumes: tuple[ErrorBar, ...]
-    voxel_sizes: tuple[float, ...] = ()
-    voxels: tuple[int, ...] = ()
-    regular: bool = False
-    missing: str = ""
-    hint: str = ""
-    seconds: float = 0.0
-
-    @classmethod
-    def none(cls, missing: str, hint: str) -> ErrorBars:
-        """No error bars, and why."""
-        return cls({}, {}, (), missing=missing, hint=hint)
-
-    @property
-    def sentence(self) -> str:
-        """Where the error bars come from, or why there are none."""
-        if not self.voxel_sizes:
-            return f"no error bars: {self.missing}. Try: {self.hint}"
-        lengths = [format_quantity(float(f"{size:.4g}"), "length") for size in self.voxel_sizes]
-        words = f"error bars from voxels of {', '.join(lengths[:-1])} and {lengths[-1]}"
-        if not self.regular:
-            words += ", which are not the same body or have walls of one voxel: the bars are wide"
-        return f"{words}; {self.missing}. Try: {self.hint}" if self.missing else words
-
-    def summary(self) -> dict[str, Any]:
-        """Everything as plain data in SI units (``"error_bars"`` in the ``--json`` of ``run``)."""
-        return {
-            "probes": {
-                name: {axis: bar.summary() for axis, bar in zip("xyz", bars, strict=True)}
-                for name, bars in self.probes.items()
-            },
-            "metrics": {name: bar.summary() for name, bar in self.metrics.items()},
-            "cavities": [bar.summary() for bar in self.volumes],
-            "voxel_sizes": list(self.voxel_sizes),
-            "voxels": list(self.voxels),
-            "regular": self.regular,
-            "missing": self.missing,
-            "hint": self.hint,
-            "seconds": self.seconds,
-        }
 
 
 def error_bars(

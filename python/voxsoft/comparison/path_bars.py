@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from voxsoft.comparison.bars import Announce, ErrorBar, ErrorBars, error_bars
+from voxsoft.comparison.bars import Announce, error_bars
+from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
 from voxsoft.design import Design
 from voxsoft.simulation import LoadPath, Result, follow
 

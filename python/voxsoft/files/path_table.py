@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from voxsoft.comparison.bars import ErrorBars
+from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import bars_of
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import csv_text

@@ -9,7 +9,8 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from voxsoft import files, simulation
-from voxsoft.comparison.bars import ErrorBars, error_bars
+from voxsoft.comparison.bars import error_bars
+from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import path_error_bars
 from voxsoft.design import Design
 from voxsoft.files.figures import save_figure, save_thumbnail

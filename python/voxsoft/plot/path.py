@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from voxsoft.comparison.bars import ErrorBars
+from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import bars_of
 from voxsoft.errors import SimulationError
 from voxsoft.plot.quantities import scale_for

@@ -1,4 +1,7 @@
-"""From a design to a mechanical problem: mesh, materials, clamps, loads, probes."""
+"""From a design to a mechanical problem: mesh, materials, clamps, loads, probes.
+
+Long because all that is derived from a design stands in one class, a short property each.
+"""
 
 from __future__ import annotations
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
-from voxsoft.comparison.bars import ErrorBars, error_bars, vector_in_words
+from voxsoft.comparison.bars import error_bars
+from voxsoft.comparison.error_bar import ErrorBars, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
