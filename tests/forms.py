@@ -14,6 +14,7 @@ import pint
 from pydantic import StringConstraints, WithJsonSchema
 
 from voxsoft.design import Design, Parameter, Region
+from voxsoft.design.activation import Strain, Swelling
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
@@ -26,6 +27,7 @@ from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
 from voxsoft.design.target import Constraint, Objective
+from voxsoft.design.tendon import Guide, Tendon
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Card, Fiber, StretchRange
 from voxsoft.records import Record
@@ -128,10 +130,11 @@ INNER = {
     "clamps": [{"region": {"z": ["-inf", 0]}}],
     "probes": {"top": {"point": [0, 0, 0]}},
 }
+SPECIAL |= {(model, "part"): ("plain",) for model in (Strain, Swelling)}
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.
-ELSEWHERE = {(Region, "body"), (Part, "body")}
+ELSEWHERE = {(Region, "body"), (Part, "body"), (Guide, "body")}
 
 #: What a record needs beside what its fields require.
 NEEDS: dict[type, dict[str, Any]] = {
@@ -144,7 +147,13 @@ NEEDS: dict[type, dict[str, Any]] = {
     Fiber: {"direction": (0, 0, 1)},
     Parameter: {"value": "5 mm"},
     Valve: {"conductance": "0.1 L/s/bar"},
+    History: {"time": ("0 s",), "factor": (1,)},
+    Guide: {"point": (0, 0, 0)},
+    Tendon: {"tension": "6 N"},
 }
+
+#: What stands in a list already, where one entry is not enough.
+FIRST: dict[tuple[type, str], list[Any]] = {(Tendon, "through"): [(0, 0, "50 mm")]}
 
 #: What goes with a field, or (None) cannot stand beside it.
 BESIDE: dict[tuple[type, str], dict[str, Any]] = {
@@ -158,6 +167,10 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (History, "sine"): {"time": (), "factor": ()},
+    (Guide, "fixed"): {"point": None},
+    **{(Tendon, name): {"tension": None} for name in ("length", "shortening")},
+    (Tendon, "stiffness"): {"tension": None, "length": "50 mm"},
     (ContactPair, "kind"): {"of": ("body", "plain")},
     (ContactPair, "strength"): {"of": ("body", "plain"), "kind": "bonded"},
     (Object, "density"): {"motion": "free"},
@@ -175,8 +188,10 @@ def forms_of(model: type[Record], field: str) -> list[Any]:
     for base in model.__mro__:
         if (base, field) in SPECIAL:
             return list(SPECIAL[base, field])
-    if model is History:  # as many factors as instants
+    if model is History and field in ("time", "factor"):  # as many factors as instants
         return [("0 s",), (0.0,)] if field == "time" else [(1,), (1 / 3,)]
+    if model is History and field == "repeat":  # of one instant there is no cycle
+        return [1]
     info = model.model_fields[field]
     return forms(Annotated[(info.annotation, *info.metadata)] if info.metadata else info.annotation)
 

@@ -70,8 +70,13 @@ def placed(model, tables):
             if model in models_in(info.annotation):
                 many = "tuple" in str(info.annotation)[:20]
                 beside = forms.BESIDE.get((parent, name), {})
+                first = forms.FIRST.get((parent, name), ())
                 inside = [
-                    {**base(parent), **beside, info.alias or name: [table] if many else table}
+                    {
+                        **base(parent),
+                        **beside,
+                        info.alias or name: [*first, table] if many else table,
+                    }
                     for table in tables
                 ]
                 yield from placed(parent, [t for t in inside if forms.is_taken(parent, t)])

@@ -99,5 +99,5 @@ def test_bad_tables_are_refused_with_their_line(tmp_path, text, words):
 
 def test_a_column_that_is_none_is_refused(tmp_path):
     (tmp_path / "t.csv").write_text("time_s,left\n0,1\n")
-    with pytest.raises(DesignError, match='no column "lift".*"left"'):
+    with pytest.raises(DesignError, match=r'no column "lift".*"left"'):
         vs.History.from_table(tmp_path / "t.csv", "lift")
