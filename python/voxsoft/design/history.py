@@ -88,6 +88,8 @@ class History(Record):
         if self.sine is None and not self.time:
             hint = "give time and factor, or a sine"
             raise DesignError("", "has no instants", hint)
+        if self.time and not self.factor:
+            raise DesignError("factor", "is empty; at least 1 is needed", "give one for each time")
         if len(self.time) != len(self.factor):
             raise DesignError(
                 "",
