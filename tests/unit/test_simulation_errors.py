@@ -151,7 +151,7 @@ def test_so_is_the_tangent_of_a_gradient(monkeypatch):
     rubber = vs.NeoHookean(young=60 * kPa)
     box = design(parts=[vs.Part(shape=BOX, material=rubber)])
     result = simulate(box, method="statics")
-    module = sys.modules["voxsoft.simulation.gradient"]  # Its name is that of a function, too.
+    module = sys.modules["voxsoft.simulation.adjoint"]
     monkeypatch.setattr(module, "memory_limit", lambda: 10_000)
     with pytest.raises(SimulationError, match=r"takes about .* GB, and .*larger voxels"):
         vs.gradient(result, "max_displacement", "parts.0.material.young")
