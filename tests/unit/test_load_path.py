@@ -255,3 +255,23 @@ def test_tendons_pull_along_a_path_and_friction_makes_a_loop():
     rough = vs.follow(arm(0.5), "tendons[0].tension=0..0.2..0 N/9")
     there, back = (rough.results[number].probes["tip"][2] for number in (2, 6))
     assert there < 0.98 * rise[2] < 0.98 * back
+
+
+def test_supplies_that_change_over_time_are_refused_along_a_path():
+    hollow = vs.Box(size=("20 mm",) * 3) - vs.Box(size=("10 mm",) * 3, corner=("5 mm",) * 3)
+    filled = beam(
+        parts=[vs.Part(shape=hollow, material=RUBBER)],
+        loads=[vs.Gravity()],
+        probes={},
+        chambers={"room": {"point": ("10 mm",) * 3}},
+        supplies=[
+            {
+                "kind": "volume",
+                "chamber": "room",
+                "value": "0.1 mL",
+                "history": {"time": ["0 s", "1 s"], "factor": [0, 1]},
+            }
+        ],
+    )
+    with pytest.raises(SimulationError, match=r"supplies\[0\].history"):
+        vs.follow(filled, "time=0..1 s/3")

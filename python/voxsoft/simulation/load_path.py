@@ -174,6 +174,8 @@ def follow(
     asked = over if isinstance(over, Over) else _read(over, values, given)
     solver = given.solver if not settings else given.solver.replace(**settings)
     _check(given, solver)
+    if asked.key == TIME:
+        _check_supplies(given)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
     timed, instants = _joined(designs, asked, given)
     setup = Setup.of(timed, refine=solver.refine)
@@ -231,6 +233,17 @@ def _check(design: Design, solver: Solver) -> None:
             f'is "{solver.control}", which looks for the load by itself',
             'leave it out for a path over a value, or write control = "load"',
         )
+
+
+def _check_supplies(design: Design) -> None:
+    """Refuse a path over time of what flows: equilibria know supplies at their end alone."""
+    for index, supply in enumerate(design.supplies):
+        if supply.history is not None:
+            raise SimulationError(
+                f"supplies[{index}].history",
+                "is not followed by a path of equilibria",
+                "give the design an end_time, and motion over time fills the chamber",
+            )
 
 
 def _with_value(design: Design, over: Over, number: int) -> Design:
