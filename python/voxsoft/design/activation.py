@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from abc import abstractmethod
+from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, field_validator
 
@@ -12,7 +13,30 @@ from voxsoft.records import Record
 from voxsoft.units import Dimensionless
 
 
-class Strain(Record):
+class Activation(Record):
+    """A part that is longer or shorter by itself; a kind says what its value means."""
+
+    part: Name
+    value: Dimensionless
+
+    @field_validator("value")
+    @classmethod
+    def _leaves_something(cls, value: float) -> float:
+        if value <= -1.0:
+            raise DesignError("", f"is {value:g}: nothing would be left", "give more than -1")
+        return value
+
+    @property
+    @abstractmethod
+    def stretch(self) -> float:
+        """How many times as long the part is when it is free of stress."""
+
+    def share(self, part: float) -> Self:
+        """A part of it."""
+        return self.replace(value=part * self.value)
+
+
+class Strain(Activation):
     """A part that is so much longer along every axis when it is free of stress.
 
     Parameters
@@ -30,25 +54,14 @@ class Strain(Record):
     """
 
     kind: Literal["strain"] = "strain"
-    part: Name
-    value: Dimensionless
-
-    @field_validator("value")
-    @classmethod
-    def _leaves_something(cls, value: float) -> float:
-        return _check_change(value)
 
     @property
     def stretch(self) -> float:
-        """How many times as long it is."""
+        """How many times as long the part is when it is free of stress."""
         return 1.0 + self.value
 
-    def share(self, part: float) -> Strain:
-        """A part of it."""
-        return self.replace(value=part * self.value)
 
-
-class Swelling(Record):
+class Swelling(Activation):
     """A part whose volume is so much larger when it is free of stress.
 
     Parameters
@@ -66,28 +79,11 @@ class Swelling(Record):
     """
 
     kind: Literal["swelling"] = "swelling"
-    part: Name
-    value: Dimensionless
-
-    @field_validator("value")
-    @classmethod
-    def _leaves_something(cls, value: float) -> float:
-        return _check_change(value)
 
     @property
     def stretch(self) -> float:
-        """How many times as long it is."""
+        """How many times as long the part is when it is free of stress."""
         return float((1.0 + self.value) ** (1.0 / 3.0))
-
-    def share(self, part: float) -> Swelling:
-        """A part of it."""
-        return self.replace(value=part * self.value)
-
-
-def _check_change(value: float) -> float:
-    if value <= -1.0:
-        raise DesignError("", f"is {value:g}: nothing would be left", "give more than -1")
-    return value
 
 
 AnyActivation = Annotated[Strain | Swelling, Discriminator("kind")]
