@@ -128,11 +128,10 @@ def steepest(curve: Curve) -> tuple[float, float]:
 def predictions() -> list[Prediction]:
     """The pressures at which the actuator with walls of 10 mm reaches some angles.
 
-    Material: batches of EcoFlex 00-30 differ by a tenth in modulus, and pressures go with it.
-    Geometry: the tunnel is modeled twice as wide as it is, and chambers are cast within 0.2 mm of
-    their walls: 5 %. Numerics: walls have five voxels, the films' faces are of one size: 5 %, the
-    error bar of a chamber with such walls. Repeatability: samples scatter by 10 to 25 degrees
-    around the transition, which the steepest part of the curve makes 2 kPa.
+    All but repeatability is assumed, not derived. Material: a tenth of the modulus from batch to
+    batch, and pressures go with it. Geometry: 5 %, as the tunnel is modeled twice as wide as it is,
+    and chambers are cast within some 0.2 mm. Numerics: 5 % for voxels of one size. Repeatability:
+    samples scatter by 10 to 25 degrees around the transition; its steepest part makes 2 kPa of it.
     """
     simulated, real = from_start(predicted()), measured()
     found = []

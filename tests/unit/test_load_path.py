@@ -11,6 +11,8 @@ from voxsoft.cli.app import app
 from voxsoft.comparison import path_error_bars
 from voxsoft.design.contact import Contact
 from voxsoft.errors import DesignError, SimulationError
+from voxsoft.jobs import RunSpec, run_job
+from voxsoft.jobs.events import Progress
 from voxsoft.simulation import Over
 from voxsoft.units import kPa, mm
 
@@ -226,6 +228,38 @@ def test_the_command_writes_the_table_and_the_picture(tmp_path):
     assert (folder / "path.png").stat().st_size > 1000
     shown = CliRunner().invoke(app, arguments)
     assert "Along loads[1].value[2]" in shown.output
+
+
+def test_a_path_that_is_interrupted_leaves_its_equilibria(tmp_path):
+    def stop(event):
+        if isinstance(event, Progress) and event.of == "equilibria" and event.done == 2:
+            raise KeyboardInterrupt
+
+    spec = RunSpec(design=beam(), over="loads[1].value[2]=0..-20 mN/5")
+    with pytest.raises(KeyboardInterrupt):
+        run_job(spec, tmp_path / "run", stop)
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text())
+    assert [row["value"] for row in summary["path"]] == pytest.approx([0, -0.005])
+    assert len((tmp_path / "run" / "path.csv").read_text().splitlines()) == 3
+
+
+def test_a_path_is_repeated_as_it_was(tmp_path):
+    spec = RunSpec(design=beam(), over="loads[1].value[2]=0..-20 mN/3")
+    run_job(spec, tmp_path / "run")
+    answer = CliRunner().invoke(app, ["again", str(tmp_path / "run"), "--out", str(tmp_path / "b")])
+    assert answer.exit_code == 0, answer.output
+    first, second = ((tmp_path / name / "path.csv").read_text() for name in ("run", "b"))
+    assert first == second
+
+
+def test_chambers_have_columns():
+    hollow = vs.Box(size=("20 mm",) * 3) - vs.Box(size=("10 mm",) * 3, corner=("5 mm",) * 3)
+    part = vs.Part(shape=hollow, material=RUBBER)
+    filled = beam(parts=[part], loads=[vs.Pressure(value="2 kPa")], probes={})
+    columns = vs.follow(filled, "loads[0].value=0..2 kPa/3").columns
+    assert columns["cavity 0.pressure"] == ("pressure", pytest.approx((0.0, 1e3, 2e3)))
+    small, middle, large = columns["cavity 0.volume"][1]
+    assert small < middle < large
 
 
 def test_tendons_pull_along_a_path_and_friction_makes_a_loop():

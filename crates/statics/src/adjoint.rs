@@ -54,6 +54,31 @@ pub fn adjoint(
     memory: u64,
     stop: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<Vec<Vec3>>, AdjointError> {
+    let mut equilibrium = with_tangent(problem, positions, memory)?;
+    if stop() {
+        return Err(AdjointError::Cancelled);
+    }
+    let factor = equilibrium.system.factor(0.0)?;
+    let mut solve = |gradient: &Vec<Vec3>| {
+        let mut side = equilibrium.system.gather(gradient);
+        equilibrium
+            .system
+            .solve(&factor, &mut side, true, TOLERANCE, stop)?;
+        if side.iter().all(|x| x.is_finite()) {
+            Ok(equilibrium.system.spread(&side))
+        } else {
+            Err(AdjointError::Singular)
+        }
+    };
+    gradients.iter().map(&mut solve).collect()
+}
+
+/// An equilibrium under all loads with its tangent assembled, which may take `memory` bytes.
+pub(crate) fn with_tangent<'a>(
+    problem: &'a Problem,
+    positions: &[Vec3],
+    memory: u64,
+) -> Result<Equilibrium<'a>, AdjointError> {
     let means = Means {
         solver: LinearSolver::Auto,
         memory,
@@ -71,22 +96,7 @@ pub fn adjoint(
         None,
         &mut unused,
     );
-    if stop() {
-        return Err(AdjointError::Cancelled);
-    }
-    let factor = equilibrium.system.factor(0.0)?;
-    let mut solve = |gradient: &Vec<Vec3>| {
-        let mut side = equilibrium.system.gather(gradient);
-        equilibrium
-            .system
-            .solve(&factor, &mut side, true, TOLERANCE, stop)?;
-        if side.iter().all(|x| x.is_finite()) {
-            Ok(equilibrium.system.spread(&side))
-        } else {
-            Err(AdjointError::Singular)
-        }
-    };
-    gradients.iter().map(&mut solve).collect()
+    Ok(equilibrium)
 }
 
 impl From<FactorError> for AdjointError {

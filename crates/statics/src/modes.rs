@@ -9,11 +9,7 @@ use faer::{Mat, Side};
 use voxsoft_solid::Problem;
 use voxsoft_solid::vector::Vec3;
 
-use crate::adjoint::AdjointError;
-use crate::equilibrium::Equilibrium;
-use crate::point::Point;
-use crate::settings::LinearSolver;
-use crate::system::Means;
+use crate::adjoint::{AdjointError, with_tangent};
 
 /// The relative change of `ω²` in a step at which a mode has converged.
 const CONVERGED: f64 = 1e-9;
@@ -40,25 +36,9 @@ pub fn modes(
     memory: u64,
     stop: &mut dyn FnMut() -> bool,
 ) -> Result<Vec<Mode>, AdjointError> {
-    let means = Means {
-        solver: LinearSolver::Auto,
-        memory,
-    };
-    let mut equilibrium = Equilibrium::new(problem, means)?;
-    let full = Point::all(1.0);
-    equilibrium.update_floor(positions, full)?;
-    equilibrium.follow_contact(positions)?;
+    let mut equilibrium = with_tangent(problem, positions, memory)?;
     let system = &mut equilibrium.system;
     let size = system.size();
-    let mut unused = vec![0.0; size];
-    system.assemble(
-        problem,
-        positions,
-        &full.factor_of(),
-        None,
-        None,
-        &mut unused,
-    );
     let factor = system.factor_positive(0.0)?;
     let lumped: Vec<Vec3> = problem.body().masses().iter().map(|&m| [m; 3]).collect();
     let masses = system.gather(&lumped);

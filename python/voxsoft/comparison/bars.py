@@ -30,8 +30,8 @@ from voxsoft.simulation.touching import has_contact
 
 #: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
 FINER_UP_TO: Final = 20_000
-#: The same with contact, whose steps take ten times as long.
-FINER_UP_TO_WITH_CONTACT: Final = 2_000
+#: The same where steps take ten times as long: with contact, tendons that rub, and supplies.
+FINER_UP_TO_IF_SLOW: Final = 2_000
 #: Voxels that an accuracy may take.
 ACCURATE_UP_TO: Final = 400_000
 #: Two sizes hold the same body if volumes are the same to this part: those of cut voxels follow
@@ -185,7 +185,9 @@ class _Search:
         """From one other size."""
         design = self.own.result.design
         asked = design.solver.error
-        limit = FINER_UP_TO_WITH_CONTACT if has_contact(design) else FINER_UP_TO
+        rubs = any(tendon.friction > 0.0 for tendon in design.tendons)
+        slow = has_contact(design) or rubs or bool(design.supplies)
+        limit = FINER_UP_TO_IF_SLOW if slow else FINER_UP_TO
         small = 8 * self.own.voxels <= limit
         reasons = []
         if asked == "coarser" or (asked == "auto" and not small):

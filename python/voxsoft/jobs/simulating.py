@@ -68,10 +68,21 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
     assert spec.over is not None  # asked by the caller
     over = simulation.Over.read(spec.over)
 
-    def step(found: int, asked: int) -> None:
-        notify(Progress(found, asked, "equilibria"))
+    followed: simulation.LoadPath | None = None
 
-    path = simulation.follow(design, over, step=step)
+    def step(path: simulation.LoadPath) -> None:
+        nonlocal followed
+        followed = path
+        notify(Progress(len(path.results), len(over.values), "equilibria"))
+
+    try:
+        path = simulation.follow(design, over, step=step)
+    except BaseException:
+        # Whatever ends the search, Ctrl-C too, leaves the equilibria that were found.
+        if followed is not None:
+            _write(spec, followed.results[-1], folder, path_summary(followed))
+            files.write_path(followed, (), folder)
+        raise
     result = path.results[-1]
     _write(spec, result, folder, path_summary(path))
     files.write_path(path, (), folder)

@@ -38,9 +38,6 @@ _ALONG: Final = ("loads", "tendons", "clamps", "objects")
 #: Values are the same to this part of the largest.
 _SAME: Final = 1e-9
 
-#: Called with (number of equilibria found, number asked for).
-Step = Callable[[int, int], None]
-
 
 @dataclass(frozen=True)
 class LoadPath:
@@ -104,6 +101,8 @@ class LoadPath:
             name = cavity.name or f"cavity {index}"
             volumes = tuple(result.cavity_volumes[index] for result in self.results)
             found[f"{name}.volume"] = ("volume", volumes)
+            pressures = tuple(float(result.cavity_pressures[index]) for result in self.results)
+            found[f"{name}.pressure"] = ("pressure", pressures)
         return found
 
     def summary(self) -> dict[str, Any]:
@@ -126,7 +125,7 @@ def follow(
     values: Sequence[float | str] | None = None,
     *,
     progress: ProgressCallback | None = None,
-    step: Step | None = None,
+    step: Callable[[LoadPath], None] | None = None,
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> LoadPath:
     """Follow equilibria along the values of a load, a motion or a parameter of them.
@@ -146,7 +145,7 @@ def follow(
     progress
         As for :func:`voxsoft.simulate`.
     step
-        Called with (number of equilibria found, number asked for) after each.
+        Called after each equilibrium with the path so far.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -207,11 +206,12 @@ def follow(
         start, before = Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)
         results.append(replace(whole, design=designs[number]))
+        path = LoadPath(given.replace(solver=solver), asked, tuple(results))
         if step is not None:
-            step(len(results), len(instants))
+            step(path)
         if result.status != "ok":
             break
-    return LoadPath(given.replace(solver=solver), asked, tuple(results))
+    return path
 
 
 def _read(over: str, values: Sequence[float | str] | None, design: Design) -> Over:
@@ -227,7 +227,7 @@ def _check(design: Design, solver: Solver) -> None:
             "asks for motion over time, and a path is made of equilibria",
             "leave out end_time and other settings of motion",
         )
-    if solver.control not in (None, "auto", "load"):
+    if solver.control not in (None, "load"):
         raise SimulationError(
             "solver.control",
             f'is "{solver.control}", which looks for the load by itself',
