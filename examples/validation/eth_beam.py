@@ -196,8 +196,8 @@ def predictions() -> list[Prediction]:
     """The sag under 52 g and the frequencies of the swinging about both states.
 
     Material: the modulus follows the sag under self weight, which repeats within 0.1 mm, as do the
-    two runs. Geometry, assumed: half a millimeter of where the weight sits on the edge, and a tenth of the
-    stems' mass, which nobody weighed: 2 %. Numerics: elements of 2.5 mm instead of 5 mm.
+    two runs. Geometry, assumed: half a millimeter of where the weight sits on the edge, and a tenth
+    of the stems' mass, which nobody weighed: 2 %. Numerics: elements of 2.5 mm instead of 5 mm.
     Repeatability: 0.2 mm with the weight, and the two runs of each swinging.
     """
     coarse, fine = outcome(1), outcome(2)
