@@ -292,15 +292,15 @@ class Mesh:
         """
         cavities = []
         for cavity, (numbers, parts) in zip(self.cavities, voids, strict=True):
-            found = self._voxel_corners(numbers)[:, tets].reshape(-1, 4)
+            found = self.voxel_corners(numbers)[:, tets].reshape(-1, 4)
             factors = parts.ravel()
             volume = cavity.volume + float(factors @ tet_volumes(self.vertices, found))
             changed = replace(cavity, volume=volume, void_tets=found, void_parts=factors)
             cavities.append(changed)
         return replace(self, cavities=tuple(cavities))
 
-    def _voxel_corners(self, numbers: NDArray[np.integer]) -> NDArray[np.int32]:
-        """The corners of voxels along the axes, (k, 8); see :meth:`with_voids` for their order."""
+    def voxel_corners(self, numbers: NDArray[np.integer]) -> NDArray[np.int32]:
+        """Return the corners of voxels, (k, 8), in the order of :meth:`with_voids`."""
         blocks = self.tets.reshape(-1, 20)[numbers]
         points = self.vertices[blocks]
         low, high = points.min(axis=1, keepdims=True), points.max(axis=1, keepdims=True)
@@ -308,6 +308,58 @@ class Mesh:
         corners = np.empty((len(blocks), 8), dtype=np.int32)
         corners[np.arange(len(blocks))[:, None], places] = blocks
         return corners
+
+    def voxel_gradients(
+        self, numbers: NDArray[np.integer]
+    ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+        """Return gradients of the trilinear functions of voxels, integrated over their material.
+
+        Parameters
+        ----------
+        numbers : ndarray of int, shape (k,)
+            Which voxels.
+
+        Returns
+        -------
+        corners : ndarray of int32, shape (k, 8)
+            Their corners.
+        gradients : ndarray of float64, shape (k, 8, 3)
+            ∫ ∇Nₐ dV for each of them [m²].
+
+        Raises
+        ------
+        MeshError
+            The mesh is not made of voxels.
+
+        Examples
+        --------
+        >>> from voxsoft.voxels import Voxels
+        >>> mesh = Voxels.from_array([[[1]]], voxel_size=0.2).mesh()
+        >>> corners, gradients = mesh.voxel_gradients(np.array([0]))
+        >>> gradients[0, 7].round(12).tolist()
+        [0.01, 0.01, 0.01]
+        """
+        if self.tet_voxel is None or self.voxel_size is None:
+            raise MeshError("mesh", "needs to be made of voxels")
+        filled = np.ones(len(numbers)) if self.fractions is None else self.fractions[numbers]
+        where = _ALL_OVER if self.moments is None else self.moments[numbers]
+        where = np.broadcast_to(np.asarray(where, dtype=np.float64), (len(numbers), 9))
+        mean, products = where[:, None, :3], where[:, None, 6:]
+        sign = _CORNER_SIGNS
+        # dN/dξ = s_ξ (1 + s_η η)(1 + s_ζ ζ) / 8 on a cube of side 2, its mean over the material.
+        others = [(1, 2), (2, 0), (0, 1)]
+        slopes = [
+            sign[:, axis]
+            * (
+                1.0
+                + sign[:, b] * mean[..., b]
+                + sign[:, c] * mean[..., c]
+                + sign[:, b] * sign[:, c] * products[..., axis]
+            )
+            for axis, (b, c) in enumerate(others)
+        ]
+        scale = filled[:, None, None] * self.voxel_size**2 / 4.0
+        return self.voxel_corners(numbers), scale * np.stack(slopes, axis=-1)
 
     @property
     def each_body(self) -> tuple[BodyMesh, ...]:
@@ -397,6 +449,8 @@ _QUALITY_BYTES_PER_TET = 120
 
 #: Where the material of a full voxel is.
 _ALL_OVER: Final = (0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0)
+#: The signs of the corners of a voxel along x, y, z, in the order of :meth:`Mesh.with_voids`.
+_CORNER_SIGNS: Final = np.array([[c >> 2 & 1, c >> 1 & 1, c & 1] for c in range(8)]) * 2.0 - 1.0
 
 _DTYPES: dict[str, type[np.generic]] = {
     "vertices": np.float64,

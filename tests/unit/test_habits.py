@@ -95,7 +95,7 @@ def test_signatures_in_words():
         "(radius: Length, *, center: (Length, Length, Length) = (0.0, 0.0, 0.0))"
     )
     assert "shape: str | Shape | None = None" in str(inspect.signature(vs.Probe))
-    assert "loads: [Gravity | Pressure | Force | Traction, ...] = ()" in str(
+    assert "loads: [Gravity | Pressure | Force | Traction | MagneticField, ...] = ()" in str(
         inspect.signature(vs.Design)
     )
 

@@ -5,7 +5,7 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.design import Body, Contact, Objective, Strain, Swelling
+from voxsoft.design import Body, Contact, Objective, Strain, Swelling, Thermal
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, gradient
 from voxsoft.units import kPa, mm
@@ -177,3 +177,24 @@ def test_lattices_and_paths_in_contact_are_refused():
         vs.simulate(bilayer(0.1, parts=parts))
     with pytest.raises(DesignError, match="path of activations"):
         vs.follow(bilayer(0.1, contact=Contact()), "activations[0].value=0..0.1/3")
+
+
+def test_a_warm_layer_bends_as_timoshenko_says():
+    # 3e-4 1/K of silicone, 40 K: 1.2 %.
+    warm = Thermal(part="upper", value="333.15 K", expansion="3e-4 1/K")
+    assert warm.stretch == pytest.approx(1.012)
+    result = vs.simulate(bilayer(0.0, activations=[warm]))
+    assert result.metric("curvature", probe="tip", base="base", axis="y") == pytest.approx(
+        timoshenko(0.012, 1.0), rel=0.02
+    )
+    half = warm.share(0.5)
+    assert (half.value, half.reference) == (313.15, 293.15)
+
+
+def test_what_no_body_can_be_heated_to_is_refused():
+    with pytest.raises(DesignError, match="value"):
+        Thermal(part="upper", value="-5 K", expansion="3e-4 1/K")
+    with pytest.raises(DesignError, match="does not count from zero"):
+        Thermal(part="upper", value="80 °C", expansion="3e-4 1/K")
+    with pytest.raises(DesignError, match="leaves nothing"):
+        Thermal(part="upper", value="300 K", expansion="-1 1/K")

@@ -1,6 +1,6 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
-from voxsoft.design.activation import Strain, Swelling
+from voxsoft.design.activation import Strain, Swelling, Thermal
 from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
@@ -10,7 +10,7 @@ from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
-from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, Pressure, Traction
+from voxsoft.design.load import AnyLoad, Floor, Force, Gravity, MagneticField, Pressure, Traction
 from voxsoft.design.model import Design
 from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
@@ -51,6 +51,7 @@ __all__ = [
     "History",
     "Layer",
     "Liquid",
+    "MagneticField",
     "MassSupply",
     "Motion",
     "Object",
@@ -69,6 +70,7 @@ __all__ = [
     "Swelling",
     "Symmetry",
     "Tendon",
+    "Thermal",
     "Traction",
     "Valve",
     "VolumeSupply",

@@ -5,18 +5,32 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import Discriminator, field_validator
+from pydantic import Discriminator, field_validator, model_validator
 
 from voxsoft.design.operands import Name
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
-from voxsoft.units import Dimensionless
+from voxsoft.units import Dimensionless, PositiveTemperature, ThermalExpansion
 
 
 class Activation(Record):
     """A part that is longer or shorter by itself; a kind says what its value means."""
 
     part: Name
+
+    @property
+    @abstractmethod
+    def stretch(self) -> float:
+        """How many times as long the part is when it is free of stress."""
+
+    @abstractmethod
+    def share(self, part: float) -> Self:
+        """A part of it."""
+
+
+class _Growth(Activation):
+    """An activation whose value is a change of size."""
+
     value: Dimensionless
 
     @field_validator("value")
@@ -26,17 +40,12 @@ class Activation(Record):
             raise DesignError("", f"is {value:g}: nothing would be left", "give more than -1")
         return value
 
-    @property
-    @abstractmethod
-    def stretch(self) -> float:
-        """How many times as long the part is when it is free of stress."""
-
     def share(self, part: float) -> Self:
         """A part of it."""
         return self.replace(value=part * self.value)
 
 
-class Strain(Activation):
+class Strain(_Growth):
     """A part that is so much longer along every axis when it is free of stress.
 
     Parameters
@@ -44,8 +53,7 @@ class Strain(Activation):
     part
         The name of the part.
     value
-        The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks. Of heat it is
-        the coefficient of expansion times the change of temperature.
+        The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks.
 
     Examples
     --------
@@ -61,7 +69,7 @@ class Strain(Activation):
         return 1.0 + self.value
 
 
-class Swelling(Activation):
+class Swelling(_Growth):
     """A part whose volume is so much larger when it is free of stress.
 
     Parameters
@@ -86,4 +94,46 @@ class Swelling(Activation):
         return float((1.0 + self.value) ** (1.0 / 3.0))
 
 
-AnyActivation = Annotated[Strain | Swelling, Discriminator("kind")]
+class Thermal(Activation):
+    """A part that is so warm, and grows with its temperature.
+
+    Parameters
+    ----------
+    part
+        The name of the part.
+    value
+        Its temperature in kelvin.
+    expansion
+        The coefficient of linear expansion; 3e-4 1/K of silicone rubber.
+    reference
+        The temperature at which it has the size of the design; default 293.15 K, which is 20 °C.
+
+    Examples
+    --------
+    >>> round(Thermal(part="upper", value="353.15 K", expansion="3e-4 1/K").stretch, 12)
+    1.018
+    """
+
+    kind: Literal["thermal"] = "thermal"
+    value: PositiveTemperature
+    expansion: ThermalExpansion
+    reference: PositiveTemperature = 293.15
+
+    @model_validator(mode="after")
+    def _leaves_something(self) -> Self:
+        if self.stretch <= 0.0:
+            what = f"{self.expansion:g} 1/K over {self.value - self.reference:g} K leaves nothing"
+            raise DesignError("expansion", what, "give the coefficient of linear expansion in 1/K")
+        return self
+
+    @property
+    def stretch(self) -> float:
+        """How many times as long the part is when it is free of stress."""
+        return 1.0 + self.expansion * (self.value - self.reference)
+
+    def share(self, part: float) -> Self:
+        """A part of the way from the reference."""
+        return self.replace(value=self.reference + part * (self.value - self.reference))
+
+
+AnyActivation = Annotated[Strain | Swelling | Thermal, Discriminator("kind")]

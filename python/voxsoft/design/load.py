@@ -1,4 +1,4 @@
-"""Loads: gravity, cavity pressure, forces, tractions; and the floor."""
+"""Loads: gravity, cavity pressure, forces, tractions, magnetic fields; and the floor."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from voxsoft.units import Acceleration, Length, Vector
 
 Forces = tuple[units.Force, units.Force, units.Force]
 Stresses = tuple[units.Pressure, units.Pressure, units.Pressure]
+FluxDensity = tuple[units.MagneticField, units.MagneticField, units.MagneticField]
 
 
 class Gravity(Record):
@@ -129,7 +130,34 @@ class Traction(Record):
     history: History | None = None
 
 
-AnyLoad = Annotated[Gravity | Pressure | Force | Traction, Field(discriminator="kind")]
+class MagneticField(Record):
+    """A uniform magnetic field, which pulls and turns the parts that have a remanence.
+
+    The magnets are hard: their magnetization is that of the undeformed part, carried along, and
+    their own field is left out.
+
+    Parameters
+    ----------
+    value
+        Components x, y, z of the flux density.
+    history
+        The factor over time; default: constant. A field that turns is two loads, each with the
+        history of its direction.
+
+    Examples
+    --------
+    >>> MagneticField(value=(0, 0, "20 mT")).value
+    (0.0, 0.0, 0.02)
+    """
+
+    kind: Literal["magnetic_field"] = "magnetic_field"
+    value: FluxDensity
+    history: History | None = None
+
+
+AnyLoad = Annotated[
+    Gravity | Pressure | Force | Traction | MagneticField, Field(discriminator="kind")
+]
 
 
 def scaled(load: AnyLoad, factor: float) -> AnyLoad:

@@ -14,6 +14,7 @@ from pydantic import (
     Tag,
 )
 
+from voxsoft.design.load import FluxDensity
 from voxsoft.design.operands import Name, ShapeOrName, name_or_table
 from voxsoft.materials import AnyMaterial, Fiber, is_card_path
 from voxsoft.records import Record, check_name
@@ -49,6 +50,10 @@ class Part(Record):
     fibers
         Families of fibers, up to 10, spread over the part, whose material must then be a
         hyperelastic one. Default: none.
+    remanence
+        Components x, y, z of the flux density that a hard magnet keeps, along the axes of its body,
+        before it deforms; 0.05 to 0.2 T in rubber filled with powder of neodymium-iron-boron.
+        Default: no magnet. It takes a load ``magnetic_field`` to act.
     name
         What results call it; default: the shape's name.
     body
@@ -66,6 +71,7 @@ class Part(Record):
         Discriminator(name_or_table),
     ]
     fibers: tuple[Fiber, ...] = Field((), max_length=10)
+    remanence: FluxDensity | None = None
     name: Name | None = None
     body: Name | None = None
 

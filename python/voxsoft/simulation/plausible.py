@@ -30,6 +30,10 @@ _SOFTEST: Final = 1000.0
 _LIGHTEST, _DENSEST = 10.0, 25_000.0
 #: m/s²: a hundred times the weight on earth; 9810 is that in mm/s².
 _STRONGEST: Final = 1000.0
+#: T: sintered neodymium-iron-boron keeps up to 1.5; 100 is 100 mT without its unit.
+_STRONGEST_MAGNET: Final = 2.0
+#: T: the strongest magnet of a hospital has 10.
+_STRONGEST_FIELD: Final = 20.0
 
 _METERS: Final = 'lengths in Python are in m: write 2*mm or "2 mm"'
 
@@ -59,6 +63,7 @@ def implausible_numbers(body: object, mesh: Mesh, mass: float) -> Iterator[Diagn
     if isinstance(body, Design):
         yield from _of_loads(body)
         yield from _of_materials(body)
+        yield from _of_magnets(body)
 
 
 def _of_size(mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
@@ -99,6 +104,23 @@ def _of_materials(design: Design) -> Iterator[Diagnostic]:
         if not _LIGHTEST <= material.density <= _DENSEST:
             what = f"has a density of {format_quantity(material.density, 'density')}"
             yield _warning(where, what, 'densities are in kg/m^3: silicone has "1070 kg/m^3"')
+
+
+def _of_magnets(design: Design) -> Iterator[Diagnostic]:
+    fields = {i: r for i, r in enumerate(readings(design)) if r.quantity == "magnetic field"}
+    for index, part in enumerate(design.parts):
+        strength = float(np.linalg.norm(part.remanence or 0.0))
+        where = f"parts[{index}].remanence"
+        if strength and not fields:
+            hint = 'add a load of the kind "magnetic_field"'
+            yield _warning(where, "there is no magnetic field that acts on it", hint)
+        if strength > _STRONGEST_MAGNET:
+            hint = "it is the flux density that stays without a field: 0.1 T of filled silicone"
+            yield _warning(where, f"{strength:g} T is more than any magnet keeps", hint)
+    for index, field in fields.items():
+        if field.size > _STRONGEST_FIELD:
+            what = f"{field.size:g} T is stronger than any coil of a laboratory"
+            yield _warning(f"loads[{index}].value", what, "give the flux density in T")
 
 
 def _warning(where: str, what: str, hint: str) -> Diagnostic:

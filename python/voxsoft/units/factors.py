@@ -32,5 +32,9 @@ GPa: Final = 1e9
 bar: Final = 1e5
 psi: Final = 6894.757293168361
 
+mT: Final = 1e-3
+T: Final = 1.0
+K: Final = 1.0
+
 deg: Final = pi / 180.0
 rad: Final = 1.0

@@ -8,20 +8,22 @@ from typing import Final, NamedTuple
 
 
 class Dimension(NamedTuple):
-    """Exponents of length, mass, time and angle.
+    """Exponents of length, mass, time, angle, electric current and temperature.
 
     An angle has a dimension of its own here: a bare number must not pass for radians.
 
     Examples
     --------
     >>> KINDS["force"].dimension
-    Dimension(length=1, mass=1, time=-2, angle=0)
+    Dimension(length=1, mass=1, time=-2, angle=0, current=0, temperature=0)
     """
 
     length: int = 0
     mass: int = 0
     time: int = 0
     angle: int = 0
+    current: int = 0
+    temperature: int = 0
 
     def times(self, other: Dimension, power: int = 1) -> Dimension:
         """Dimension of a product with `other` raised to `power`."""
@@ -88,6 +90,9 @@ _ALL: Final = (
     Kind("conductance", Dimension(4, -1, 1), ("L/s/bar", "m^3/s/Pa")),
     Kind("viscosity", Dimension(-1, 1, -1), ("Pa*s",)),
     Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
+    Kind("magnetic field", Dimension(mass=1, time=-2, current=-1), ("mT", "T")),
+    Kind("temperature", Dimension(temperature=1), ("K",)),
+    Kind("thermal expansion", Dimension(temperature=-1), ("1/K",)),
     Kind("number", Dimension(), ()),
 )
 

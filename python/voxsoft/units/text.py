@@ -45,6 +45,8 @@ COMMON_UNITS: Final[dict[str, Dimension]] = {
     **dict.fromkeys(("mL", "L"), _VOLUME),
     **dict.fromkeys(("deg", "rad"), _ANGLE),
     "Hz": _RATE,
+    **dict.fromkeys(("mT", "T"), KINDS["magnetic field"].dimension),
+    "K": KINDS["temperature"].dimension,
 }
 
 
@@ -332,18 +334,28 @@ def _ask_pint(name: str) -> tuple[Decimal, Dimension] | str:
     registry = _pint_registry()
     try:
         base = registry.Quantity(1.0, name).to_base_units()
+        start = registry.Quantity(0.0, name).to_base_units().magnitude
     except (pint.PintError, AssertionError, AttributeError, ValueError, TypeError):
         return f'there is no unit "{name}"'
+    if start != 0:
+        return f'"{name}" does not count from zero; write kelvin (80 °C are "353.15 K")'
     dimension = Dimension()
     exponents: dict[str, Any] = dict(base.unit_items())
     for base_name, exponent in exponents.items():
         if base_name not in _BASE_UNITS or exponent != int(exponent):
-            return f'"{name}" is not a mechanical unit'
+            return f'"{name}" is not a unit of mechanics, magnetism or heat'
         dimension = dimension.times(_BASE_UNITS[base_name], int(exponent))
     return Decimal(repr(float(base.magnitude))), dimension
 
 
-_BASE_UNITS: Final = {"meter": _LENGTH, "kilogram": _MASS, "second": _TIME, "radian": _ANGLE}
+_BASE_UNITS: Final = {
+    "meter": _LENGTH,
+    "kilogram": _MASS,
+    "second": _TIME,
+    "radian": _ANGLE,
+    "ampere": Dimension(current=1),
+    "kelvin": Dimension(temperature=1),
+}
 
 
 @cache

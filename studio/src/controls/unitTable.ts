@@ -8,11 +8,11 @@ export interface Unit {
   readonly dimension: Dimension;
 }
 
-const LENGTH: Dimension = [1, 0, 0, 0];
-const VOLUME: Dimension = [3, 0, 0, 0];
-const TIME: Dimension = [0, 0, 1, 0];
-const PRESSURE: Dimension = [-1, 1, -2, 0];
-const ENERGY: Dimension = [2, 1, -2, 0];
+const LENGTH: Dimension = [1, 0, 0, 0, 0, 0];
+const VOLUME: Dimension = [3, 0, 0, 0, 0, 0];
+const TIME: Dimension = [0, 0, 1, 0, 0, 0];
+const PRESSURE: Dimension = [-1, 1, -2, 0, 0, 0];
+const ENERGY: Dimension = [2, 1, -2, 0, 0, 0];
 
 type Rows = Readonly<Record<string, readonly [number, Dimension]>>;
 

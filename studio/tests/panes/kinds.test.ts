@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 import type { Amounts } from "../../src/controls/formula";
 import { formatKind, readWritten, writeValue } from "../../src/controls/kinds";
 
-const PARAMETERS: Amounts = { wall: { value: 0.005, dimension: [1, 0, 0, 0] } };
+const PARAMETERS: Amounts = { wall: { value: 0.005, dimension: [1, 0, 0, 0, 0, 0] } };
 
 describe("readWritten", () => {
   it("completes a bare number with the unit of its kind", () => {

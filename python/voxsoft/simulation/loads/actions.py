@@ -83,13 +83,7 @@ class Acceleration(Action):
 
         An arrow that ends there stands outside of the body: in its middle the head would be hidden.
         """
-        direction = self.direction
-        middle: Floats = rest.mean(axis=0)
-        behind = np.where(direction > 0.0, middle - rest.min(axis=0), rest.max(axis=0) - middle)
-        moves = np.abs(direction) > 1e-9  # along other axes the line never leaves the bounds
-        if moves.any():
-            middle -= direction * float(np.min(behind[moves] / np.abs(direction[moves])))
-        return middle, direction
+        return _into_bounds(rest, self.direction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +152,26 @@ class VertexForces(Action):
     def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
         """From the middle of the vertices, along the sum."""
         return rest[self.vertices].mean(axis=0), _unit(self.value.sum(axis=0))
+
+
+@dataclass(frozen=True, eq=False)
+class FieldForces(VertexForces):
+    """Dead forces on vertices that a field, (3,), brings about."""
+
+    field: Floats = field(kw_only=True)
+
+    def arrow(self, rest: Floats) -> tuple[Floats, Floats]:
+        """Where a line along the field through the middle of the body comes into its bounds."""
+        return _into_bounds(rest, _unit(self.field))
+
+
+def _into_bounds(rest: Floats, direction: Floats) -> tuple[Floats, Floats]:
+    middle: Floats = rest.mean(axis=0)
+    behind = np.where(direction > 0.0, middle - rest.min(axis=0), rest.max(axis=0) - middle)
+    moves = np.abs(direction) > 1e-9  # along other axes the line never leaves the bounds
+    if moves.any():
+        middle -= direction * float(np.min(behind[moves] / np.abs(direction[moves])))
+    return middle, direction
 
 
 def _unit(vector: Floats) -> Floats:

@@ -9,18 +9,22 @@ from typing import Generic, Literal, Protocol, TypeVar
 
 import numpy as np
 
-from voxsoft.design import History, Region
+from voxsoft.design import Design, History, Region
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.loads.actions import Action, Vertices
 
-Quantity = Literal["acceleration", "force", "pressure"]
+Quantity = Literal["acceleration", "force", "pressure", "magnetic field"]
 Triple = tuple[float, float, float]
 L = TypeVar("L")
 
 
 class LoadedBody(Protocol):
     """What loads are laid on: a :class:`~voxsoft.simulation.Setup`."""
+
+    @property
+    def design(self) -> Design:
+        """What it is made from."""
 
     @property
     def mesh(self) -> Mesh:

@@ -8,18 +8,20 @@ from typing import Any, Final
 
 import numpy as np
 
-from voxsoft.design import Force, Gravity, Pressure, Traction
+from voxsoft.design import Force, Gravity, MagneticField, Pressure, Traction
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.errors import DesignError
 from voxsoft.simulation.loads.actions import (
     Acceleration,
     Action,
+    FieldForces,
     SharedForce,
     SurfacePressure,
     SurfaceTraction,
     Triangles,
 )
 from voxsoft.simulation.loads.kind import LoadedBody, LoadKind, LoadReading
+from voxsoft.simulation.loads.magnets import magnet_forces
 
 
 class GravityKind(LoadKind[Gravity]):
@@ -105,6 +107,22 @@ def _triangles(load: Traction, body: LoadedBody, where: str) -> Triangles:
     return triangles
 
 
+class MagneticFieldKind(LoadKind[MagneticField]):
+    """What a magnetic field does."""
+
+    def read(self, load: MagneticField) -> LoadReading:
+        """Say what it is."""
+        return LoadReading(
+            load.kind, "magnetic field", "magnetic field", load.value, load.value, load.history
+        )
+
+    def actions(self, load: MagneticField, body: LoadedBody, where: str) -> list[Action]:
+        """Say what it does."""
+        field = np.asarray(load.value)
+        vertices, forces = magnet_forces(body.design, body.mesh, field, where)
+        return [FieldForces(vertices, forces, field=field)]
+
+
 #: What each model of a load means.
 KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
     {
@@ -112,5 +130,6 @@ KINDS: Final[Mapping[type[object], LoadKind[Any]]] = MappingProxyType(
         Pressure: PressureKind(),
         Force: ForceKind(),
         Traction: TractionKind(),
+        MagneticField: MagneticFieldKind(),
     }
 )
