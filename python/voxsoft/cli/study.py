@@ -39,6 +39,14 @@ Confirm = Annotated[
         help="Solve the best N designs again, as rubber and on finer voxels, with error bars.",
     ),
 ]
+AlongPath = Annotated[
+    str | None,
+    typer.Option(
+        "--over",
+        metavar="KEY=RANGE",
+        help="Follow each design along a path: 'loads[0].value=0..30 kPa/8'.",
+    ),
+]
 Out = Annotated[
     Path | None, typer.Option("--out", "-o", help="Study folder; default: runs/NAME-VERB.")
 ]
@@ -51,6 +59,7 @@ def sweep(
     workers: Workers = None,
     scheduler: Scheduler = None,
     storage: Storage = None,
+    over: AlongPath = None,
     confirm: Confirm = 0,
     json: Json = False,
 ) -> None:
@@ -63,7 +72,7 @@ def sweep(
         sets or [],
         out,
         "sweep",
-        {"sampler": "grid", "workers": workers, "confirm": confirm},
+        {"sampler": "grid", "workers": workers, "over": over, "confirm": confirm},
         scheduler=scheduler,
         storage=storage,
         json=json,
@@ -86,6 +95,7 @@ def optimize(
     scheduler: Scheduler = None,
     storage: Storage = None,
     seed: Seed = 0,
+    over: AlongPath = None,
     confirm: Confirm = 0,
     json: Json = False,
 ) -> None:
@@ -98,6 +108,7 @@ def optimize(
         "budget": None if sampler == "grid" else budget,
         "seed": seed,
         "workers": workers,
+        "over": over,
         "confirm": confirm,
     }
     _study(

@@ -22,6 +22,7 @@ from voxsoft.records import Record
 from voxsoft.units import Proportion, read_from_file
 
 Axis = Literal["x", "y", "z"]
+Along = Literal["last", "largest", "smallest", "mean"]
 
 
 class Objective(Record):
@@ -51,6 +52,9 @@ class Objective(Record):
         body with itself. Default: the only object there is.
     tendon
         The name of a tendon, for a metric of one. Default: the only one there is.
+    along
+        Which number of a path of equilibria counts: ``"last"``, ``"largest"``, ``"smallest"`` or
+        ``"mean"``. Default: the last. Without a path there is only one.
 
     Examples
     --------
@@ -68,6 +72,7 @@ class Objective(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
+    along: Along | None = None
     accuracy: Proportion | None = None
 
     @model_validator(mode="after")
@@ -94,7 +99,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object, tendon, accuracy
+    probe, base, axis, cavity, percentile, object, tendon, along, accuracy
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -115,6 +120,7 @@ class Constraint(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
+    along: Along | None = None
     accuracy: Proportion | None = None
     min: AnyQuantity | None = None
     max: AnyQuantity | None = None

@@ -10,7 +10,7 @@ from voxsoft.comparison import Confirmation
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.figures import save_figure
 from voxsoft.files.run_folder import make_folder, provenance, write_json
-from voxsoft.plot import plot_history, plot_pareto, plot_scatter
+from voxsoft.plot import plot_history, plot_pareto, plot_paths, plot_scatter
 from voxsoft.study import StudyResult
 
 
@@ -28,7 +28,8 @@ def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Pat
     -------
     list of Path
         The files that were written: the table (also as ``table.parquet`` where pyarrow is
-        installed), the summary, ``scatter.png`` and ``history.png``, and ``pareto.png`` for
+        installed), ``paths.csv`` and ``paths.png`` of a study along a path, the summary,
+        ``scatter.png`` and ``history.png``, and ``pareto.png`` for
         two or more objectives. Figures need at least one finished trial.
 
     Raises
@@ -43,6 +44,11 @@ def write_study(result: StudyResult, folder: str | os.PathLike[str]) -> list[Pat
     if find_spec("pyarrow") is not None:
         result.to_parquet(folder / "table.parquet")
         written.append(folder / "table.parquet")
+    if result.over is not None and any(trial.path for trial in result.trials):
+        paths = folder / "paths.csv"
+        write_atomically(paths, result.paths().to_csv(index=False))
+        written.append(paths)
+        written.append(save_figure(plot_paths(result), folder / "paths.png"))
     summary = folder / "summary.json"
     write_json(summary, result.summary() | {"name": result.name, **provenance()})
     written.append(summary)

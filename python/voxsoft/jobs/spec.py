@@ -109,6 +109,8 @@ class StudySpec(JobSpec):
         Number of trials in the end; None for a grid, which ends with its last point.
     space, objectives, constraints
         In place of those of the design.
+    over
+        A path that each design is followed along, ``"loads[0].value=0..30 kPa/8"``.
     confirm
         How many of the best designs are solved again, as rubber and on finer voxels.
     earlier
@@ -125,6 +127,7 @@ class StudySpec(JobSpec):
     space: Table[str, Domain] | None = None
     objectives: Table[str, Objective] | None = None
     constraints: Table[str, Constraint] | None = None
+    over: str | None = None
     confirm: int = Field(0, ge=0)
     earlier: tuple[Stage, ...] = ()
 
@@ -132,6 +135,10 @@ class StudySpec(JobSpec):
     def _has_a_budget(self) -> Self:
         if self.sampler != "grid" and self.budget is None:
             raise StudyError("budget", "is missing", "say how many trials; a grid needs none")
+        if self.over is not None and self.confirm:
+            what = "solves single equilibria again, and this study follows paths"
+            hint = "leave it out; voxsoft run --over gives the path of the best with error bars"
+            raise StudyError("confirm", what, hint)
         return self
 
 

@@ -88,6 +88,7 @@ def study_of(spec: StudySpec, folder: Path, storage: str | None = None) -> Study
         folder=folder,
         storage=storage,
         seed=spec.seed,
+        over=spec.over,
     )
     # A target that cannot be measured, or a setting that is not used, would fail every trial.
     check_targets(design.replace(objectives=study.objectives, constraints=study.constraints))

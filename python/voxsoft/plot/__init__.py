@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from voxsoft.plot.coupon import plot_coupons
     from voxsoft.plot.path import plot_path
     from voxsoft.plot.scoreboard import plot_scoreboard
-    from voxsoft.plot.study import plot_history, plot_pareto, plot_scatter
+    from voxsoft.plot.study import plot_history, plot_pareto, plot_paths, plot_scatter
 
 __all__ = [
     "body_image",
@@ -46,6 +46,7 @@ __all__ = [
     "plot_history",
     "plot_pareto",
     "plot_path",
+    "plot_paths",
     "plot_profiles",
     "plot_scatter",
     "plot_scoreboard",
@@ -65,6 +66,7 @@ _HOMES = {
     "plot_fitness": "voxsoft.plot.calibration",
     "plot_history": "voxsoft.plot.study",
     "plot_path": "voxsoft.plot.path",
+    "plot_paths": "voxsoft.plot.study",
     "plot_pareto": "voxsoft.plot.study",
     "plot_profiles": "voxsoft.plot.calibration",
     "plot_scatter": "voxsoft.plot.study",

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from numpy.typing import NDArray
 
 from voxsoft.errors import StudyError
@@ -22,6 +24,7 @@ from voxsoft.plot.style import (
     plain_legend,
 )
 from voxsoft.records import closest
+from voxsoft.simulation.over import Over
 from voxsoft.study import StudyResult, Trial
 
 if TYPE_CHECKING:
@@ -41,6 +44,62 @@ _MARKERS: dict[str, str] = {
     "not-at-rest": "^",
     "failed": "+",
 }
+
+
+def plot_paths(result: StudyResult, objective: str | None = None) -> Figure:
+    """Draw an objective of every design along the path of the study.
+
+    Parameters
+    ----------
+    result
+        A study with `over`.
+    objective
+        Default: the first.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        A line for each design, in the color of the number that counts; the best is red, and a path
+        that was lost ends in a cross.
+
+    Raises
+    ------
+    StudyError
+        An unknown objective, or a study without paths.
+    """
+    name = _objective(result, objective)
+    followed = [trial for trial in result.trials if trial.path]
+    if result.over is None or not followed:
+        raise StudyError("trials", "there is no path to draw", "run a study with over")
+    over = Over.read(result.over)
+    across = scale_for(over.values, over.kind)
+    numbers = [value for trial in followed for value in trial.path[name]]
+    scale = scale_for(numbers, _kind(result, name))
+    figure = empty_figure(6.4, 4.4)
+    axes = figure.add_subplot()
+    scored = [trial.objectives[name] * scale.factor for trial in followed if trial.objectives]
+    colors = ScalarMappable(Normalize(min(scored, default=0), max(scored, default=1)), COLOR_MAP)
+    for trial in followed:
+        x = np.array(trial.path[over.key]) * across.factor
+        y = np.array(trial.path[name]) * scale.factor
+        if trial.objectives:
+            color = colors.to_rgba(np.array(trial.objectives[name] * scale.factor))
+            axes.plot(x, y, color=color, linewidth=1.2)
+        else:
+            axes.plot(x, y, color=GRAY, linewidth=0.8)
+            axes.plot(x[-1:], y[-1:], "x", color=GRAY)
+    if result.best is not None:
+        x = np.array(result.best.path[over.key]) * across.factor
+        y = np.array(result.best.path[name]) * scale.factor
+        label = f"best: number {result.best.number}"
+        axes.plot(x, y, "o-", color=RED, markersize=3, label=label)
+        plain_legend(axes)
+    if scored:
+        bar: Any = figure.colorbar(colors, ax=axes, shrink=0.7, pad=0.04, aspect=24)
+        bar.set_label(scale.label(name), fontsize=10)
+        bar.outline.set_visible(False)
+    plain_axes(axes, x=across.label(over.key), y=scale.label(name))
+    return figure
 
 
 def plot_scatter(result: StudyResult, objective: str | None = None) -> Figure:

@@ -11,12 +11,14 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from statistics import fmean
 from typing import Any, Final
 
 import numpy as np
 
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.history import History
+from voxsoft.design.target import Along
 from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
@@ -35,6 +37,13 @@ from voxsoft.simulation.touching import refuse_contact
 _LONGEST: Final = 0.05
 #: What may change along a path: the rest of the design says what is meshed.
 _ALONG: Final = ("loads", "tendons", "clamps", "objects")
+#: What one number a path has, by :data:`voxsoft.design.target.Along`.
+_ALONG_PATH: Final[Mapping[Along, Callable[[Sequence[float]], float]]] = {
+    "last": lambda values: values[-1],
+    "largest": max,
+    "smallest": min,
+    "mean": fmean,
+}
 #: Values are the same to this part of the largest.
 _SAME: Final = 1e-9
 
@@ -105,12 +114,25 @@ class LoadPath:
             found[f"{name}.pressure"] = ("pressure", pressures)
         return found
 
+    @property
+    def metrics(self) -> Mapping[str, float]:
+        """One number for each metric, in SI units: as the design's target says, or the last one."""
+        design = self.results[0].design
+        asked: dict[str, Target] = {**design.objectives, **design.constraints}
+        return {
+            name: _ALONG_PATH[(asked[name].along if name in asked else None) or "last"](
+                [float(result.metrics[name]) for result in self.results]
+            )
+            for name in self.results[0].metrics
+        }
+
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units: ``over``, ``values`` and for each of them what ``run`` gives."""
         return {
             "status": self.status,
             "message": self.message,
             "over": self.over.key,
+            "metrics": dict(self.metrics),
             "path": [
                 {"value": value, **result.summary()}
                 for value, result in zip(self.values, self.results, strict=True)

@@ -64,6 +64,7 @@ def stored_study(folder: Path) -> StudyResult:
             {name: Constraint(**given) for name, given in summary["constraints"].items()},
             folder=folder,
             seed=summary["seed"],
+            over=summary.get("over"),
         ).result()
     except OSError as error:
         raise FileError(str(folder), f"holds no study: {error.strerror}") from None

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from voxsoft.design import Design
 from voxsoft.errors import DisconnectedError, NoCavityError, VoxSoftError
 from voxsoft.metrics.own import OwnMetric, missing_metrics
-from voxsoft.simulation import Result, Status, simulate
+from voxsoft.simulation import Result, Status, follow, simulate
 from voxsoft.study.indexed_cavities import IndexedCavities
 
 
@@ -31,6 +31,9 @@ class Outcome:
         What is doubtful about the numbers, each in a sentence.
     cavities
         Where the cavities are, if the design means any by an index.
+    path
+        Where equilibria were followed: the values of what changed, by its key, and those of each
+        objective and constraint beside them.
     """
 
     status: Status
@@ -39,6 +42,7 @@ class Outcome:
     seconds: float = 0.0
     warnings: tuple[str, ...] = ()
     cavities: IndexedCavities = field(default_factory=IndexedCavities)
+    path: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
 
 #: Evaluates a design in a worker process; it is sent there by pickle.
@@ -64,10 +68,39 @@ def evaluate_design(design: Design) -> Outcome:
     >>> evaluate_design(families.cylinder(wall="20 mm", radius="20 mm")).status
     'no-cavity'
     """
+    return _outcome(lambda: _at_rest(design))
+
+
+def evaluate_path(over: str, design: Design) -> Outcome:
+    """Follow the equilibria of a design along a path, as :func:`evaluate_design` simulates one.
+
+    Parameters
+    ----------
+    over
+        What changes, as :func:`voxsoft.follow` takes it.
+    design
+        With the objectives and constraints of the study; each says by `along` which number of the
+        path counts.
+
+    Returns
+    -------
+    Outcome
+        It has a path, too. A path that is lost is not ``ok``.
+
+    Examples
+    --------
+    >>> from voxsoft.design import families
+    >>> found = evaluate_path("loads[0].value=0..1 kPa/3", families.pneunet(chambers=2))
+    >>> found.status, list(found.path)
+    ('ok', ['loads[0].value', 'bend'])
+    """
+    return _outcome(lambda: _along(over, design))
+
+
+def _outcome(evaluate: Callable[[], Outcome]) -> Outcome:
     started = time.perf_counter()
     try:
-        result = simulate(design)
-        outcome = outcome_of_result(result, dict(result.metrics))
+        outcome = evaluate()
     except NoCavityError as error:
         outcome = Outcome("no-cavity", str(error))
     except DisconnectedError as error:
@@ -75,6 +108,25 @@ def evaluate_design(design: Design) -> Outcome:
     except VoxSoftError as error:
         outcome = Outcome("failed", str(error))
     return replace(outcome, seconds=time.perf_counter() - started)
+
+
+def _at_rest(design: Design) -> Outcome:
+    result = simulate(design)
+    return outcome_of_result(result, dict(result.metrics))
+
+
+def _along(over: str, design: Design) -> Outcome:
+    path = follow(design, over)
+    last = path.results[-1]
+    columns = path.columns
+    asked = {name: columns[name][1] for name in (*design.objectives, *design.constraints)}
+    warnings = dict.fromkeys(str(each) for result in path.results for each in result.warnings)
+    return replace(
+        outcome_of_result(last, dict(path.metrics)),
+        message=path.message,
+        warnings=tuple(warnings),
+        path={path.over.key: path.values, **asked},
+    )
 
 
 def evaluate_with_metrics(

@@ -51,6 +51,8 @@ class StudyResult(Shown):
     kinds
         Kind of quantity of each parameter by name (a key of :data:`voxsoft.units.KINDS`); empty
         where the family is a function, which does not say.
+    over
+        The path that each design was followed along; None where each was solved once.
     """
 
     name: str
@@ -59,6 +61,7 @@ class StudyResult(Shown):
     objectives: Mapping[str, Objective]
     parameters: tuple[str, ...]
     kinds: Mapping[str, str] = field(default_factory=dict)
+    over: str | None = None
 
     def _lines(self) -> Iterator[str]:
         found = [f"{number:,} {status}" for status, number in self.counts.items() if number]
@@ -226,6 +229,38 @@ class StudyResult(Shown):
         for name in measured:
             add(name, "metric", [trial.metrics.get(name, np.nan) for trial in self.trials])
         return pd.DataFrame(before | columns | after)
+
+    def paths(self) -> pd.DataFrame:
+        """Return the paths that designs were followed along, one row for each equilibrium.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Columns: ``number`` (the trial), the key that changed, and each objective and
+            constraint, in SI units; empty without paths.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from concurrent.futures import ThreadPoolExecutor
+        >>> from voxsoft.design import families
+        >>> from voxsoft.study import Study
+        >>> over = "loads[0].value=0..1 kPa/3"
+        >>> space = {"wall": ["2.5 mm"]}
+        >>> with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor() as threads:
+        ...     study = Study(families.pneunet(chambers=2), space, over=over, folder=folder)
+        ...     paths = study.grid(executor=threads).paths()
+        >>> list(paths), len(paths)
+        (['number', 'loads[0].value', 'bend'], 3)
+        """
+        import pandas as pd
+
+        rows = [
+            pd.DataFrame({"number": trial.number, **trial.path})
+            for trial in self.trials
+            if trial.path
+        ]
+        return pd.concat(rows, ignore_index=True) if rows else pd.DataFrame()
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Write :meth:`table` as comma-separated text.

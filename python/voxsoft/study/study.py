@@ -19,10 +19,11 @@ from voxsoft.errors import StudyError
 from voxsoft.metrics.own import own_metrics
 from voxsoft.search.optuna_bridge import BaseStorage, FrozenTrial, StoredStudy
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
+from voxsoft.simulation.over import Over
 from voxsoft.study.definition import definition
 from voxsoft.study.event import ProgressCallback
 from voxsoft.study.gate import Gate
-from voxsoft.study.outcome import Evaluate, evaluate_design, evaluate_with_metrics
+from voxsoft.study.outcome import Evaluate, evaluate_design, evaluate_path, evaluate_with_metrics
 from voxsoft.study.proposals import (
     Proposals,
     grid_proposals,
@@ -71,10 +72,14 @@ class Study:
         Default: the name of the design or function.
     seed
         Decides every suggestion of a sampler, whatever the number of workers.
+    over
+        A path of equilibria that each design is followed along, as :func:`voxsoft.follow` takes it:
+        ``"loads[0].value=0..30 kPa/8"``. Objectives and constraints say by `along` which number of
+        it counts. Default: each design is solved once.
     evaluate
         From a design to an :class:`~voxsoft.study.Outcome` that holds each objective and
-        constraint under its name; default: simulate. It must be importable where the workers
-        are.
+        constraint under its name; default: simulate, or follow the path. It must be importable
+        where the workers are.
 
     Raises
     ------
@@ -106,13 +111,15 @@ class Study:
         storage: str | BaseStorage | None = None,
         name: str | None = None,
         seed: int = 0,
-        evaluate: Evaluate = evaluate_design,
+        over: str | None = None,
+        evaluate: Evaluate | None = None,
     ) -> None:
         family = families.paper_cylinder() if family is None else family
         if not callable(family):
             require_design(family, "family")
         self.name = name or _name_of(family)
-        self.family, self.seed, self._evaluate = family, seed, evaluate
+        self.family, self.seed, self.over = family, seed, over
+        self._evaluate = evaluate = _evaluate(over, evaluate)
         self.space = _read_space(family, space)
         own = family if isinstance(family, Design) else None
         self.objectives = _read_targets(Objective, objectives, own.objectives if own else {})
@@ -134,7 +141,8 @@ class Study:
             [objective.direction for objective in self.objectives.values()],
             definition(
                 family, self.space, self.objectives, self.constraints, evaluate, seed, beside
-            ),
+            )
+            | ({} if over is None else {"over": over}),
             place,
         )
 
@@ -255,6 +263,9 @@ class Study:
             constraints = self._violations if self.constraints else None
             answers = None
             if sampler == "gradient":
+                if self.over is not None:
+                    what = '"gradient" has no slopes along a path'
+                    raise StudyError("sampler", what, 'use "cma-es" or "tpe"')
                 require_slopes(self.family, tuple(space))
                 evaluate = partial(evaluate_slopes, parameters=tuple(space))
                 answers = answers_of(self.objectives, self.constraints, tuple(space))
@@ -366,6 +377,7 @@ class Study:
             self.objectives,
             tuple(self.space),
             self._kinds,
+            self.over,
         )
 
     @property
@@ -380,6 +392,16 @@ class Study:
             f"stopped after {done} of {max(total, done)} trials, which are kept in "
             f"{self._storage.where}; run the same study again to go on"
         )
+
+
+def _evaluate(over: str | None, evaluate: Evaluate | None) -> Evaluate:
+    """What is done with each design."""
+    if over is None:
+        return evaluate or evaluate_design
+    if evaluate is not None:
+        raise StudyError("over", "is not used beside an evaluate of your own", "give one of them")
+    Over.read(over)  # says what is wrong with it before any worker starts
+    return partial(evaluate_path, over)
 
 
 def _name_of(family: Family) -> str:

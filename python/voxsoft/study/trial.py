@@ -46,6 +46,9 @@ class Trial:
         What is doubtful about the numbers, each in a sentence.
     cavities
         Where the cavities are, if the design means any by an index.
+    path
+        In a study along a path: what changed, by its key, and the objectives and constraints beside
+        it, in SI units.
     """
 
     number: int
@@ -60,6 +63,7 @@ class Trial:
     seconds: float
     warnings: tuple[str, ...] = ()
     cavities: IndexedCavities = field(default_factory=IndexedCavities)
+    path: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
 
 def rounded(parameters: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,7 +84,7 @@ def rounded(parameters: Mapping[str, Any]) -> dict[str, Any]:
 
 def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[str, Any]:
     """Write an outcome as plain data, as :func:`read_trial` reads it."""
-    return {
+    record = {
         "status": outcome.status,
         "message": outcome.message,
         "metrics": {name: float(value) for name, value in outcome.metrics.items()},
@@ -90,6 +94,9 @@ def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[s
         "same_as": same_as,
         "cavities": outcome.cavities.record(),
     }
+    if outcome.path:
+        record["path"] = {name: list(values) for name, values in outcome.path.items()}
+    return record
 
 
 def outcome_of(record: Mapping[str, Any]) -> Outcome:
@@ -101,6 +108,7 @@ def outcome_of(record: Mapping[str, Any]) -> Outcome:
         record["seconds"],
         _warnings(record),
         IndexedCavities.read(record.get("cavities")),
+        _path(record),
     )
 
 
@@ -133,12 +141,17 @@ def read_trial(
         seconds=record["seconds"],
         warnings=_warnings(record),
         cavities=IndexedCavities.read(record.get("cavities")),
+        path=_path(record),
     )
 
 
 def _warnings(record: Mapping[str, Any]) -> tuple[str, ...]:
     """Those of a record; journals that are older than warnings have none."""
     return tuple(record.get("warnings", ()))
+
+
+def _path(record: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
+    return {name: tuple(values) for name, values in record.get("path", {}).items()}
 
 
 def violations(
