@@ -373,12 +373,14 @@ export interface KeepCommand {
 /**
  * Bring the design to rest, or to its end time, and keep the result as a run folder.
  *
- * `solver` replaces settings of the design's solver.
+ * `solver` replaces settings of the design's solver. `over` follows a path of equilibria instead:
+ * a key of the design with a range, such as "loads[0].value=0..30 kPa/16".
  */
 export interface RunSpec {
   kind: "run";
   name?: string | null;
   solver?: Record<string, unknown>;
+  over?: string | null;
 }
 
 /** A range of a parameter: every `step` of it, or any value. */
@@ -1101,6 +1103,30 @@ export interface OverlayEvent {
   experiments: OverlayExperiment[];
 }
 
+/** A number along a path, in SI units; its kind tells the unit. */
+export interface PathColumn {
+  name: string;
+  kind: string;
+  values: (number | null)[];
+}
+
+/**
+ * The equilibria of a job along a path so far; `asked` is how many there are to be.
+ *
+ * `message` is empty until it ends.
+ */
+export interface PathEvent {
+  t: "path";
+  job: string;
+  over: string;
+  kind: string;
+  values: number[];
+  asked: number;
+  columns: PathColumn[];
+  status: string;
+  message: string;
+}
+
 /** A constant that was fitted; `sentence` tells what the data say about it. */
 export interface FittedParameter {
   name: string;
@@ -1324,6 +1350,7 @@ export type AnyEvent =
   | TrialsEvent
   | GenerationEvent
   | OverlayEvent
+  | PathEvent
   | CalibratedEvent
   | RecipeEvent
   | RunsEvent

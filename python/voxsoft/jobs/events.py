@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from voxsoft.calibration import Calibration, CalibrationEvent
+    from voxsoft.simulation import LoadPath
     from voxsoft.study import Study, StudyResult, TrialEvent
 
 
@@ -42,7 +43,9 @@ class StudyStanding:
     result: StudyResult
 
 
-JobEvent: TypeAlias = "Progress | StudyStanding | TrialEvent | CalibrationEvent | Calibration"
+JobEvent: TypeAlias = (
+    "Progress | StudyStanding | TrialEvent | CalibrationEvent | Calibration | LoadPath"
+)
 
 #: Called on the thread of the job, which waits for it. What it raises ends the job:
 #: ``KeyboardInterrupt`` as Ctrl-C does, and what is finished is kept.

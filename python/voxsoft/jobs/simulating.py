@@ -73,6 +73,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
     def step(path: simulation.LoadPath) -> None:
         nonlocal followed
         followed = path
+        notify(path)
         notify(Progress(len(path.results), len(over.values), "equilibria"))
 
     try:
@@ -102,6 +103,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         from voxsoft.plot import plot_path
 
         save_figure(plot_path(path, bars), folder / "path.png")
+    notify(path)
     notify(Progress(100, 100, "percent"))
     last = bars[-1] if bars else ErrorBars.none("they were stopped", "run it again")
     sentence = f"{path.message[:1].upper()}{path.message[1:]}."

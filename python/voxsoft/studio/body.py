@@ -33,7 +33,7 @@ from voxsoft.studio.message import Triple
 from voxsoft.studio.objects import not_live, objects_of, touches_live
 from voxsoft.studio.surface import Surface
 from voxsoft.studio.tendons import pulled, tendon_attachments, tendon_loads
-from voxsoft.units import Point, format_quantity, parse
+from voxsoft.units import KINDS, Point, format_quantity, parse
 from voxsoft.voxels import Voxels
 
 #: Bytes that a voxel takes with its mesh, its problem and its stepper; measured on blocks of 8,000
@@ -331,7 +331,7 @@ def _load(setup: Setup, index: int) -> events.BodyLoad:
     at, direction = _place(setup, index)
     value, kind = load.size * load.final_factor, load.quantity
     unit = format_quantity(value, kind).partition(" ")[2] if value else ""
-    unit = unit or {"acceleration": "m/s^2", "force": "N", "pressure": "kPa"}[kind]
+    unit = unit or KINDS[kind].units[0]
     return events.BodyLoad(
         index=index,
         kind=load.kind,

@@ -236,11 +236,13 @@ class Ack(Command):
 class RunSpec(Entry, tag_field="kind", tag="run"):
     """Bring the design to rest, or to its end time, and keep the result as a run folder.
 
-    `solver` replaces settings of the design's solver.
+    `solver` replaces settings of the design's solver. `over` follows a path of equilibria instead:
+    a key of the design with a range, such as "loads[0].value=0..30 kPa/16".
     """
 
     name: ShortText | None = None
     solver: dict[str, Json] = field(default_factory=dict)
+    over: ShortText | None = None
 
 
 class SpaceRange(Entry):

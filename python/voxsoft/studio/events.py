@@ -588,6 +588,30 @@ class Generation(Event):
     spread: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 
+class PathColumn(Entry):
+    """A number along a path, in SI units; its kind tells the unit."""
+
+    name: str
+    kind: str
+    values: list[float | None]
+
+
+class Path(Event):
+    """The equilibria of a job along a path so far; `asked` is how many there are to be.
+
+    `message` is empty until it ends.
+    """
+
+    job: str
+    over: str
+    kind: str
+    values: list[float]
+    asked: int
+    columns: list[PathColumn]
+    status: str
+    message: str = ""
+
+
 class OverlayExperiment(Entry):
     """Measured and simulated stations of one experiment in m; errors in m."""
 
@@ -788,6 +812,7 @@ AnyEvent = (
     | Trials
     | Generation
     | Overlay
+    | Path
     | Calibrated
     | Recipe
     | Runs

@@ -21,8 +21,8 @@ FINISHED: Final = frozenset({"stopped", "done", "failed", "interrupted"})
 #: Seconds between two lines that only say how far a job is.
 _SPACING: Final = 1.0
 
-_Kept = events.Job | events.Generation | events.Overlay | events.Calibrated
-_KEPT: Final = (events.Job, events.Generation, events.Overlay, events.Calibrated)
+_Kept = events.Job | events.Generation | events.Overlay | events.Calibrated | events.Path
+_KEPT: Final = (events.Job, events.Generation, events.Overlay, events.Calibrated, events.Path)
 _decoder: Final[msgspec.json.Decoder[_Kept]] = msgspec.json.Decoder(_Kept)
 
 

@@ -208,7 +208,7 @@ class Jobs:
         elif isinstance(event, events.Trials):
             job.trials.clear()
             job.kept = [event]
-        elif isinstance(event, (events.Overlay, events.Calibrated)):
+        elif isinstance(event, (events.Overlay, events.Calibrated, events.Path)):
             job.kept = [each for each in job.kept if type(each) is not type(event)] + [event]
         else:
             job.kept.append(event)

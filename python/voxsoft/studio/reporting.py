@@ -13,6 +13,7 @@ from voxsoft.files.specimen import write_specimen
 from voxsoft.jobs.events import JobEvent, Listener, StudyStanding
 from voxsoft.jobs.events import Progress as Standing
 from voxsoft.jobs.spec import CalibrateSpec, Spec
+from voxsoft.simulation import LoadPath
 from voxsoft.studio import events
 from voxsoft.studio.calibrating import calibrated_event, overlay_event
 from voxsoft.studio.progress import Progress
@@ -29,6 +30,8 @@ def listener_of(spec: Spec, progress: Progress) -> Listener:
         match event:
             case Standing():
                 progress.at(event.done, event.total, best=event.best, stage=event.stage)
+            case LoadPath():
+                progress.tell(_path(progress.job, event))
             case StudyStanding():
                 progress.begin_study(event.study)
                 progress.tell(trials_event(progress.job, event.result))
@@ -47,6 +50,23 @@ def listener_of(spec: Spec, progress: Progress) -> Listener:
                 progress.tell(calibrated_event(progress.job, event, card))
 
     return listen
+
+
+def _path(job: str, path: LoadPath) -> events.Path:
+    done = len(path.results) == len(path.over.values) or path.status != "ok"
+    return events.Path(
+        job=job,
+        over=path.over.key,
+        kind=path.over.kind,
+        values=list(path.values),
+        asked=len(path.over.values),
+        columns=[
+            events.PathColumn(name, kind, [x if np.isfinite(x) else None for x in values])
+            for name, (kind, values) in path.columns.items()
+        ],
+        status=path.status,
+        message=path.message if done else "",
+    )
 
 
 def _generation(job: str, event: CalibrationEvent) -> events.Generation:

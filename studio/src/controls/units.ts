@@ -14,6 +14,7 @@ const SHOWN: Readonly<Record<string, string>> = {
   "m/s": "mm/s",
   "J/m^3": "kJ/m^3",
   J: "mJ",
+  T: "mT",
 };
 
 const QUANTITY = /^([+-]?(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)\s*(.*)$/i;

@@ -23,6 +23,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("energy", "Energy and residual", () => import("../run/EnergyPane")),
   pane("design", "Design", () => import("./design/DesignPane")),
   pane("text", "Text", () => import("./design/text/TextPane")),
+  pane("path", "Path", () => import("./path/PathPane")),
   pane("calibrate", "Calibrate", () => import("./calibrate/CalibratePane")),
   pane("overlay", "Measured and simulated", () => import("./calibrate/OverlayPane")),
   pane("generations", "Generations", () => import("./calibrate/GenerationsPane")),

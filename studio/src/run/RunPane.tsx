@@ -1,6 +1,7 @@
 import { Button, Empty, Progress, Section, Select } from "../controls/Choice";
+import { siUnit } from "../controls/kinds";
 import { NumberField } from "../controls/NumberField";
-import { factorOf, formatEnergy, formatNumber, formatQuantity } from "../controls/units";
+import { formatEnergy, formatNumber, formatQuantity } from "../controls/units";
 import type { BodyLoad, SolverCommand } from "../protocol";
 import { currentEngine, send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -90,7 +91,7 @@ function Load(props: { load: BodyLoad }) {
       label={load.label}
       title={`${load.kind}; the design says ${formatNumber(load.value / load.factor, 4)} ${load.unit}`}
       value={value}
-      unit={siOf(load)}
+      unit={siUnit(load.quantity)}
       min={load.min}
       max={load.max}
       fallback={load.value}
@@ -99,19 +100,6 @@ function Load(props: { load: BodyLoad }) {
       onChange={(next) => send({ t: "load", index: load.index, value: next })}
     />
   );
-}
-
-// The field speaks SI units; a load names the unit that it is shown in.
-function siOf(load: BodyLoad): string {
-  const known: Record<string, string> = {
-    kPa: "Pa",
-    N: "N",
-    mN: "N",
-    "m/s^2": "m/s^2",
-    "m/s²": "m/s^2",
-    mm: "m",
-  };
-  return known[load.unit] ?? (factorOf(load.unit) === 1 ? load.unit : "1");
 }
 
 function NotLive(props: { why: string }) {

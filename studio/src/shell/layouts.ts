@@ -24,7 +24,7 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     leftShare: 0.25,
   },
   simulate: {
-    left: [["run", "design"]],
+    left: [["run", "path", "design"]],
     main: ["view"],
     bottom: [["probes"], ["energy", "log"]],
     right: [["body", "export"]],

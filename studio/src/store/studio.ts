@@ -17,6 +17,7 @@ import type {
   Moment,
   OverlapEvent,
   OverlayEvent,
+  PathEvent,
   PickedEvent,
   RecipeEvent,
   RunsEvent,
@@ -67,6 +68,7 @@ export interface Studio {
   trials: Readonly<Record<string, TrialsEvent>>;
   generations: Readonly<Record<string, readonly GenerationEvent[]>>;
   overlays: Readonly<Record<string, OverlayEvent>>;
+  paths: Readonly<Record<string, PathEvent>>;
   calibrated: Readonly<Record<string, CalibratedEvent>>;
   recipes: Readonly<Record<string, RecipeEvent>>;
   runs: RunsEvent | null;
@@ -105,6 +107,7 @@ export const useStudio = create<Studio>(() => ({
   trials: {},
   generations: {},
   overlays: {},
+  paths: {},
   calibrated: {},
   recipes: {},
   runs: null,
@@ -212,6 +215,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "trials":
       set((state) => ({ trials: { ...state.trials, [event.job]: event } }));
+      break;
+    case "path":
+      set((state) => ({ paths: { ...state.paths, [event.job]: event } }));
       break;
     case "overlay":
       set((state) => ({ overlays: { ...state.overlays, [event.job]: event } }));

@@ -1,0 +1,94 @@
+// What of a design can change along a path, and the range of a path as text.
+
+import { siUnit, writtenUnit } from "../../controls/kinds";
+import { factorOf } from "../../controls/units";
+import type { Parameter } from "../../protocol";
+
+/** A value of the design that a path may change. */
+export interface Changeable {
+  /** As the design file names it. */
+  readonly key: string;
+  readonly label: string;
+  readonly kind: string;
+  /** In SI units. */
+  readonly value: number;
+}
+
+const LOADS: Readonly<Record<string, readonly [label: string, kind: string]>> = {
+  gravity: ["gravity", "acceleration"],
+  pressure: ["pressure", "pressure"],
+  force: ["force", "force"],
+  traction: ["traction", "pressure"],
+  magnetic_field: ["magnetic field", "magnetic field"],
+};
+
+const ACTIVATIONS: Readonly<Record<string, string>> = {
+  strain: "number",
+  swelling: "number",
+  thermal: "temperature",
+};
+
+const DRIVES = ["tension", "shortening", "length"] as const;
+
+type Table = Readonly<Record<string, unknown>>;
+
+function tables(value: unknown): readonly Table[] {
+  return Array.isArray(value) ? (value as Table[]) : [];
+}
+
+/** A number, or the components of a vector that are not zero (all of them where all are). */
+function numbers(value: unknown, key: string, label: string, kind: string): Changeable[] {
+  if (typeof value === "number") return [{ key, label, kind, value }];
+  if (!Array.isArray(value)) return [];
+  const some = value.some((x) => x !== 0);
+  return value.flatMap((x, axis) =>
+    typeof x === "number" && (x !== 0 || !some)
+      ? [{ key: `${key}[${axis}]`, label: `${label} along ${"xyz"[axis]}`, kind, value: x }]
+      : [],
+  );
+}
+
+/** What a path may change: loads, tendons, activations, moved clamps, and parameters of them. */
+export function changeable(design: Table, parameters: readonly Parameter[]): Changeable[] {
+  const found: Changeable[] = [];
+  tables(design.loads).forEach((load, i) => {
+    const [label, kind] = LOADS[String(load.kind)] ?? ["load", "number"];
+    const where = load.cavity === undefined || load.cavity === "all" ? "" : ` in ${load.cavity}`;
+    found.push(...numbers(load.value, `loads[${i}].value`, `${label}${where}`, kind));
+  });
+  tables(design.tendons).forEach((tendon, i) => {
+    for (const drive of DRIVES) {
+      const kind = drive === "tension" ? "force" : "length";
+      const label = `${drive} of ${String(tendon.name)}`;
+      found.push(...numbers(tendon[drive], `tendons[${i}].${drive}`, label, kind));
+    }
+  });
+  tables(design.activations).forEach((each, i) => {
+    const kind = ACTIVATIONS[String(each.kind)] ?? "number";
+    const label = `${String(each.kind)} of ${String(each.part)}`;
+    found.push(...numbers(each.value, `activations[${i}].value`, label, kind));
+  });
+  tables(design.clamps).forEach((clamp, i) => {
+    const way = (clamp.motion as Table | null | undefined)?.displacement;
+    const key = `clamps[${i}].motion.displacement`;
+    found.push(...numbers(way, key, `motion of clamp ${i + 1}`, "length"));
+  });
+  for (const one of parameters) {
+    if (one.formula) continue;
+    found.push({ key: one.name, label: `parameter ${one.name}`, kind: one.kind, value: one.value });
+  }
+  return found;
+}
+
+/** The range of a path as the design language has it, such as `loads[0].value=0..30 kPa/16`. */
+export function overText(what: Changeable, from: number, to: number, count: number): string {
+  const unit = writtenUnit(what.kind);
+  const factor = unit === "" ? 1 : factorOf(unit);
+  const say = (si: number) => String(Number((si / factor).toPrecision(10)));
+  return `${what.key}=${say(from)}..${say(to)}${unit === "" ? "" : ` ${unit}`}/${count}`;
+}
+
+/** The SI unit of a value. */
+export function unitOfValue(what: Changeable): string {
+  return siUnit(what.kind);
+}

@@ -1,0 +1,63 @@
+"""A path of equilibria by the mouse: choose a load, follow it, see numbers over it."""
+
+from pathlib import Path
+
+import pytest
+
+pytestmark = pytest.mark.browser
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def gripper(serving, tmp_path):
+    text = (ROOT / "examples" / "magnetic_gripper.toml").read_text()
+    server = serving(tmp_path, text=text, name="gripper.toml")
+    yield server
+    server.stop()
+
+
+def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab):
+    tab = open_tab(gripper.address)
+    tab.page.get_by_text("Path", exact=True).click()
+    pane = tab.find("path-pane")
+    pane.get_by_label("Change", exact=True).select_option("loads[0].value[2]")
+    pane.get_by_label("To", exact=True).fill("12 mT")
+    pane.get_by_label("To", exact=True).press("Enter")
+    pane.get_by_label("Equilibria", exact=True).fill("5")
+    pane.get_by_label("Equilibria", exact=True).press("Enter")
+    tab.find("path-start").click()
+    end = tab.find("path-end")
+    end.wait_for()
+    assert "5 equilibria" in end.inner_text()
+    numbers = pane.get_by_label("Number along the path")
+    assert numbers.input_value() == "lift"
+    tab.find("plot-path").wait_for()
+    tab.shot("path")
+    numbers.select_option("tip.x")
+    tab.page.get_by_label("tip.x over loads[0].value[2]").wait_for()
+    tab.page.reload()
+    tab.page.get_by_text("Path", exact=True).click()
+    tab.find("path-end").wait_for()
+    assert tab.errors == []
+
+
+def test_a_path_that_is_lost_says_where(serving, tmp_path, open_tab, coarse):
+    heavy = coarse.replace(
+        'kind = "gravity"',
+        'kind = "traction"\nregion = { z = ["10 mm", "10 mm"] }\nvalue = "1 kPa"',
+    )
+    server = serving(tmp_path, text=heavy.replace("ecoflex-00-30-lattice", "ecoflex-00-30"))
+    try:
+        tab = open_tab(server.address)
+        tab.page.get_by_text("Path", exact=True).click()
+        pane = tab.find("path-pane")
+        pane.get_by_label("To", exact=True).fill("10 MPa")
+        pane.get_by_label("To", exact=True).press("Enter")
+        tab.find("path-start").click()
+        end = tab.find("path-end")
+        end.wait_for()
+        assert "lost at loads[0].value" in end.inner_text()
+        tab.shot("path-lost")
+    finally:
+        server.stop()
