@@ -89,6 +89,7 @@ def test_what_cannot_be_followed_is_refused_before_the_first_trial(tmp_path):
         study_in(tmp_path, over="pressure")
     with pytest.raises(StudyError, match="beside an evaluate"):
         study_in(tmp_path, evaluate=evaluate_design)
+    one = {"last": Objective(minimize="displacement", **DOWN)}
+    study = study_in(tmp_path, objectives=one)
     with pytest.raises(StudyError, match="no slopes along a path"):
-        one = {"last": Objective(minimize="displacement", **DOWN)}
-        study_in(tmp_path, objectives=one).optimize("gradient", 4)
+        study.optimize("gradient", 4)
