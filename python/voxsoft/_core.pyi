@@ -171,6 +171,14 @@ class Fiber:
     def __new__(cls, direction: _Point, *, modulus: float, compression: bool) -> Fiber: ...
 
 @final
+class Winding:
+    """A family of fibers about an axis: a point [m] and a unit vector of it, an angle to it [rad]."""
+
+    def __new__(
+        cls, center: _Point, axis: _Point, angle: float, *, modulus: float, compression: bool
+    ) -> Winding: ...
+
+@final
 class Material:
     """The material of a part: moduli in Pa, density in kg/m³.
 
@@ -199,6 +207,9 @@ class Material:
     def gent(*, shear: float, limit: float, bulk: float, density: float) -> Material: ...
     def with_fibers(self, fibers: Sequence[Fiber]) -> Material:
         """The same with these fibers in place of any others; a lattice has none."""
+
+    def with_windings(self, windings: Sequence[Winding]) -> Material:
+        """The same with these wound fibers in place of any others; a lattice has none."""
 
     def with_swelling(self, stretch: float) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:

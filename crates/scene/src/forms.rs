@@ -73,11 +73,22 @@ enum Material {
         density: f64,
         /// Direction, modulus, and whether it resists compression.
         fibers: Vec<(Vec3, f64, bool)>,
+        windings: Vec<Winding>,
         /// Share and time of each branch.
         prony: Vec<(f64, f64)>,
         /// How much longer it is free of stress than in the body at rest.
         swelling: f64,
     },
+}
+
+/// Fibers wound about an axis.
+#[derive(Serialize, Deserialize)]
+struct Winding {
+    center: Vec3,
+    axis: Vec3,
+    angle: f64,
+    modulus: f64,
+    compression: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -320,9 +331,34 @@ impl From<&solid::Material> for Material {
                     .iter()
                     .map(|f| (f.direction, f.modulus, f.compression))
                     .collect(),
+                windings: rubber.windings().iter().map(Into::into).collect(),
                 prony: rubber.prony().to_vec(),
                 swelling: rubber.swelling(),
             },
+        }
+    }
+}
+
+impl From<&solid::Winding> for Winding {
+    fn from(winding: &solid::Winding) -> Self {
+        Self {
+            center: winding.center,
+            axis: winding.axis,
+            angle: winding.angle,
+            modulus: winding.modulus,
+            compression: winding.compression,
+        }
+    }
+}
+
+impl From<Winding> for solid::Winding {
+    fn from(form: Winding) -> Self {
+        Self {
+            center: form.center,
+            axis: form.axis,
+            angle: form.angle,
+            modulus: form.modulus,
+            compression: form.compression,
         }
     }
 }
@@ -347,6 +383,7 @@ impl TryFrom<Material> for solid::Material {
                 bulk,
                 density,
                 fibers,
+                windings,
                 prony,
                 swelling,
             } => {
@@ -364,8 +401,10 @@ impl TryFrom<Material> for solid::Material {
                 };
                 let fibers = fibers.into_iter().map(fiber).collect();
                 let plain = HyperelasticMaterial::new(model, bulk, density)?;
-                let whole = plain.with_fibers(fibers)?.with_prony(prony)?;
-                whole.with_swelling(swelling)?.into()
+                let wound = plain
+                    .with_fibers(fibers)?
+                    .with_windings(windings.into_iter().map(Into::into).collect())?;
+                wound.with_prony(prony)?.with_swelling(swelling)?.into()
             }
         })
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.design.assembly import voxel_size_of
@@ -67,10 +69,14 @@ def core_materials(design: Design, materials: list[Material]) -> list[_core.Mate
     """
     found = []
     stretches = _stretches(design)
+    poses = {body.name: body.pose for body in design.bodies}
     for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
         core = material.core
         if part.fibers:
-            core = core.with_fibers([fiber.core for fiber in part.fibers])
+            straight = [fiber.core for fiber in part.fibers if not fiber.is_wound]
+            pose = poses.get(part.body, (np.eye(3), np.zeros(3)))
+            wound = [fiber.winding(*pose) for fiber in part.fibers if fiber.is_wound]
+            core = core.with_fibers(straight).with_windings(wound)
         if index in stretches:
             core = core.with_swelling(stretches[index])
         found.append(core)

@@ -50,6 +50,7 @@ from voxsoft.simulation.touching import (
     motion_arguments,
     times_and_factors,
 )
+from voxsoft.simulation.windings import check_windings
 
 #: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
 #: (lattice) and 810 (rubber), half as much again for what is not a block.
@@ -136,6 +137,7 @@ class Setup:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
         check_chambers(self.design, self.mesh)
+        check_windings(self.design, self.mesh)
         self._check_cavities()
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
