@@ -57,13 +57,13 @@ def mirrored_region(region: _Region, axis: Axis) -> _Region:
 def mirrored_part(part: Part, axis: Axis) -> Part:
     """Return the image of a part with its fibers, under its name or else that of its shape."""
     named = part.shape if isinstance(part.shape, str) else None
-    fibers = [_mirrored_fiber(fiber, axis) for fiber in part.fibers]
+    fibers = [mirrored_fiber(fiber, axis) for fiber in part.fibers]
     return part.replace(
         shape=mirrored_shape(part.shape, axis), fibers=fibers, name=part.name or named
     )
 
 
-def _mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:
+def mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:
     """The image of a family of fibers: a right-handed helix becomes a left-handed one."""
     if fiber.direction is not None:
         return fiber.replace(direction=mirrored_point(fiber.direction, axis))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
@@ -57,7 +58,9 @@ def solid_materials(design: Design) -> list[Material]:
     ]
 
 
-def core_materials(design: Design, materials: list[Material]) -> list[_core.Material]:
+def core_materials(
+    design: Design, materials: list[Material], origin: NDArray[np.float64]
+) -> list[_core.Material]:
     """What the core takes for each part of a design: its material and its fibers.
 
     Parameters
@@ -66,6 +69,8 @@ def core_materials(design: Design, materials: list[Material]) -> list[_core.Mate
         Whose parts have the fibers.
     materials
         One for each part, such as :func:`solid_materials` gives.
+    origin
+        Where the solver's origin is [m], (3,).
     """
     found = []
     stretches = _stretches(design)
@@ -74,8 +79,9 @@ def core_materials(design: Design, materials: list[Material]) -> list[_core.Mate
         core = material.core
         if part.fibers:
             straight = [fiber.core for fiber in part.fibers if not fiber.is_wound]
-            pose = poses.get(part.body, (np.eye(3), np.zeros(3)))
-            wound = [fiber.winding(*pose) for fiber in part.fibers if fiber.is_wound]
+            rotation, position = poses.get(part.body, (np.eye(3), np.zeros(3)))
+            place = rotation, position - origin
+            wound = [fiber.winding(*place) for fiber in part.fibers if fiber.is_wound]
             core = core.with_fibers(straight).with_windings(wound)
         if index in stretches:
             core = core.with_swelling(stretches[index])

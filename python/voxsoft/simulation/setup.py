@@ -33,6 +33,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
@@ -184,7 +185,7 @@ class Setup:
         Raises
         ------
         DesignError
-            The voxels are not symmetric.
+            The voxels or the fibers are not symmetric.
         """
         planes = self.design.symmetry
         if planes and has_supplies(self.design):
@@ -193,7 +194,11 @@ class Setup:
         if planes and has_contact(self.design):
             what = "is not known together with contact yet"
             raise DesignError("symmetry", what, "leave contact and objects out, or the planes")
-        return Sector.of(planes, self.mesh) if planes else None
+        if not planes:
+            return None
+        found = Sector.of(planes, self.mesh)
+        check_fiber_symmetry(self.design)
+        return found
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:
@@ -217,7 +222,7 @@ class Setup:
     @cached_property
     def problem(self) -> _core.Problem:
         """The problem of the Rust core, with the design's own materials."""
-        return core_problem(self.mesh, core_materials(self.design, self.materials), self._parts())
+        return core_problem(self.mesh, core_materials(self.design, self.materials, self.origin), self._parts())
 
     @cached_property
     def problem_alone(self) -> _core.Problem:
@@ -225,11 +230,11 @@ class Setup:
         if self.touching is None:
             return self.problem
         parts = self._parts(touching=False)
-        return core_problem(self.mesh, core_materials(self.design, self.materials), parts)
+        return core_problem(self.mesh, core_materials(self.design, self.materials, self.origin), parts)
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
-        return self.problem.with_materials(core_materials(self.design, materials))
+        return self.problem.with_materials(core_materials(self.design, materials, self.origin))
 
     @cached_property
     def materials(self) -> list[Material]:
