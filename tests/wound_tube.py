@@ -12,16 +12,18 @@ YOUNG = 100 * kPa
 GAUGE = (20 * mm, 44 * mm)
 
 
-def wound_tube(degrees, *, modulus, pressure, wall=2 * mm, voxel=2 * mm, **fiber):
-    """A tube along z; `degrees` are the angles of its families, RADIUS is that of the middle of the wall."""
+def wound_tube(degrees, *, modulus, pressure, wall=2 * mm, voxel=2 * mm, poisson=0.499, **fiber):
+    """A tube along z about which families of fibers are wound at angles of so many degrees.
+
+    By default nearly incompressible, as the thin wall below is altogether.
+    """
     outer = vs.Cylinder(radius=RADIUS + wall / 2, height=LENGTH)
     bore = vs.Cylinder(radius=RADIUS - wall / 2, height=LENGTH)
     end = vs.Cylinder(radius=RADIUS + wall / 2, height=END)
     families = [
         vs.Fiber(axis="z", angle=np.radians(each), modulus=modulus, **fiber) for each in degrees
     ]
-    # Nearly incompressible, as the thin wall below; the ends are stiff and not, which is easier to solve.
-    rubber = vs.NeoHookean(young=YOUNG, poisson=0.499)
+    rubber = vs.NeoHookean(young=YOUNG, poisson=poisson)
     stiff = vs.NeoHookean(young=100 * YOUNG, poisson=0.4)
     return vs.Design(
         name="wound-tube",
@@ -43,7 +45,7 @@ def halved(design):
 
 
 def strains(points, moved):
-    """Along, around, and the twist in rad/m between the heights of the gauge, of points (n, 3) and displacements (n, 3)."""
+    """Strain along and around, and twist in rad/m, in the gauge: of points and how they moved."""
 
     def at(height):
         return np.abs(points[:, 2] - height) < 1e-9

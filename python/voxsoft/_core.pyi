@@ -172,7 +172,7 @@ class Fiber:
 
 @final
 class Winding:
-    """A family of fibers about an axis: a point [m] and a unit vector of it, an angle to it [rad]."""
+    """Fibers wound about an axis: a point [m] and a unit vector of it, the angle to it [rad]."""
 
     def __new__(
         cls, center: _Point, axis: _Point, angle: float, *, modulus: float, compression: bool

@@ -38,22 +38,22 @@ def test_a_braid_keeps_its_length_at_the_neutral_angle():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("wall, voxel", [(2 * mm, 1 * mm), (1 * mm, 1 * mm)])
+@pytest.mark.parametrize(("wall", "voxel"), [(2 * mm, 1 * mm), (1 * mm, 1 * mm)])
 def test_the_neutral_angle_does_not_depend_on_the_voxels(wall, voxel):
     # As above with a wall of two voxels, and a thinner wall of one.
     tube = {"modulus": 100 * MPa, "wall": wall, "voxel": voxel}
     assert neutral_angle((53.7, 55.7), **tube) == pytest.approx(NEUTRAL, abs=0.15)
 
 
-@pytest.mark.parametrize("degrees", [35.0, 70.0])
+@pytest.mark.parametrize("degrees", [45.0, 70.0])
 def test_a_braid_shortens_below_the_neutral_angle_and_lengthens_above(degrees):
-    tube = {"modulus": 2 * MPa, "pressure": 5 * kPa}
+    tube = {"modulus": 0.5 * MPa, "pressure": 5 * kPa}
     along, around, twist = found(halved(wound_tube((degrees, -degrees), **tube)))
     expected = thin_wall((degrees, -degrees), **tube)
-    # A wall of a fifth of the radius is not thin: stress through it differs by t/R to second order,
-    # 4 %, and more where the two strains are small differences. Measured along: 4.4 and 3.9 %.
-    assert along == pytest.approx(expected[0], rel=0.06)
-    assert around == pytest.approx(expected[1], abs=0.06 * np.abs(expected[:2]).max())
+    # A wall of a fifth of the radius is not quite thin: stress through it differs by the square of
+    # that, 4 %. Measured along, at strains of -4 and 7 %: 1.8 and 2.6 %.
+    assert along == pytest.approx(expected[0], rel=0.04)
+    assert around == pytest.approx(expected[1], abs=0.04 * np.abs(expected[:2]).max())
     assert twist == pytest.approx(0.0, abs=1e-9)
 
 
@@ -62,8 +62,8 @@ def test_a_single_helix_twists_the_tube():
     tube = {"modulus": 0.5 * MPa, "pressure": 100.0}
     along, around, twist = found(wound_tube((degrees,), **tube))
     expected = thin_wall((degrees,), **tube)
-    # CalculiX's bricks say 6 % less twist than a thin wall (tests/crosscheck/test_wound_tube.py). The
-    # right-handed helix of a tube that widens unwinds.
+    # CalculiX says 6 % less twist than a thin wall (tests/crosscheck/test_wound_in_calculix.py).
+    # The right-handed helix of a tube that widens unwinds.
     assert twist == pytest.approx(expected[2], rel=0.08)
     assert twist < 0.0
     assert [along, around] == pytest.approx(expected[:2], abs=0.05 * expected[1])
@@ -116,7 +116,7 @@ def test_a_braid_is_solved_by_its_quarter_about_any_axis():
     quarter = vs.simulate(whole.replace(symmetry=planes)).probes["side"]
     assert quarter == pytest.approx(vs.simulate(whole).probes["side"], abs=1e-8)
     with pytest.raises(DesignError, match=r"symmetry\[0\].plane: mirrors parts\[0\].fibers\[0\]"):
-        Setup.of(ring(place).replace(symmetry=planes)).sector
+        Setup.of(ring(place).replace(symmetry=planes))
 
 
 def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
@@ -144,7 +144,7 @@ def test_how_far_a_tube_turns_has_slopes_by_angle_and_modulus():
     result = vs.simulate(design, tolerance=1e-11)
     slopes = gradient(result, targets, ["wind", "stiff"])
     for name, value in {"wind": np.radians(40.0), "stiff": 1e6}.items():
-        # Central differences of fourth order with steps of 1e-3, as tests/verification/test_gradient.py.
+        # Differences of fourth order, their step and tolerance as in test_gradient.py.
         seen = {k: solved(value * (1.0 + 1e-3 * k), name) for k in (-2, -1, 1, 2)}
         differences = (8 * (seen[1] - seen[-1]) - (seen[2] - seen[-2])) / (12e-3 * value)
         expected = dict(zip(targets, differences, strict=True))

@@ -79,7 +79,7 @@ def core_materials(
         core = material.core
         if part.fibers:
             straight = [fiber.core for fiber in part.fibers if not fiber.is_wound]
-            rotation, position = poses.get(part.body, (np.eye(3), np.zeros(3)))
+            rotation, position = poses.get(part.body or "", (np.eye(3), np.zeros(3)))
             place = rotation, position - origin
             wound = [fiber.winding(*place) for fiber in part.fibers if fiber.is_wound]
             core = core.with_fibers(straight).with_windings(wound)

@@ -222,7 +222,9 @@ class Setup:
     @cached_property
     def problem(self) -> _core.Problem:
         """The problem of the Rust core, with the design's own materials."""
-        return core_problem(self.mesh, core_materials(self.design, self.materials, self.origin), self._parts())
+        return core_problem(
+            self.mesh, core_materials(self.design, self.materials, self.origin), self._parts()
+        )
 
     @cached_property
     def problem_alone(self) -> _core.Problem:
@@ -230,7 +232,9 @@ class Setup:
         if self.touching is None:
             return self.problem
         parts = self._parts(touching=False)
-        return core_problem(self.mesh, core_materials(self.design, self.materials, self.origin), parts)
+        return core_problem(
+            self.mesh, core_materials(self.design, self.materials, self.origin), parts
+        )
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""

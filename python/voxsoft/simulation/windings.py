@@ -56,7 +56,7 @@ def _wound(design: Design) -> Iterator[tuple[int, int, Fiber]]:
 
 
 def _material(design: Design, mesh: Mesh, index: int) -> Iterator[tuple[Floats, float]]:
-    """Where the material of each voxel of a part is in the frame of its body, and their size, both in m."""
+    """Where in its body the material of each voxel of a part is [m], (n, 3), and their size."""
     tets = slice(0, len(mesh.tets))
     vertices, size = mesh.vertices, mesh.voxel_size
     for body in mesh.bodies:
