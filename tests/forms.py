@@ -14,7 +14,7 @@ import pint
 from pydantic import StringConstraints, WithJsonSchema
 
 from voxsoft.design import Design, Parameter, Region
-from voxsoft.design.activation import Strain, Swelling
+from voxsoft.design.activation import FiberStrain, Strain, Swelling
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
@@ -130,7 +130,7 @@ INNER = {
     "clamps": [{"region": {"z": ["-inf", 0]}}],
     "probes": {"top": {"point": [0, 0, 0]}},
 }
-SPECIAL |= {(model, "part"): ("plain",) for model in (Strain, Swelling)}
+SPECIAL |= {(model, "part"): ("plain",) for model in (FiberStrain, Strain, Swelling)}
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.

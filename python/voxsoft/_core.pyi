@@ -166,16 +166,25 @@ _History = tuple[Sequence[float], Sequence[float]] | None
 
 @final
 class Fiber:
-    """A family of fibers: unit vector, modulus in Pa, whether they carry compression."""
+    """Fibers: unit vector, modulus [Pa], whether they carry compression, free stretch."""
 
-    def __new__(cls, direction: _Point, *, modulus: float, compression: bool) -> Fiber: ...
+    def __new__(
+        cls, direction: _Point, *, modulus: float, compression: bool, free: float
+    ) -> Fiber: ...
 
 @final
 class Winding:
     """Fibers wound about an axis: a point [m] and a unit vector of it, the angle to it [rad]."""
 
     def __new__(
-        cls, center: _Point, axis: _Point, angle: float, *, modulus: float, compression: bool
+        cls,
+        center: _Point,
+        axis: _Point,
+        angle: float,
+        *,
+        modulus: float,
+        compression: bool,
+        free: float,
     ) -> Winding: ...
 
 @final

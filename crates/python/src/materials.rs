@@ -7,7 +7,8 @@ use voxsoft_solid::{
 
 use crate::errors::{exception, to_python};
 
-/// A family of fibers: a unit vector, a modulus in Pa, and whether they carry compression.
+/// A family of fibers: a unit vector, a modulus in Pa, whether they carry compression, and the stretch at which they
+/// carry nothing.
 #[pyclass(frozen, from_py_object, name = "Fiber", module = "voxsoft._core")]
 #[derive(Clone)]
 pub struct PyFiber(Fiber);
@@ -15,12 +16,13 @@ pub struct PyFiber(Fiber);
 #[pymethods]
 impl PyFiber {
     #[new]
-    #[pyo3(signature = (direction, *, modulus, compression))]
-    fn new(direction: Vec3, modulus: f64, compression: bool) -> Self {
+    #[pyo3(signature = (direction, *, modulus, compression, free))]
+    fn new(direction: Vec3, modulus: f64, compression: bool, free: f64) -> Self {
         Self(Fiber {
             direction,
             modulus,
             compression,
+            free,
         })
     }
 }
@@ -33,14 +35,22 @@ pub struct PyWinding(Winding);
 #[pymethods]
 impl PyWinding {
     #[new]
-    #[pyo3(signature = (center, axis, angle, *, modulus, compression))]
-    fn new(center: Vec3, axis: Vec3, angle: f64, modulus: f64, compression: bool) -> Self {
+    #[pyo3(signature = (center, axis, angle, *, modulus, compression, free))]
+    fn new(
+        center: Vec3,
+        axis: Vec3,
+        angle: f64,
+        modulus: f64,
+        compression: bool,
+        free: f64,
+    ) -> Self {
         Self(Winding {
             center,
             axis,
             angle,
             modulus,
             compression,
+            free,
         })
     }
 }

@@ -71,8 +71,8 @@ enum Material {
         model: Hyperelastic,
         bulk: f64,
         density: f64,
-        /// Direction, modulus, and whether it resists compression.
-        fibers: Vec<(Vec3, f64, bool)>,
+        /// Direction, modulus, whether it resists compression, and free stretch.
+        fibers: Vec<(Vec3, f64, bool, f64)>,
         windings: Vec<Winding>,
         /// Share and time of each branch.
         prony: Vec<(f64, f64)>,
@@ -89,6 +89,7 @@ struct Winding {
     angle: f64,
     modulus: f64,
     compression: bool,
+    free: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -329,7 +330,7 @@ impl From<&solid::Material> for Material {
                 fibers: rubber
                     .fibers()
                     .iter()
-                    .map(|f| (f.direction, f.modulus, f.compression))
+                    .map(|f| (f.direction, f.modulus, f.compression, f.free))
                     .collect(),
                 windings: rubber.windings().iter().map(Into::into).collect(),
                 prony: rubber.prony().to_vec(),
@@ -347,6 +348,7 @@ impl From<&solid::Winding> for Winding {
             angle: winding.angle,
             modulus: winding.modulus,
             compression: winding.compression,
+            free: winding.free,
         }
     }
 }
@@ -359,6 +361,7 @@ impl From<Winding> for solid::Winding {
             angle: form.angle,
             modulus: form.modulus,
             compression: form.compression,
+            free: form.free,
         }
     }
 }
@@ -394,10 +397,11 @@ impl TryFrom<Material> for solid::Material {
                     Hyperelastic::Ogden(terms) => Model::Ogden { terms },
                     Hyperelastic::Gent(shear, limit) => Model::Gent { shear, limit },
                 };
-                let fiber = |(direction, modulus, compression)| solid::Fiber {
+                let fiber = |(direction, modulus, compression, free)| solid::Fiber {
                     direction,
                     modulus,
                     compression,
+                    free,
                 };
                 let fibers = fibers.into_iter().map(fiber).collect();
                 let plain = HyperelasticMaterial::new(model, bulk, density)?;

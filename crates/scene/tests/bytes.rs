@@ -102,6 +102,7 @@ fn full() -> Scene {
         direction: [0.0, 0.6, 0.8],
         modulus: 3e4,
         compression: true,
+        free: 0.95,
     };
     let winding = Winding {
         center: [0.1, 0.2, -0.3],
@@ -109,6 +110,7 @@ fn full() -> Scene {
         angle: 0.9,
         modulus: 2e4,
         compression: false,
+        free: 0.95,
     };
     let ogden = Model::Ogden {
         terms: [(2e4, 1.3), (1e3, 5.0), (0.0, 0.0)],

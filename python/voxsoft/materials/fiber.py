@@ -111,10 +111,9 @@ Try: give one, such as angle = "54.7 deg"
         x, y, z = (np.asarray(along) / np.linalg.norm(np.asarray(along))).tolist()
         return x, y, z
 
-    @property
-    def core(self) -> _core.Fiber:
-        """What the Rust core takes for straight ones."""
-        return _core.Fiber(self.unit, modulus=self.modulus, compression=self.compression)
+    def core(self, free: float) -> _core.Fiber:
+        """What the core takes for straight ones, by themselves `free` times as long."""
+        return _core.Fiber(self.unit, modulus=self.modulus, compression=self.compression, free=free)
 
     def distances(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """How far points are from the axis of wound fibers [m], (n,).
@@ -132,7 +131,7 @@ Try: give one, such as angle = "54.7 deg"
         return found
 
     def winding(
-        self, rotation: NDArray[np.float64], position: NDArray[np.float64]
+        self, rotation: NDArray[np.float64], position: NDArray[np.float64], free: float
     ) -> _core.Winding:
         """What the Rust core takes for wound ones.
 
@@ -140,6 +139,8 @@ Try: give one, such as angle = "54.7 deg"
         ----------
         rotation, position
             Where the body of the part is, (3, 3) and (3,) [m].
+        free
+            How many times as long the fibers are by themselves.
         """
         assert self.angle is not None  # asked for wound ones alone
         center = rotation @ (self.center or (0.0, 0.0, 0.0)) + position
@@ -149,4 +150,5 @@ Try: give one, such as angle = "54.7 deg"
             self.angle,
             modulus=self.modulus,
             compression=self.compression,
+            free=free,
         )

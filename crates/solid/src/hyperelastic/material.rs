@@ -106,7 +106,11 @@ impl HyperelasticMaterial {
     /// The same material with families of fibers.
     pub fn with_fibers(self, fibers: Vec<Fiber>) -> Result<Self, ProblemError> {
         for fiber in &fibers {
-            check_family(fiber.modulus, "direction of fibers", fiber.direction)?;
+            check_family(
+                [fiber.modulus, fiber.free],
+                "direction of fibers",
+                fiber.direction,
+            )?;
         }
         Ok(Self { fibers, ..self })
     }
@@ -114,7 +118,11 @@ impl HyperelasticMaterial {
     /// The same material with families of fibers wound about axes.
     pub fn with_windings(self, windings: Vec<Winding>) -> Result<Self, ProblemError> {
         for winding in &windings {
-            check_family(winding.modulus, "axis of fibers", winding.axis)?;
+            check_family(
+                [winding.modulus, winding.free],
+                "axis of fibers",
+                winding.axis,
+            )?;
             if !winding.angle.is_finite() || winding.center.iter().any(|x| !x.is_finite()) {
                 let what = "angle and center of wound fibers";
                 return Err(ProblemError::NotFinite { what });
@@ -243,13 +251,15 @@ impl HyperelasticMaterial {
     }
 }
 
-/// Checks the modulus (Pa) of a family of fibers, and a vector of it that must be a unit one.
-fn check_family(modulus: f64, what: &'static str, unit: Vec3) -> Result<(), ProblemError> {
-    if !(modulus > 0.0 && modulus.is_finite()) {
-        return Err(ProblemError::NotPositive {
-            what: "modulus of fibers (Pa)",
-            value: modulus,
-        });
+/// Checks the modulus (Pa) and the free stretch of a family of fibers, and a vector of it that must be a unit one.
+fn check_family(numbers: [f64; 2], what: &'static str, unit: Vec3) -> Result<(), ProblemError> {
+    for (what, value) in [
+        ("modulus of fibers (Pa)", numbers[0]),
+        ("free stretch of fibers", numbers[1]),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(ProblemError::NotPositive { what, value });
+        }
     }
     let length = norm(unit);
     if !((length - 1.0).abs() < 1e-9) {

@@ -23,6 +23,8 @@ pub struct Winding {
     pub modulus: f64,
     /// Whether fibers also carry compression.
     pub compression: bool,
+    /// The stretch at which they carry nothing, as for [`Fiber`].
+    pub free: f64,
 }
 
 impl Winding {
@@ -45,6 +47,7 @@ impl Winding {
             direction: apply(axes, course),
             modulus: self.modulus,
             compression: self.compression,
+            free: self.free,
         })
     }
 }
@@ -94,6 +97,7 @@ mod tests {
         angle: std::f64::consts::FRAC_PI_6,
         modulus: 2.0,
         compression: true,
+        free: 0.9,
     };
 
     fn close(a: Vec3, b: Vec3) -> bool {
@@ -105,7 +109,10 @@ mod tests {
         // Behind +x of the axis, counterclockwise about z is +y.
         let fiber = WOUND.at([3.0, 0.0, 7.0], 0.5, &IDENTITY).unwrap();
         assert!(close(fiber.direction, [0.0, 0.5, 0.75f64.sqrt()]));
-        assert_eq!((fiber.modulus, fiber.compression), (2.0, true));
+        assert_eq!(
+            (fiber.modulus, fiber.compression, fiber.free),
+            (2.0, true, 0.9)
+        );
         let fiber = WOUND.at([1.0, 3.0, 7.0], 0.5, &IDENTITY).unwrap();
         assert!(close(fiber.direction, [-0.5, 0.0, 0.75f64.sqrt()]));
     }
