@@ -14,7 +14,7 @@ import pint
 from pydantic import StringConstraints, WithJsonSchema
 
 from voxsoft.design import Design, Parameter, Region
-from voxsoft.design.activation import Strain, Swelling, Thermal
+from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
 from voxsoft.design.contact import ContactPair
@@ -130,7 +130,7 @@ INNER = {
     "clamps": [{"region": {"z": ["-inf", 0]}}],
     "probes": {"top": {"point": [0, 0, 0]}},
 }
-SPECIAL |= {(model, "part"): ("plain",) for model in (Strain, Swelling, Thermal)}
+SPECIAL |= {(model, "part"): ("plain",) for model in (FiberStrain, Strain, Swelling, Thermal)}
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.
@@ -167,6 +167,9 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Constraint, "kind"): {"max": 0.5},
     (Constraint, "min"): {"max": None},
     (Spring, "to"): {"anchor": None},
+    (Fiber, "angle"): {"direction": None, "axis": "z"},
+    (Fiber, "axis"): {"direction": None, "angle": "30 deg"},
+    (Fiber, "center"): {"direction": None, "axis": "z", "angle": "30 deg"},
     (History, "sine"): {"time": (), "factor": ()},
     (Guide, "fixed"): {"point": None},
     **{(Tendon, name): {"tension": None} for name in ("length", "shortening")},

@@ -166,9 +166,26 @@ _History = tuple[Sequence[float], Sequence[float]] | None
 
 @final
 class Fiber:
-    """A family of fibers: unit vector, modulus in Pa, whether they carry compression."""
+    """Fibers: unit vector, modulus [Pa], whether they carry compression, free stretch."""
 
-    def __new__(cls, direction: _Point, *, modulus: float, compression: bool) -> Fiber: ...
+    def __new__(
+        cls, direction: _Point, *, modulus: float, compression: bool, free: float
+    ) -> Fiber: ...
+
+@final
+class Winding:
+    """Fibers wound about an axis: a point [m] and a unit vector of it, the angle to it [rad]."""
+
+    def __new__(
+        cls,
+        center: _Point,
+        axis: _Point,
+        angle: float,
+        *,
+        modulus: float,
+        compression: bool,
+        free: float,
+    ) -> Winding: ...
 
 @final
 class Material:
@@ -199,6 +216,9 @@ class Material:
     def gent(*, shear: float, limit: float, bulk: float, density: float) -> Material: ...
     def with_fibers(self, fibers: Sequence[Fiber]) -> Material:
         """The same with these fibers in place of any others; a lattice has none."""
+
+    def with_windings(self, windings: Sequence[Winding]) -> Material:
+        """The same with these wound fibers in place of any others; a lattice has none."""
 
     def with_swelling(self, stretch: float) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:

@@ -37,6 +37,7 @@ LONG = {
     "layers-and-fibers.md",
     "material-card.md",
     "repeat-a-job.md",
+    "wound-tubes.md",
 }
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}

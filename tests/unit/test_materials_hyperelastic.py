@@ -72,7 +72,7 @@ def test_what_the_core_takes(material, core):
 
 def test_fibers_and_branches_belong_to_hyperelastic_materials():
     """Neither takes the other's place, and a lattice has none."""
-    fiber = Fiber((0.0, 0.6, 0.8), modulus=2e6, compression=False)
+    fiber = Fiber((0.0, 0.6, 0.8), modulus=2e6, compression=False, free=1.0)
     soft = Core.neo_hookean(c10=1e4, bulk=1e6, density=1e3)
     both = soft.with_prony([(0.25, 2.0)]).with_fibers([fiber])
     assert both == soft.with_fibers([fiber]).with_prony([(0.25, 2.0)])

@@ -100,7 +100,8 @@ def test_the_mesh_of_a_mirror_image_is_the_mirror_image_of_the_mesh(axis, materi
 
 @pytest.mark.parametrize("axis", ["x", "y"])
 def test_the_state_of_a_mirror_image_is_the_mirror_image_of_the_state(axis):
-    inner = hook(fibers=[Fiber(direction=(1, 0.7, 0.3), modulus="200 kPa")])
+    wound = Fiber(axis=(1, 2, 0), angle="30 deg", center=(0, 0, "-40 mm"), modulus="200 kPa")
+    inner = hook(fibers=[Fiber(direction=(1, 0.7, 0.3), modulus="200 kPa"), wound])
     state, image = vs.simulate(alone(inner)), vs.simulate(alone(inner, mirror=axis))
     mirror = Isometry.mirror(axis).matrix
     there = order(state.mesh.vertices @ mirror, image.mesh.vertices)
@@ -116,9 +117,12 @@ def test_the_state_of_a_mirror_image_is_the_mirror_image_of_the_state(axis):
 
 
 def test_the_fibers_of_a_mirror_image_are_mirrored():
-    inner = hook(fibers=[Fiber(direction=(1, 2, 3), modulus="200 kPa")])
+    wound = Fiber(axis=(0, 1, 0), angle=0.5, center=(0, 1, 2), modulus="200 kPa")
+    inner = hook(fibers=[Fiber(direction=(1, 2, 3), modulus="200 kPa"), wound])
     [part] = alone(inner, mirror="y").assembled.parts
-    assert part.fibers[0].direction == (1.0, -2.0, 3.0)
+    straight, image = part.fibers
+    assert straight.direction == (1.0, -2.0, 3.0)
+    assert (image.axis, image.angle, image.center) == ((0.0, -1.0, 0.0), -0.5, (0.0, -1.0, 2.0))
     assert part.name == "it.body"
 
 

@@ -5,7 +5,15 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison.bricks import BrickModel
-from voxsoft.design import Body, Contact, Objective, Strain, Swelling, Thermal
+from voxsoft.design import (
+    Body,
+    Contact,
+    FiberStrain,
+    Objective,
+    Strain,
+    Swelling,
+    Thermal,
+)
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, gradient
 from voxsoft.units import kPa, mm
@@ -198,3 +206,57 @@ def test_what_no_body_can_be_heated_to_is_refused():
         Thermal(part="upper", value="80 °C", expansion="3e-4 1/K")
     with pytest.raises(DesignError, match="leaves nothing"):
         Thermal(part="upper", value="300 K", expansion="-1 1/K")
+
+
+def muscle(value, *, compression=False):
+    """A free bar of rubber with fibers along it."""
+    fiber = vs.Fiber(direction=(1, 0, 0), modulus=3 * YOUNG, compression=compression)
+    box = vs.Box(size=(20 * mm, 10 * mm, 10 * mm))
+    part = vs.Part(name="muscle", shape=box, material=rubber(YOUNG), fibers=[fiber])
+    return vs.Design(
+        name="muscle",
+        voxel_size=5 * mm,
+        parts=[part],
+        activations=[FiberStrain(part="muscle", value=value)],
+        clamps=[vs.Clamp(region=vs.Region(**{axis: (0, 0)}), axes=axis) for axis in "xyz"],
+        probes={"tip": vs.Probe(x=(20 * mm, 20 * mm))},
+    )
+
+
+def test_fibers_that_are_shorter_by_themselves_draw_the_bar_together():
+    # E ε + E_f (ε - s) = 0. To second order of the strain: both laws are curved, 2 % at 1 %.
+    strain = vs.simulate(muscle(-0.01)).probes["tip"][0] / (20 * mm)
+    assert strain == pytest.approx(-0.01 * 3.0 / 4.0, rel=0.02)
+
+
+def test_fibers_at_their_own_length_carry_nothing_at_any_strain():
+    # Held at 0.7 of its length the bar carries what rubber alone does: fibers of that length too.
+    def held(design):
+        end = vs.Clamp(
+            region=vs.Region(x=(20 * mm, 20 * mm)),
+            axes="x",
+            motion=vs.Motion(displacement=(-6 * mm, 0, 0)),
+        )
+        return vs.simulate(design.replace(clamps=[*design.clamps, end]))
+
+    plain = muscle(-0.3)
+    plain = plain.replace(activations=[], parts=[plain.parts[0].replace(fibers=[])])
+    for fibers in (muscle(-0.3), muscle(-0.3, compression=True)):
+        assert held(fibers).metric("elastic_energy") == pytest.approx(
+            held(plain).metric("elastic_energy"), rel=1e-6
+        )
+    tight = held(muscle(-0.4)).metric("elastic_energy")
+    # Of the fibers alone, E_f/8 ((λ/λ₀)² - 1)² V.
+    own = 3 * YOUNG / 8.0 * ((0.7 / 0.6) ** 2 - 1.0) ** 2 * 2e-6
+    assert tight - held(plain).metric("elastic_energy") == pytest.approx(own, rel=1e-6)
+
+
+def test_longer_fibers_are_slack_unless_they_push():
+    assert abs(vs.simulate(muscle(0.01)).probes["tip"][0]) < 1e-9
+    pushed = vs.simulate(muscle(0.01, compression=True)).probes["tip"][0] / (20 * mm)
+    assert pushed == pytest.approx(0.01 * 3.0 / 4.0, rel=0.02)
+
+
+def test_a_part_without_fibers_has_none_that_shorten():
+    with pytest.raises(DesignError, match=r"activations\[0\].part: is for the fibers of a part"):
+        vs.simulate(bilayer(0.01, activations=[FiberStrain(part="upper", value=-0.1)]))

@@ -20,6 +20,7 @@ pub fn to_python(error: ProblemError) -> PyErr {
         | ProblemError::NotCubes { .. }
         | ProblemError::NotVoxels { .. } => ("MeshError", "mesh"),
         ProblemError::FlatMembrane { .. } => ("DesignError", "layers"),
+        ProblemError::OnAxis { .. } => ("DesignError", "parts"),
         // The message says which.
         ProblemError::Length { .. }
         | ProblemError::Index { .. }

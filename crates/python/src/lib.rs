@@ -37,6 +37,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<answer::PyLiveStatus>()?;
     module.add_class::<materials::PyMaterial>()?;
     module.add_class::<materials::PyFiber>()?;
+    module.add_class::<materials::PyWinding>()?;
     module.add_class::<tendon::PyTendon>()?;
     module.add_class::<touch::PyContact>()?;
     module.add_class::<contact_field::PyContactField>()?;

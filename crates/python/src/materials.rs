@@ -1,11 +1,14 @@
-//! `_core.Material` and `_core.Fiber`: what parts are made of, as frozen values.
+//! `_core.Material`, `_core.Fiber` and `_core.Winding`: what parts are made of, as frozen values.
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, ProblemError};
+use voxsoft_solid::{
+    Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, ProblemError, Winding,
+};
 
 use crate::errors::{exception, to_python};
 
-/// A family of fibers: a unit vector, a modulus in Pa, and whether they carry compression.
+/// A family of fibers: a unit vector, a modulus in Pa, whether they carry compression, and the stretch at which they
+/// carry nothing.
 #[pyclass(frozen, from_py_object, name = "Fiber", module = "voxsoft._core")]
 #[derive(Clone)]
 pub struct PyFiber(Fiber);
@@ -13,12 +16,41 @@ pub struct PyFiber(Fiber);
 #[pymethods]
 impl PyFiber {
     #[new]
-    #[pyo3(signature = (direction, *, modulus, compression))]
-    fn new(direction: Vec3, modulus: f64, compression: bool) -> Self {
+    #[pyo3(signature = (direction, *, modulus, compression, free))]
+    fn new(direction: Vec3, modulus: f64, compression: bool, free: f64) -> Self {
         Self(Fiber {
             direction,
             modulus,
             compression,
+            free,
+        })
+    }
+}
+
+/// A family of fibers wound about an axis: a point on it in m, a unit vector along it, and the angle to it in rad.
+#[pyclass(frozen, from_py_object, name = "Winding", module = "voxsoft._core")]
+#[derive(Clone)]
+pub struct PyWinding(Winding);
+
+#[pymethods]
+impl PyWinding {
+    #[new]
+    #[pyo3(signature = (center, axis, angle, *, modulus, compression, free))]
+    fn new(
+        center: Vec3,
+        axis: Vec3,
+        angle: f64,
+        modulus: f64,
+        compression: bool,
+        free: f64,
+    ) -> Self {
+        Self(Winding {
+            center,
+            axis,
+            angle,
+            modulus,
+            compression,
+            free,
         })
     }
 }
@@ -94,6 +126,12 @@ impl PyMaterial {
     fn with_fibers(&self, py: Python<'_>, fibers: Vec<PyFiber>) -> PyResult<Self> {
         let fibers = fibers.into_iter().map(|fiber| fiber.0).collect();
         made(self.rubber(py, "fibers")?.with_fibers(fibers))
+    }
+
+    /// The same material with these families of wound fibers in place of any others.
+    fn with_windings(&self, py: Python<'_>, windings: Vec<PyWinding>) -> PyResult<Self> {
+        let windings = windings.into_iter().map(|winding| winding.0).collect();
+        made(self.rubber(py, "fibers")?.with_windings(windings))
     }
 
     /// The same material with these branches that relax: share of the instantaneous modulus, time in s.

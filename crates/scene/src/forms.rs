@@ -71,13 +71,25 @@ enum Material {
         model: Hyperelastic,
         bulk: f64,
         density: f64,
-        /// Direction, modulus, and whether it resists compression.
-        fibers: Vec<(Vec3, f64, bool)>,
+        /// Direction, modulus, whether it resists compression, and free stretch.
+        fibers: Vec<(Vec3, f64, bool, f64)>,
+        windings: Vec<Winding>,
         /// Share and time of each branch.
         prony: Vec<(f64, f64)>,
         /// How much longer it is free of stress than in the body at rest.
         swelling: f64,
     },
+}
+
+/// Fibers wound about an axis.
+#[derive(Serialize, Deserialize)]
+struct Winding {
+    center: Vec3,
+    axis: Vec3,
+    angle: f64,
+    modulus: f64,
+    compression: bool,
+    free: f64,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -318,11 +330,38 @@ impl From<&solid::Material> for Material {
                 fibers: rubber
                     .fibers()
                     .iter()
-                    .map(|f| (f.direction, f.modulus, f.compression))
+                    .map(|f| (f.direction, f.modulus, f.compression, f.free))
                     .collect(),
+                windings: rubber.windings().iter().map(Into::into).collect(),
                 prony: rubber.prony().to_vec(),
                 swelling: rubber.swelling(),
             },
+        }
+    }
+}
+
+impl From<&solid::Winding> for Winding {
+    fn from(winding: &solid::Winding) -> Self {
+        Self {
+            center: winding.center,
+            axis: winding.axis,
+            angle: winding.angle,
+            modulus: winding.modulus,
+            compression: winding.compression,
+            free: winding.free,
+        }
+    }
+}
+
+impl From<Winding> for solid::Winding {
+    fn from(form: Winding) -> Self {
+        Self {
+            center: form.center,
+            axis: form.axis,
+            angle: form.angle,
+            modulus: form.modulus,
+            compression: form.compression,
+            free: form.free,
         }
     }
 }
@@ -347,6 +386,7 @@ impl TryFrom<Material> for solid::Material {
                 bulk,
                 density,
                 fibers,
+                windings,
                 prony,
                 swelling,
             } => {
@@ -357,15 +397,18 @@ impl TryFrom<Material> for solid::Material {
                     Hyperelastic::Ogden(terms) => Model::Ogden { terms },
                     Hyperelastic::Gent(shear, limit) => Model::Gent { shear, limit },
                 };
-                let fiber = |(direction, modulus, compression)| solid::Fiber {
+                let fiber = |(direction, modulus, compression, free)| solid::Fiber {
                     direction,
                     modulus,
                     compression,
+                    free,
                 };
                 let fibers = fibers.into_iter().map(fiber).collect();
                 let plain = HyperelasticMaterial::new(model, bulk, density)?;
-                let whole = plain.with_fibers(fibers)?.with_prony(prony)?;
-                whole.with_swelling(swelling)?.into()
+                let wound = plain
+                    .with_fibers(fibers)?
+                    .with_windings(windings.into_iter().map(Into::into).collect())?;
+                wound.with_prony(prony)?.with_swelling(swelling)?.into()
             }
         })
     }

@@ -19,7 +19,7 @@ pub use touching::Touching;
 const MAGIC: [u8; 4] = *b"VXSC";
 
 /// The version that is written and read.
-pub const VERSION: u32 = 5;
+pub const VERSION: u32 = 6;
 
 /// Why bytes are no scene.
 #[derive(Debug, Error, Clone, PartialEq)]

@@ -10,7 +10,7 @@ use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
     Attachment, Clamp, Fiber, Filling, Floor, History, HyperelasticMaterial, LatticeMaterial, Load,
     Material, Membrane, MembraneMaterial, Mesh, Model, Motion, PointForces, Pressure, Rigid,
-    Spring, Springs,
+    Spring, Springs, Winding,
 };
 use voxsoft_voxel::{Grid, tet_mesh};
 use voxsoft_xpbd::{Damping, Dynamics};
@@ -102,6 +102,15 @@ fn full() -> Scene {
         direction: [0.0, 0.6, 0.8],
         modulus: 3e4,
         compression: true,
+        free: 0.95,
+    };
+    let winding = Winding {
+        center: [0.1, 0.2, -0.3],
+        axis: [0.0, 0.8, 0.6],
+        angle: 0.9,
+        modulus: 2e4,
+        compression: false,
+        free: 0.95,
     };
     let ogden = Model::Ogden {
         terms: [(2e4, 1.3), (1e3, 5.0), (0.0, 0.0)],
@@ -109,6 +118,8 @@ fn full() -> Scene {
     let rubber = HyperelasticMaterial::new(ogden, 4e5, 1000.0).unwrap();
     let rubber = rubber
         .with_fibers(vec![fiber])
+        .unwrap()
+        .with_windings(vec![winding])
         .unwrap()
         .with_prony(vec![(0.2, 0.5)])
         .unwrap();
@@ -223,7 +234,7 @@ fn what_is_cut_off_or_too_long_is_reported() {
     newer[4] = 7;
     assert_eq!(Scene::read(&newer), Err(SceneError::Version(7)));
     // A list that says to be longer than all there is is refused once the bytes are used up.
-    let endless = b"VXSC\x05\0\0\0\xff\xff\xff\xff\x0fab";
+    let endless = b"VXSC\x06\0\0\0\xff\xff\xff\xff\x0fab";
     assert_eq!(Scene::read(endless), Err(SceneError::CutOff));
     assert_eq!(Scene::read(b"PK\x03\x04"), Err(SceneError::NotAScene));
 }

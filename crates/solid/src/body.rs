@@ -16,10 +16,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::color::{color_order, interleave};
+use crate::hyperelastic::Wound;
 use crate::lattice::LatticeConstants;
-use crate::matrix::Mat3;
+use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
-use crate::vector::{Vec3, cross, dot, norm, sub};
+use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
     Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError,
     Warping, cube, free_faces,
@@ -115,6 +116,7 @@ impl Body {
 
         let mut masses = vec![0.0; mesh.vertices.len()];
         let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
+        let mut wound = Wound::beside(materials.len());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
         }
@@ -177,14 +179,23 @@ impl Body {
                     &materials[usize::from(mesh.tet_part[block[0]])]
                 {
                     let (vertices, side) = cube.ok_or(ProblemError::NotCubes { tet: block[0] })?;
+                    let part = u32::from(mesh.tet_part[block[0]]);
+                    let filling = filling_of(mesh, block);
                     let mut brick = Brick {
                         vertices,
-                        material: u32::from(mesh.tet_part[block[0]]),
+                        material: part,
                         side,
                         fraction,
-                        filling: filling_of(mesh, block),
+                        filling,
                         warping: Warping::NONE,
                     };
+                    if !material.windings().is_empty() {
+                        let axes = axes_of(mesh, block).unwrap_or(IDENTITY);
+                        let ends = [0, 7].map(|c| mesh.vertices[vertices[c] as usize]);
+                        let shift = apply_transposed(&axes, scale(side / 2.0, filling.shift));
+                        let place = add(scale(0.5, add(ends[0], ends[1])), shift);
+                        brick.material = wound.number(part, material.at(place, side, &axes)?);
+                    }
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
                     for vertex in vertices {
@@ -204,13 +215,17 @@ impl Body {
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
-        // a neighbor, which no brick asks for.
+        // a neighbor, which no brick asks for. Those with fibers wound about an axis, as they are at its voxels, follow.
         let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
             Vec::new()
         } else {
             let some = materials.iter().find_map(Material::hyperelastic);
             let each = |m: &Material| m.hyperelastic().or(some).cloned();
-            materials.iter().filter_map(each).collect()
+            materials
+                .iter()
+                .filter_map(each)
+                .chain(wound.materials)
+                .collect()
         };
         let young = |brick: &Brick| hyperelastic[brick.material as usize].young();
         let brick_energy = bricks.iter().map(|b| young(b) * b.volume()).sum::<f64>();

@@ -53,6 +53,17 @@ pub enum ProblemError {
         /// Its vertices.
         vertices: [u32; 3],
     },
+    /// A voxel of fibers that are wound about an axis lies on the axis.
+    #[error(
+        "fibers wound about an axis have no direction within a voxel of it: the material at ({:.4e}, {:.4e}, {:.4e}) m is {distance:.3e} m away",
+        place[0], place[1], place[2]
+    )]
+    OnAxis {
+        /// The center of the voxel's material in m.
+        place: [f64; 3],
+        /// How far that is from the axis in m.
+        distance: f64,
+    },
     /// A direction is not a unit vector.
     #[error("{what}: expected a unit vector, its length is {length}")]
     NotUnit {

@@ -65,6 +65,7 @@ fn materials() -> Vec<HyperelasticMaterial> {
         direction: [0.6, 0.0, 0.8],
         modulus: 5.0,
         compression: true,
+        free: 1.0,
     };
     vec![
         HyperelasticMaterial::neo_hookean(1.0, 0.49, 1.0).unwrap(),

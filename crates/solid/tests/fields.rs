@@ -401,6 +401,7 @@ fn turned_voxels_measure_along_their_own_edges() {
         direction: [1.0, 0.0, 0.0],
         modulus: 4.0 * C10,
         compression: true,
+        free: 1.0,
     };
     let rubber = HyperelasticMaterial::new(model, BULK, 1000.0).unwrap();
     let material: Material = rubber.with_fibers(vec![stiff]).unwrap().into();

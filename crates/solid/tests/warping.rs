@@ -288,6 +288,7 @@ fn cut_voxels_and_fibers_do_not_warp() {
         direction: [1.0, 0.0, 0.0],
         modulus: 1.0,
         compression: true,
+        free: 1.0,
     };
     let wound: Material = rubber().with_fibers(vec![fiber]).unwrap().into();
     let body = Body::new(&mesh, &[wound]).unwrap();

@@ -1,6 +1,6 @@
 """Designs: typed models of what is built, held, loaded and measured."""
 
-from voxsoft.design.activation import Strain, Swelling, Thermal
+from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
 from voxsoft.design.assignment import set_values
 from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
@@ -42,6 +42,7 @@ __all__ = [
     "Contact",
     "ContactPair",
     "Design",
+    "FiberStrain",
     "Floor",
     "FlowSupply",
     "Force",

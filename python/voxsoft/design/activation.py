@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Discriminator, field_validator, model_validator
 
@@ -17,6 +17,9 @@ class Activation(Record):
     """A part that is longer or shorter by itself; a kind says what its value means."""
 
     part: Name
+
+    #: Whether the fibers of the part alone are longer, and not what is around them.
+    of_fibers: ClassVar[bool] = False
 
     @property
     @abstractmethod
@@ -136,4 +139,33 @@ class Thermal(Activation):
         return self.replace(value=self.reference + part * (self.value - self.reference))
 
 
-AnyActivation = Annotated[Strain | Swelling | Thermal, Discriminator("kind")]
+class FiberStrain(_Growth):
+    """A part whose fibers are so much longer along themselves when they are free of stress.
+
+    What is around them is not, and holds against it: a negative strain is a muscle, a shape-memory
+    wire or a drawn polymer thread in rubber. Without ``compression`` fibers that are longer by
+    themselves are slack.
+
+    Parameters
+    ----------
+    part
+        The name of the part, which must have fibers.
+    value
+        The strain, above −1: ``"-20 %"`` is a fifth shorter.
+
+    Examples
+    --------
+    >>> FiberStrain(part="wall", value="-20 %").stretch
+    0.8
+    """
+
+    kind: Literal["fiber-strain"] = "fiber-strain"
+    of_fibers: ClassVar[bool] = True
+
+    @property
+    def stretch(self) -> float:
+        """How many times as long the fibers are when they are free of stress."""
+        return 1.0 + self.value
+
+
+AnyActivation = Annotated[Strain | Swelling | Thermal | FiberStrain, Discriminator("kind")]

@@ -6,6 +6,7 @@ from typing import Any, Literal, TypeVar
 
 from voxsoft.design.part import Part
 from voxsoft.design.region import Region
+from voxsoft.materials import Fiber
 from voxsoft.shapes import Mirror, Shape
 
 Triple = tuple[float, float, float]
@@ -56,9 +57,16 @@ def mirrored_region(region: _Region, axis: Axis) -> _Region:
 def mirrored_part(part: Part, axis: Axis) -> Part:
     """Return the image of a part with its fibers, under its name or else that of its shape."""
     named = part.shape if isinstance(part.shape, str) else None
-    fibers = [
-        fiber.replace(direction=mirrored_point(fiber.direction, axis)) for fiber in part.fibers
-    ]
+    fibers = [mirrored_fiber(fiber, axis) for fiber in part.fibers]
     return part.replace(
         shape=mirrored_shape(part.shape, axis), fibers=fibers, name=part.name or named
     )
+
+
+def mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:
+    """The image of a family of fibers: a right-handed helix becomes a left-handed one."""
+    if fiber.direction is not None:
+        return fiber.replace(direction=mirrored_point(fiber.direction, axis))
+    assert fiber.angle is not None  # what is not straight is wound
+    center = None if fiber.center is None else mirrored_point(fiber.center, axis)
+    return fiber.replace(axis=mirrored_point(fiber.unit, axis), center=center, angle=-fiber.angle)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,7 +13,6 @@ from pydantic import Field
 from voxsoft import _core
 from voxsoft.errors import ShapeError, VoxSoftError
 from voxsoft.records import Record, closest
-from voxsoft.units import Vector
 
 if TYPE_CHECKING:
     from voxsoft.shapes.booleans import Difference, Intersection, Union
@@ -24,24 +23,8 @@ if TYPE_CHECKING:
 
 Triple = tuple[float, float, float]
 
-#: A coordinate axis by name, or any direction as three numbers.
-Axis = Literal["x", "y", "z"] | Vector
-
-_AXES: dict[str, Triple] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
-
 #: Shapes nested deeper are refused, long before Python's own limit.
 _DEEPEST = 100
-
-
-def direction(axis: str | Triple) -> Triple:
-    """Return the three numbers of an axis.
-
-    Examples
-    --------
-    >>> direction("z")
-    (0.0, 0.0, 1.0)
-    """
-    return _AXES[axis] if isinstance(axis, str) else axis
 
 
 class Shape(Record):

@@ -8,8 +8,9 @@ from pydantic import Field, model_validator
 
 from voxsoft import _core
 from voxsoft.errors import ShapeError
-from voxsoft.shapes.base import Axis, Scope, Shape, direction
+from voxsoft.shapes.base import Scope, Shape
 from voxsoft.units import Length, NonNegativeLength, Point, PositiveLength
+from voxsoft.units.axis import Axis, direction
 
 __all__ = [
     "Box",

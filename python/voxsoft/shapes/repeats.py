@@ -9,8 +9,9 @@ from pydantic import Field
 
 from voxsoft import _core
 from voxsoft.records import Name
-from voxsoft.shapes.base import Axis, Scope, Shape, direction
+from voxsoft.shapes.base import Scope, Shape
 from voxsoft.units import Angle, Point
+from voxsoft.units.axis import Axis, direction
 
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape

@@ -8,8 +8,9 @@ from pydantic import Field
 
 from voxsoft import _core
 from voxsoft.records import Name
-from voxsoft.shapes.base import Axis, Scope, Shape, Triple, direction
+from voxsoft.shapes.base import Scope, Shape, Triple
 from voxsoft.units import Angle, Point, PositiveLength, UnitOf
+from voxsoft.units.axis import Axis, direction
 
 if TYPE_CHECKING:
     from voxsoft.shapes.catalog import AnyShape

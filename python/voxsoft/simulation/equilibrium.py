@@ -74,7 +74,8 @@ class LoadControl(Statics):
             for number in range(1, count + 1):
                 swollen = [each.share(number / count) for each in setup.design.activations]
                 design = setup.design.replace(activations=tuple(swollen))
-                problem = setup.problem.with_materials(core_materials(design, setup.materials))
+                own = core_materials(design, setup.materials, setup.origin)
+                problem = setup.problem.with_materials(own)
                 used, report = find_equilibrium(
                     setup, self, watch.progress, problem, frames=watch.frames, start=start
                 )

@@ -214,7 +214,9 @@ def follow(
     share = max(1, len(instants) - 1)
     for number, instant in enumerate(instants):
         started = time.perf_counter()
-        own = core_materials(designs[number], setup.materials) if swells else None
+        own = None
+        if swells:
+            own = core_materials(designs[number], setup.materials, solved.origin)
         used, report = find_equilibrium(
             solved,
             statics,

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from voxsoft import _core
 from voxsoft.design import Design
 from voxsoft.design.assembly import voxel_size_of
@@ -55,7 +58,9 @@ def solid_materials(design: Design) -> list[Material]:
     ]
 
 
-def core_materials(design: Design, materials: list[Material]) -> list[_core.Material]:
+def core_materials(
+    design: Design, materials: list[Material], origin: NDArray[np.float64]
+) -> list[_core.Material]:
     """What the core takes for each part of a design: its material and its fibers.
 
     Parameters
@@ -64,28 +69,39 @@ def core_materials(design: Design, materials: list[Material]) -> list[_core.Mate
         Whose parts have the fibers.
     materials
         One for each part, such as :func:`solid_materials` gives.
+    origin
+        Where the solver's origin is [m], (3,).
     """
     found = []
-    stretches = _stretches(design)
+    stretches, of_fibers = _stretches(design)
+    poses = {body.name: body.pose for body in design.bodies}
     for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
         core = material.core
         if part.fibers:
-            core = core.with_fibers([fiber.core for fiber in part.fibers])
+            free = of_fibers.get(index, 1.0)
+            straight = [fiber.core(free) for fiber in part.fibers if not fiber.is_wound]
+            rotation, position = poses.get(part.body or "", (np.eye(3), np.zeros(3)))
+            place = rotation, position - origin
+            wound = [fiber.winding(*place, free) for fiber in part.fibers if fiber.is_wound]
+            core = core.with_fibers(straight).with_windings(wound)
         if index in stretches:
             core = core.with_swelling(stretches[index])
         found.append(core)
     return found
 
 
-def _stretches(design: Design) -> dict[int, float]:
-    """How many times as long parts are by themselves, by index; several activations multiply.
+def _stretches(design: Design) -> tuple[dict[int, float], dict[int, float]]:
+    """How many times as long parts and their fibers are by themselves, by the index of the part.
+
+    Several activations of one multiply.
 
     Raises
     ------
     DesignError
-        There is no such part, or it is a lattice or rigid.
+        There is no such part, it is a lattice or rigid, or has no fibers that could be longer.
     """
-    found: dict[int, float] = {}
+    of_parts: dict[int, float] = {}
+    of_fibers: dict[int, float] = {}
     for number, activation in enumerate(design.activations):
         where = f"activations[{number}].part"
         named = [i for i, part in enumerate(design.parts) if activation.part == part.label]
@@ -101,8 +117,13 @@ def _stretches(design: Design) -> dict[int, float]:
                     f'swells hyperelastic parts, and "{activation.part}" is "{material.model}"',
                     "use the neo-Hookean material of the same Young's modulus",
                 )
+            if activation.of_fibers and not design.parts[index].fibers:
+                what = f'is for the fibers of a part, and "{activation.part}" has none'
+                hint = 'give the part fibers, or take kind = "strain"'
+                raise DesignError(where, what, hint)
+            found = of_fibers if activation.of_fibers else of_parts
             found[index] = found.get(index, 1.0) * activation.stretch
-    return found
+    return of_parts, of_fibers
 
 
 def _shear(material: Hyperelastic | Lattice | CompliantLattice, voxel_size: float) -> float:

@@ -56,7 +56,9 @@ class SectorSetup(Setup):
     def problem(self) -> _core.Problem:
         """The problem of the sector, held at its planes."""
         parts = self.whole.sector_parts
-        return core_problem(self.mesh, core_materials(self.design, self.materials), parts)
+        return core_problem(
+            self.mesh, core_materials(self.design, self.materials, self.origin), parts
+        )
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:

@@ -33,6 +33,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
@@ -50,6 +51,7 @@ from voxsoft.simulation.touching import (
     motion_arguments,
     times_and_factors,
 )
+from voxsoft.simulation.windings import check_windings
 
 #: Bytes that a voxel takes until it can be solved for; measured on a block of 125,000: 540
 #: (lattice) and 810 (rubber), half as much again for what is not a block.
@@ -136,6 +138,7 @@ class Setup:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
         check_chambers(self.design, self.mesh)
+        check_windings(self.design, self.mesh)
         self._check_cavities()
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
@@ -182,7 +185,7 @@ class Setup:
         Raises
         ------
         DesignError
-            The voxels are not symmetric.
+            The voxels or the fibers are not symmetric.
         """
         planes = self.design.symmetry
         if planes and has_supplies(self.design):
@@ -191,7 +194,11 @@ class Setup:
         if planes and has_contact(self.design):
             what = "is not known together with contact yet"
             raise DesignError("symmetry", what, "leave contact and objects out, or the planes")
-        return Sector.of(planes, self.mesh) if planes else None
+        if not planes:
+            return None
+        found = Sector.of(planes, self.mesh)
+        check_fiber_symmetry(self.design)
+        return found
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:
@@ -215,7 +222,9 @@ class Setup:
     @cached_property
     def problem(self) -> _core.Problem:
         """The problem of the Rust core, with the design's own materials."""
-        return core_problem(self.mesh, core_materials(self.design, self.materials), self._parts())
+        return core_problem(
+            self.mesh, core_materials(self.design, self.materials, self.origin), self._parts()
+        )
 
     @cached_property
     def problem_alone(self) -> _core.Problem:
@@ -223,11 +232,13 @@ class Setup:
         if self.touching is None:
             return self.problem
         parts = self._parts(touching=False)
-        return core_problem(self.mesh, core_materials(self.design, self.materials), parts)
+        return core_problem(
+            self.mesh, core_materials(self.design, self.materials, self.origin), parts
+        )
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
-        return self.problem.with_materials(core_materials(self.design, materials))
+        return self.problem.with_materials(core_materials(self.design, materials, self.origin))
 
     @cached_property
     def materials(self) -> list[Material]:

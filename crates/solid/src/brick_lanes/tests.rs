@@ -17,6 +17,7 @@ fn materials() -> Vec<HyperelasticMaterial> {
         direction: [0.6, 0.8, 0.0],
         modulus: 5.0,
         compression: true,
+        free: 0.95,
     };
     vec![
         of(soft, 40.0),

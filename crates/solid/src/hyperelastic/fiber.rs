@@ -2,10 +2,10 @@
 
 use super::symmetric::{Sym, to_matrix};
 use crate::matrix::apply;
-use crate::vector::{Vec3, dot};
+use crate::vector::{Vec3, dot, scale};
 
-/// A family of fibers spread over a material: energy `E_f/8 (|F a|² − 1)²` per rest volume, which for
-/// small strain is `E_f ε²/2` along `a`.
+/// A family of fibers spread over a material: energy `E_f/8 (|F a|²/λ₀² − 1)²` per rest volume, which for
+/// small strain and `λ₀ = 1` is `E_f ε²/2` along `a`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fiber {
     /// Unit vector of the fibers at rest.
@@ -14,11 +14,20 @@ pub struct Fiber {
     pub modulus: f64,
     /// Whether fibers also carry compression; thin ones buckle and do not.
     pub compression: bool,
+    /// The stretch `λ₀` at which they carry nothing: 1, unless they are longer or shorter by themselves.
+    pub free: f64,
 }
 
-/// `S a` and `(|S a|² − 1)/2`, zero where a fiber is slack.
+impl Fiber {
+    /// `a/λ₀`: what counts of the direction.
+    fn course(&self) -> Vec3 {
+        scale(1.0 / self.free, self.direction)
+    }
+}
+
+/// `S a` and `(|S a|² − 1)/2` with `a/λ₀` for `a`, zero where a fiber is slack.
 fn strain(fiber: &Fiber, stretch: &Sym) -> (Vec3, f64, bool) {
-    let along = apply(&to_matrix(stretch), fiber.direction);
+    let along = apply(&to_matrix(stretch), fiber.course());
     let strain = (dot(along, along) - 1.0) / 2.0;
     let taut = strain > 0.0 || fiber.compression;
     (along, if taut { strain } else { 0.0 }, taut)
@@ -26,7 +35,7 @@ fn strain(fiber: &Fiber, stretch: &Sym) -> (Vec3, f64, bool) {
 
 /// `a ⊗ Sa` made symmetric: the derivative of the strain.
 fn slope(fiber: &Fiber, along: Vec3) -> Sym {
-    let a = fiber.direction;
+    let a = fiber.course();
     let pair = |i: usize, j: usize| (a[i] * along[j] + a[j] * along[i]) / std::f64::consts::SQRT_2;
     [
         a[0] * along[0],
@@ -60,7 +69,7 @@ pub(crate) fn add_tangent(fiber: &Fiber, stretch: &Sym, tangent: &mut [Sym; 6]) 
     for column in 0..6 {
         let mut unit = [0.0; 6];
         unit[column] = 1.0;
-        let second = self::slope(fiber, apply(&to_matrix(&unit), fiber.direction));
+        let second = self::slope(fiber, apply(&to_matrix(&unit), fiber.course()));
         for row in 0..6 {
             tangent[row][column] +=
                 fiber.modulus * (slope[row] * slope[column] + strain * second[row]);

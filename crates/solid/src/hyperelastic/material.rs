@@ -1,5 +1,7 @@
-use super::Fiber;
+use super::{Fiber, Winding};
 use crate::ProblemError;
+use crate::matrix::Mat3;
+use crate::vector::{Vec3, norm};
 
 /// The isochoric part of a hyperelastic energy, constants in Pa unless they have no unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,6 +63,7 @@ pub struct HyperelasticMaterial {
     bulk: f64,
     density: f64,
     fibers: Vec<Fiber>,
+    windings: Vec<Winding>,
     prony: Vec<(f64, f64)>,
     swelling: f64,
 }
@@ -94,6 +97,7 @@ impl HyperelasticMaterial {
             bulk,
             density,
             fibers: Vec::new(),
+            windings: Vec::new(),
             prony: Vec::new(),
             swelling: 1.0,
         })
@@ -102,21 +106,48 @@ impl HyperelasticMaterial {
     /// The same material with families of fibers.
     pub fn with_fibers(self, fibers: Vec<Fiber>) -> Result<Self, ProblemError> {
         for fiber in &fibers {
-            if !(fiber.modulus > 0.0 && fiber.modulus.is_finite()) {
-                return Err(ProblemError::NotPositive {
-                    what: "modulus of fibers (Pa)",
-                    value: fiber.modulus,
-                });
-            }
-            let length = crate::vector::norm(fiber.direction);
-            if !((length - 1.0).abs() < 1e-9) {
-                return Err(ProblemError::NotUnit {
-                    what: "direction of fibers",
-                    length,
-                });
-            }
+            check_family(
+                [fiber.modulus, fiber.free],
+                "direction of fibers",
+                fiber.direction,
+            )?;
         }
         Ok(Self { fibers, ..self })
+    }
+
+    /// The same material with families of fibers wound about axes.
+    pub fn with_windings(self, windings: Vec<Winding>) -> Result<Self, ProblemError> {
+        for winding in &windings {
+            check_family(
+                [winding.modulus, winding.free],
+                "axis of fibers",
+                winding.axis,
+            )?;
+            if !winding.angle.is_finite() || winding.center.iter().any(|x| !x.is_finite()) {
+                let what = "angle and center of wound fibers";
+                return Err(ProblemError::NotFinite { what });
+            }
+        }
+        Ok(Self { windings, ..self })
+    }
+
+    /// The families of fibers wound about axes.
+    pub fn windings(&self) -> &[Winding] {
+        &self.windings
+    }
+
+    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row):
+    /// wound fibers have one direction there.
+    pub(crate) fn at(&self, place: Vec3, side: f64, axes: &Mat3) -> Result<Self, ProblemError> {
+        let mut fibers = self.fibers.clone();
+        for winding in &self.windings {
+            fibers.push(winding.at(place, side, axes)?);
+        }
+        Ok(Self {
+            fibers,
+            windings: Vec::new(),
+            ..self.clone()
+        })
     }
 
     /// The same material swollen (or shrunk): free of stress it is so many times as long along every axis as the body at
@@ -218,4 +249,21 @@ impl HyperelasticMaterial {
         let (k, g) = (self.bulk, self.model.shear());
         9.0 * k * g / (3.0 * k + g)
     }
+}
+
+/// Checks the modulus (Pa) and the free stretch of a family of fibers, and a vector of it that must be a unit one.
+fn check_family(numbers: [f64; 2], what: &'static str, unit: Vec3) -> Result<(), ProblemError> {
+    for (what, value) in [
+        ("modulus of fibers (Pa)", numbers[0]),
+        ("free stretch of fibers", numbers[1]),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(ProblemError::NotPositive { what, value });
+        }
+    }
+    let length = norm(unit);
+    if !((length - 1.0).abs() < 1e-9) {
+        return Err(ProblemError::NotUnit { what, length });
+    }
+    Ok(())
 }

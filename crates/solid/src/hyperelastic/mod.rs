@@ -14,7 +14,10 @@ pub(crate) mod fiber;
 mod material;
 pub mod principal;
 pub mod symmetric;
+mod winding;
 
 pub use fiber::Fiber;
 pub use material::{HyperelasticMaterial, Model};
 pub use symmetric::{Response, Sym};
+pub use winding::Winding;
+pub(crate) use winding::Wound;
