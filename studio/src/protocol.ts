@@ -761,11 +761,16 @@ export interface BodyPlace {
   vertices: number[];
 }
 
-/** What is attached to the body: the places that it joins, in turn. */
+/**
+ * What is attached to the body: the places that it joins, in turn.
+ *
+ * `load` is the index of the load that pulls it; null where nothing does.
+ */
 export interface BodyAttachment {
   name: string;
   summary: string;
   places: BodyPlace[];
+  load: number | null;
 }
 
 /**
@@ -898,6 +903,12 @@ export interface Chamber {
   estimate: string;
 }
 
+/** Something by its name, and what is said of it. */
+export interface Told {
+  name: string;
+  words: string;
+}
+
 /**
  * The numbers of the state that `frame` shows, and what is doubtful about it.
  *
@@ -919,6 +930,8 @@ export interface EquilibriumEvent {
   largest_strain: number;
   warnings: Finding[];
   error_bars: string;
+  tendons: Told[];
+  supplies: Told[];
 }
 
 /** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */
