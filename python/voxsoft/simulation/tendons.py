@@ -67,7 +67,10 @@ class TendonState:
     @property
     def words(self) -> str:
         """How hard it is pulled, and how far it was drawn in or paid out."""
-        pull = format_quantity(float(f"{self.tension:.3g}"), "force")
+        if self.tension == 0.0:
+            pull = "0 N"
+        else:
+            pull = format_quantity(float(f"{self.tension:.3g}"), "force")
         if abs(self.tension - self.anchor_tension) > 1e-6 * abs(self.tension):
             anchor = format_quantity(float(f"{self.anchor_tension:.3g}"), "force")
             pull = f"{pull} at the motor, {anchor} at the anchor"
