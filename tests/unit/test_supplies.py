@@ -111,7 +111,10 @@ def refusal(error, make):
         ("flow", {"source": 1, "valve": {}}, 'neither of "conductance" and "area"'),
         (
             "flow",
-            {"source": 1, "valve": {"conductance": 1e-9, "history": {"time": (0,), "factor": (2,)}}},
+            {
+                "source": 1,
+                "valve": {"conductance": 1e-9, "history": {"time": (0,), "factor": (2,)}},
+            },
             "valve.history: opens it to 2",
         ),
         ("flow", {"pump": {"flow": (1e-5, 1e-6), "pressure": (0, 1e4)}}, "does not fall to 0"),

@@ -107,9 +107,7 @@ def equilibrium_of(
         tendons=[
             events.Told(name=name, words=tendon.words) for name, tendon in result.tendons.items()
         ],
-        supplies=[
-            events.Told(name=supply.name, words=supply.words) for supply in result.supplies
-        ],
+        supplies=[events.Told(name=supply.name, words=supply.words) for supply in result.supplies],
     )
 
 
