@@ -929,9 +929,9 @@ export interface EquilibriumEvent {
   chambers: Chamber[];
   largest_strain: number;
   warnings: Finding[];
-  error_bars: string;
   tendons: Told[];
   supplies: Told[];
+  error_bars: string;
 }
 
 /** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */

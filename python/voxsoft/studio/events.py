@@ -436,9 +436,9 @@ class Equilibrium(Event):
     chambers: list[Chamber]
     largest_strain: float
     warnings: list[Finding]
+    tendons: list[Told]
+    supplies: list[Told]
     error_bars: str = ""
-    tendons: list[Told] = []
-    supplies: list[Told] = []
 
 
 class ObjectPose(Entry):
