@@ -1,11 +1,14 @@
-"""The reference of `tests/data/contact/pneunet.csv`: CalculiX on the PneuNet whose walls meet.
+"""CalculiX on a PneuNet whose walls meet: its tip at each increment of the pressure.
 
-``python benchmarks/make_pneunet_reference.py FOLDER [SPLIT] [--without] [--rows] [KEY=VALUE ...]``
-solves one half of `examples/pneunet_contact.toml` in FOLDER, and adds the rows to
-FOLDER/pneunet.csv: displacement of the tip and force between the walls at each increment. SPLIT
-(default 1) is how many quadratic bricks (C3D20R) an edge of a voxel has, `--without` leaves contact
-out, and `--rows` takes what CalculiX has written so far and solves nothing; KEY=VALUE changes the
-design as `--set` does. One solution takes hours.
+``python benchmarks/make_pneunet_reference.py FOLDER [SPLIT] [--without] [--rows] [DESIGN]
+[KEY=VALUE ...]`` solves one half of DESIGN (`examples/pneunet_contact.toml` without it) up to its
+`pressure` in FOLDER, and adds the rows to FOLDER/pneunet.csv: displacement and angle of the tip and
+force between the walls at each increment. SPLIT (default 1) is how many quadratic bricks (C3D20R)
+an edge of a voxel has, `--without` leaves contact out, and `--rows` takes what CalculiX has written
+so far and solves nothing; KEY=VALUE changes the design as `--set` does. `pressure="80 kPa"` is the
+tutorial's; one solution of three chambers takes hours then.
+
+Made with it: `examples/data/pneunet/calculix.csv`, by `examples/toolkit_pneunet.toml`.
 
 The paper is a layer of quadratic bricks as thick as it is, bonded to the rubber below. Its
 stiffness in bending, E t³/12, is below 1 % of that of the rubber around it.
@@ -32,15 +35,19 @@ from voxsoft.comparison.calculix_lines import member_lines
 from voxsoft.comparison.calculix_output import read_printed, read_totals
 from voxsoft.comparison.calculix_units import DeckUnits
 from voxsoft.design import Layer
+from voxsoft.geometry import mean_rotation_vector
 from voxsoft.simulation import Setup
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "pneunet_contact.toml"
-#: The load path: paper turns far in a step of 3 kPa and is stretched by it, so that Newton's method
-#: does not come back. Increments are a hundredth of the load, and at most an 80th.
-STEPS = "0.01, 1.0, 1e-6, 0.0125"
-FIELDS = ["contact", "split", "pressure_kPa", "tip_ux_mm", "tip_uz_mm", "force_N"]
+#: The largest increment, Pa: paper turns far in a step of 3 kPa and is stretched by it, so that
+#: Newton's method does not come back.
+LARGEST = 1e3
+FIELDS = ["contact", "split", "pressure_kPa", "tip_ux_mm", "tip_uz_mm", "angle_deg", "force_N"]
+#: Of a mirror image in the plane y = 0.
+IMAGE = np.array([1.0, -1.0, 1.0])
 
 Ints = NDArray[np.int64]
+Floats = NDArray[np.float64]
 
 
 def half(model: BrickModel) -> BrickModel:
@@ -122,11 +129,13 @@ def problem_of(design: vs.Design, split: int) -> tuple[BrickModel, str]:
     head, _, tail = calculix_deck(model).partition("*STEP")
     first, _, rest = tail.partition("*STATIC\n")
     lines = "\n".join(paper_lines(model, paper, paper.region.z[0]))
-    return model, f"{head}{lines}\n*STEP{first}*STATIC\n{STEPS}\n{rest.partition(chr(10))[2]}"
+    most = LARGEST / model.pressures[0].value
+    steps = f"{most:.6g}, 1.0, 1e-6, {most:.6g}"
+    return model, f"{head}{lines}\n*STEP{first}*STATIC\n{steps}\n{rest.partition(chr(10))[2]}"
 
 
 def rows_of(model: BrickModel, text: str, layer: float) -> Iterator[list[float]]:
-    """Pressure in kPa, displacement of the tip in mm, force between the walls in N, of a `.dat`."""
+    """Pressure in kPa, tip in mm and degrees about y, force between the walls in N, of a `.dat`."""
     places = model.nodes[model.vertex_nodes]
     end = (places[:, 0] > places[:, 0].max() - 1e-9) & (places[:, 2] < layer + 1e-9)
     # Of the whole body what is off the plane of symmetry is there twice.
@@ -137,22 +146,34 @@ def rows_of(model: BrickModel, text: str, layer: float) -> Iterator[list[float]]
             continue
         row = np.full(len(model.nodes), -1)
         row[each.nodes] = np.arange(len(each.nodes))
-        moved = each.values[row[model.vertex_nodes[end]]] * units.length * 1e3
-        tip = np.average(moved, axis=0, weights=weights)
+        moved = each.values[row[model.vertex_nodes[end]]] * units.length
+        tip = 1e3 * np.average(moved, axis=0, weights=weights)
         walls = range(len(model.contact.walls) if model.contact else 0)
         if any((wall_names(k)[0], each.time) not in totals for k in walls):
             continue  # the file breaks off in this increment
         sizes = [np.linalg.norm(totals[wall_names(k)[0], each.time]) for k in walls]
         force = 2 * units.force * float(np.sum(sizes))
-        yield [model.pressures[0].value * each.time / 1e3, float(tip[0]), float(tip[2]), force]
+        pressure = model.pressures[0].value * each.time / 1e3
+        yield [pressure, float(tip[0]), float(tip[2]), angle_of(places[end], moved), force]
+
+
+def angle_of(rest: Floats, moved: Floats) -> float:
+    """How far the tip has turned about y in degrees, as the metric `rotation` has it."""
+    off = np.abs(rest[:, 1]) > 1e-9
+    whole = np.concatenate((rest, rest[off] * IMAGE))
+    after = whole + np.concatenate((moved, moved[off] * IMAGE))
+    turn = mean_rotation_vector(whole, after, np.arange(len(whole), dtype=np.uint32))
+    return float(np.degrees(turn[1]))
 
 
 def main() -> None:
     """Solve, and add the rows."""
     changes = [word for word in sys.argv[1:] if "=" in word]
     words = [word for word in sys.argv[1:] if not word.startswith("--") and "=" not in word]
-    folder, split = Path(words[0]), int(words[1]) if len(words) > 1 else 1
-    design = vs.load(EXAMPLE, assignments=["pressure=80 kPa", *changes])
+    files = [word for word in words if word.endswith(".toml")]
+    place, *rest = [word for word in words if word not in files]
+    folder, split = Path(place), int(rest[0]) if rest else 1
+    design = vs.load(files[0] if files else EXAMPLE, assignments=changes)
     touching = "--without" not in sys.argv
     model, deck = problem_of(design if touching else design.replace(contact=None), split)
     job = f"pneunet-{split}-{'contact' if touching else 'without'}"

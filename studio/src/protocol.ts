@@ -769,11 +769,16 @@ export interface BodyPlace {
   vertices: number[];
 }
 
-/** What is attached to the body: the places that it joins, in turn. */
+/**
+ * What is attached to the body: the places that it joins, in turn.
+ *
+ * `load` is the index of the load that pulls it; null where nothing does.
+ */
 export interface BodyAttachment {
   name: string;
   summary: string;
   places: BodyPlace[];
+  load: number | null;
 }
 
 /**
@@ -906,6 +911,12 @@ export interface Chamber {
   estimate: string;
 }
 
+/** Something by its name, and what is said of it. */
+export interface Told {
+  name: string;
+  words: string;
+}
+
 /**
  * The numbers of the state that `frame` shows, and what is doubtful about it.
  *
@@ -926,6 +937,8 @@ export interface EquilibriumEvent {
   chambers: Chamber[];
   largest_strain: number;
   warnings: Finding[];
+  tendons: Told[];
+  supplies: Told[];
   error_bars: string;
 }
 

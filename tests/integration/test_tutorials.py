@@ -34,10 +34,19 @@ LONG = {
     "design-and-study.md",
     "error-bars.md",
     "export.md",
+    "gripper.md",
     "layers-and-fibers.md",
     "material-card.md",
+    "pneunet.md",
     "repeat-a-job.md",
+    "trunk.md",
     "wound-tubes.md",
+}
+#: Examples that a tutorial shows as a whole.
+SHOWN = {
+    "gripper.md": "pumped_gripper.toml",
+    "pneunet.md": "toolkit_pneunet.toml",
+    "trunk.md": "tendon_trunk.toml",
 }
 FENCE = re.compile(r'^```(\w+)(?: title="([^"]+)")?\n(.*?)^```$', re.MULTILINE | re.DOTALL)
 KNOWN = {"python", "console", "text", "toml", "csv", "sh", "yaml"}
@@ -142,6 +151,14 @@ def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     run_page(page)
     registry._ALL.clear()  # of what the page added
     registry._ALL.update(before)
+
+
+@pytest.mark.parametrize(("page", "example"), SHOWN.items())
+def test_a_page_shows_the_example_as_it_is(page, example):
+    (design, *more) = [b.text for b in blocks_of(DOCS / "tutorials" / page) if b.title]
+    assert not more
+    assert design == (ROOT / "examples" / example).read_text(encoding="utf-8")
+    assert len(design.splitlines()) <= 40
 
 
 @pytest.mark.slow

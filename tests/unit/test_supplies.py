@@ -109,6 +109,14 @@ def refusal(error, make):
             "has a sonic conductance",
         ),
         ("flow", {"source": 1, "valve": {}}, 'neither of "conductance" and "area"'),
+        (
+            "flow",
+            {
+                "source": 1,
+                "valve": {"conductance": 1e-9, "history": {"time": (0,), "factor": (2,)}},
+            },
+            "valve.history: opens it to 2",
+        ),
         ("flow", {"pump": {"flow": (1e-5, 1e-6), "pressure": (0, 1e4)}}, "does not fall to 0"),
         ("flow", {"pump": {"flow": (1e-5, 0), "pressure": (1e3, 1e4)}}, "does not rise from 0"),
         ("volume", {"value": "5 kPa"}, "expected a volume"),
@@ -185,6 +193,7 @@ def test_results_and_metrics_tell_what_supplies_do():
     assert found.metric("chamber_pressure", cavity="inside") == chamber.pressure
     assert found.metric("supplied_work") == chamber.work > 0.0
     assert found.metric("supplied_energy") == chamber.energy > chamber.work
+    assert found.metrics["supplied_work"] == chamber.work
     (summary,) = found.summary()["supplies"]
     assert summary["efficiency"] == chamber.work / chamber.energy
     assert found.summary()["cavities"][0]["pressure"] == chamber.pressure
@@ -194,6 +203,8 @@ def test_a_pressure_load_is_a_chamber_pressure_too():
     found = simulate(cube(loads=[vs.Pressure(value=3 * kPa)]))
     assert found.metric("chamber_pressure") == 3 * kPa
     assert found.metric("supplied_work") == 0.0
+    # Nothing is supplied: a list that nobody asked for leaves it out.
+    assert not {"chamber_pressure", "supplied_work", "supplied_energy"} & found.metrics.keys()
     assert found.supplies == ()
 
 

@@ -278,6 +278,33 @@ def test_a_vessel_fills_as_the_differential_equation_says(line, source):
     assert history.mass == pytest.approx((history.pressure + ATMOSPHERE) * within / RT, rel=1e-9)
 
 
+def test_valves_fill_hold_and_empty_a_vessel():
+    """One lets in until it closes; then nothing moves; then another one lets out."""
+    inlet = {"time": (0.3, 0.301), "factor": (1, 0)}
+    vent = {"time": (0.6, 0.601), "factor": (0, 1)}
+    valve = {"conductance": 1e-9, "critical_ratio": 0.3}
+    supply = FlowSupply(
+        chamber=0,
+        source=50 * kPa,
+        line_volume=FILLED - VESSEL**3,
+        valve=valve | {"history": inlet},
+        leak=valve | {"history": vent},
+    )
+    found = simulate(vessel(supply, end_time=1.0))
+    pressure, times = found.recording.chambers["cavity 0"].pressure, found.recording.times
+    flow = found.recording.chambers["cavity 0"].flow
+    filled = times < 0.295
+    expected = filling(lambda p: through_orifice(50 * kPa + ATMOSPHERE, p), 50 * kPa, times[filled])
+    # As without histories: steps of 10 ms, and walls that give way by a little.
+    assert np.abs(pressure[filled] + ATMOSPHERE - expected).max() < 0.01 * 50 * kPa
+    # Walls that settle after the step in which it closed move the pressure, and no mass does.
+    held = (times > 0.315) & (times < 0.595)
+    assert np.all(flow[held] == 0.0)
+    assert np.ptp(pressure[held]) < 1e-3 * pressure[held].max()
+    out = times > 0.605
+    assert np.all(np.diff(pressure[out]) < 0)
+
+
 def test_stiff_lines_need_no_short_steps():
     """A line that fills in 0.2 ms, at steps of 50 ms."""
     wide = FlowSupply(chamber=0, source=50 * kPa, valve={"conductance": 1e-6})

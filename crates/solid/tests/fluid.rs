@@ -170,6 +170,7 @@ fn so_have_those_that_flow_in_a_step() {
         let branch = Branch {
             ends: [End::Source(0), End::Chamber(0)],
             line: line(AIR, tube),
+            opening: None,
         };
         let open = network(vec![chamber(AIR, 1.0)], vec![branch], vec![source.clone()]);
         let fluid = Fluid::new(open, vec![vec![wall(1.0)]]).unwrap();
@@ -184,6 +185,7 @@ fn what_two_chambers_exchange_is_not_lost() {
     let branch = Branch {
         ends: [End::Chamber(0), End::Chamber(1)],
         line: line(AIR, false),
+        opening: None,
     };
     let chambers = vec![chamber(AIR, 2.0), chamber(AIR, 1.0)];
     let both = network(chambers, vec![branch], vec![]);
@@ -212,6 +214,46 @@ fn what_two_chambers_exchange_is_not_lost() {
     assert!(a.pressure > b.pressure && b.pressure > 0.2e5);
     assert!(a.flow < 0.0 && (a.flow + b.flow).abs() < 1e-12 * b.flow);
     assert!(!fluid.is_at_rest(1e-3));
+}
+
+#[test]
+fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
+    let branch = |opening: Vec<f64>| Branch {
+        ends: [End::Source(0), End::Chamber(0)],
+        line: line(AIR, true),
+        opening: Some(Course(vec![0.0, 1.0], opening)),
+    };
+    let source = || Source {
+        pressure: 5e4,
+        history: always(),
+    };
+    let filled = |opening: Vec<f64>| {
+        let one = network(
+            vec![chamber(AIR, 1.0)],
+            vec![branch(opening)],
+            vec![source()],
+        );
+        Fluid::new(one, vec![vec![wall(1.0)]]).unwrap()
+    };
+    // At rest what counts is how it ends: sealed, or at the pressure of the source.
+    for (opening, expected) in [(vec![1.0, 0.0], 0.0), (vec![0.0, 1.0], 5e4)] {
+        let fluid = filled(opening);
+        fluid.start(&corners(), None);
+        let pressure = fluid.read(&corners(), 1.0)[0].pressure;
+        assert!((pressure - expected).abs() < 1e-6 * ATMOSPHERE);
+    }
+    let fluid = filled(vec![0.5, 0.0]);
+    fluid.start(&corners(), Some(0.0));
+    let mut masses = Vec::new();
+    for step in 1..=4 {
+        fluid.begin(0.5 * f64::from(step), 2.0, [1.0, 0.0]);
+        check_derivatives(&fluid, 1e-5);
+        fluid.take_step(&corners());
+        masses.push(fluid.read(&corners(), 1.0)[0].mass);
+    }
+    assert!(masses[0] > chamber(AIR, 1.0).mass.1);
+    assert!(masses[1..].iter().all(|mass| *mass == masses[1]));
+    assert!(fluid.is_at_rest(1e-9));
 }
 
 #[test]

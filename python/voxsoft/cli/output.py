@@ -72,9 +72,13 @@ def quantity(value: float, kind: str) -> str:
     --------
     >>> quantity(0.0123456, "length")
     '12.35 mm'
+    >>> quantity(0.146800, "angle")
+    '8.411 deg'
     """
     from voxsoft.units import format_quantity
 
+    if kind == "angle":  # which a design reads back in radians or degrees, whichever is shorter
+        return f"{math.degrees(value):.4g} deg"
     return format_quantity(float(f"{value:.4g}"), kind)
 
 

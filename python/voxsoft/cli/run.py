@@ -136,6 +136,8 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     for name, metric in metrics.items():
         bar = bars.metrics.get(name) if bars else None
         say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}{_with(bar)}")
+    for name, tendon in result.tendons.items():
+        say(f"{plain(name)}: {tendon.words}")
     for supply in result.supplies:
         say(plain(supply.sentence))
     for contact in result.contacts:

@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
+from voxsoft.design.history import History
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
 from voxsoft.units import Pressure, UnitOf
@@ -29,6 +30,9 @@ class Valve(Record):
         is choked; default 0.3.
     area
         Of liquid: the area of the orifice times its coefficient of discharge, about 0.6.
+    history
+        How far it is open over time, 0 (closed) to 1: its conductance or area is in proportion.
+        Default: always open. In equilibrium the last factor counts.
 
     Notes
     -----
@@ -39,11 +43,17 @@ class Valve(Record):
     --------
     >>> Valve(conductance="0.1 L/s/bar").conductance
     1e-09
+    >>> vent = Valve(
+    ...     conductance="0.1 L/s/bar", history={"time": ("2 s", "2.01 s"), "factor": (0, 1)}
+    ... )
+    >>> vent.history.at(1.0), vent.history.at(3.0)
+    (0.0, 1.0)
     """
 
     conductance: Conductance | None = None
     critical_ratio: Annotated[float, Field(ge=0, lt=1)] = 0.3
     area: PositiveArea | None = None
+    history: History | None = None
 
     @model_validator(mode="after")
     def _has_a_size(self) -> Valve:
@@ -51,6 +61,11 @@ class Valve(Record):
             given = "neither" if self.area is None else "both"
             what = f'has {given} of "conductance" and "area"'
             raise DesignError("", what, "give conductance for a gas, area for a liquid")
+        if self.history is not None:
+            for factor in self.history.factors:
+                if not 0.0 <= factor <= 1.0:
+                    what = f"opens it to {factor:g}"
+                    raise DesignError("history", what, "write factors from 0, closed, to 1, open")
         return self
 
 

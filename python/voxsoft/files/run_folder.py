@@ -109,6 +109,9 @@ def _history_csv(result: Result) -> str:
     names = list(result.recording.probes)
     header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
     columns = [result.recording.times[:, None], *(result.recording.probes[name] for name in names)]
+    for name, chamber in result.recording.chambers.items():
+        header += [f"{name}_pressure_Pa", f"{name}_volume_m3", f"{name}_mass_kg"]
+        columns.append(np.column_stack((chamber.pressure, chamber.volume, chamber.mass)))
     return csv_text(header, np.hstack(columns).tolist())
 
 

@@ -213,6 +213,8 @@ class Metric:
         a sharp corner such a number grows as voxels get smaller, without a limit.
     is_costly
         Whether it takes about as long as the run itself, so that it is found only where asked for.
+    is_of
+        Whether a body has what it measures; a result lists it unasked only then. Default: all have.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
 
@@ -231,6 +233,7 @@ class Metric:
     takes: frozenset[Option] = frozenset()
     is_peak: bool = False
     is_costly: bool = False
+    is_of: Callable[[State], bool] | None = None
     home: str = ""
 
     def refusals(self, target: Target) -> Iterator[ErrorDetail]:

@@ -28,11 +28,22 @@ def _energy(state: State, target: Target) -> float:
     return sum(each.energy for each in _chosen(state, target))
 
 
+def _are_supplied(state: State) -> bool:
+    return bool(state.supplies)
+
+
 # Without slopes: pressures follow from volumes that themselves depend on what is varied.
 CHAMBER_PRESSURE: Final = Metric(
-    "chamber_pressure", "pressure", _pressure, None, takes=frozenset({"cavity"})
+    "chamber_pressure",
+    "pressure",
+    _pressure,
+    None,
+    takes=frozenset({"cavity"}),
+    is_of=_are_supplied,
 )
-SUPPLIED_WORK: Final = Metric("supplied_work", "energy", _work, None, takes=frozenset({"cavity"}))
+SUPPLIED_WORK: Final = Metric(
+    "supplied_work", "energy", _work, None, takes=frozenset({"cavity"}), is_of=_are_supplied
+)
 SUPPLIED_ENERGY: Final = Metric(
-    "supplied_energy", "energy", _energy, None, takes=frozenset({"cavity"})
+    "supplied_energy", "energy", _energy, None, takes=frozenset({"cavity"}), is_of=_are_supplied
 )

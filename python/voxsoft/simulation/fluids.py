@@ -102,8 +102,8 @@ class ChamberState:
         return self.work / self.energy if self.energy > 0.0 else None
 
     @property
-    def sentence(self) -> str:
-        """Its pressure, volume and mass in words."""
+    def words(self) -> str:
+        """Its pressure, volume and mass."""
         shown = [
             format_quantity(float(f"{number:.4g}"), kind)
             for number, kind in (
@@ -112,7 +112,12 @@ class ChamberState:
                 (self.mass, "mass"),
             )
         ]
-        return f"{self.name}: {shown[0]}, {shown[1]}, {shown[2]} of fluid"
+        return f"{shown[0]}, {shown[1]}, {shown[2]} of fluid"
+
+    @property
+    def sentence(self) -> str:
+        """The same with its name."""
+        return f"{self.name}: {self.words}"
 
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units."""
@@ -293,7 +298,7 @@ class Fluids:
                 ends = [{"source": len(sources)}, {"chamber": number}]
                 sources.append(_source(supply.source, supply.history))
                 line = _line(supply.valve, supply.tube, supply.medium, supply.temperature)
-                branches.append({"ends": ends, "line": line})
+                branches.append(_branch(ends, line, supply.valve))
             if isinstance(supply, FlowSupply) and supply.pump is not None:
                 density = _density(supply.medium, supply.temperature)
                 curve = {"pressures": supply.pump.pressure, "flows": supply.pump.flow}
@@ -304,7 +309,7 @@ class Fluids:
                 ends = [{"chamber": number}, {"source": len(sources)}]
                 sources.append(_source(0.0, None))
                 line = _line(supply.leak, None, supply.medium, supply.temperature)
-                branches.append({"ends": ends, "line": line})
+                branches.append(_branch(ends, line, supply.leak))
             chambers.append(chamber)
         for index, connection in enumerate(self.design.connections):
             where = f"connections[{index}]"
@@ -349,7 +354,7 @@ class Fluids:
         supply = first.supply
         temperature = ROOM if supply is None else supply.temperature
         line = _line(connection.valve, connection.tube, first.medium, temperature)
-        return {"ends": [{"chamber": number} for number in numbers], "line": line}
+        return _branch([{"chamber": number} for number in numbers], line, connection.valve)
 
     def _chamber(self, volume: Volume) -> dict[str, Any]:
         """What is put in, how warm it is, the room outside: unloaded, and in the end."""
@@ -435,6 +440,13 @@ def _line(
             "viscosity": medium.viscosity,
         }
     return found
+
+
+def _branch(
+    ends: list[dict[str, int]], line: dict[str, Any], valve: Valve | None
+) -> dict[str, Any]:
+    history = None if valve is None else valve.history
+    return {"ends": ends, "line": line, "opening": history and _course(history)}
 
 
 def _source(pressure: float, history: History | None) -> dict[str, Any]:

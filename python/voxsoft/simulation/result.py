@@ -289,11 +289,18 @@ class Result(Shown):
 
     @cached_property
     def metrics(self) -> Mapping[str, float]:
-        """The design's objectives and constraints by name, or everything that needs no choice."""
+        """The design's objectives and constraints by name, and everything that needs no choice.
+
+        What supplies do is listed where there are any.
+        """
         asked: dict[str, Target] = {**self.design.objectives, **self.design.constraints}
         values = {name: self._value(target) for name, target in asked.items()}
         free = {
-            name for name, metric in METRICS.items() if not metric.needs and not metric.is_costly
+            name
+            for name, metric in METRICS.items()
+            if not metric.needs
+            and not metric.is_costly
+            and (metric.is_of is None or metric.is_of(self))
         }
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
 

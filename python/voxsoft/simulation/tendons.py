@@ -64,6 +64,21 @@ class TendonState:
     tensions: Floats = field(repr=False)
     points: Floats = field(repr=False)
 
+    @property
+    def words(self) -> str:
+        """How hard it is pulled, and how far it was drawn in or paid out."""
+        if self.tension == 0.0:
+            pull = "0 N"
+        else:
+            pull = format_quantity(float(f"{self.tension:.3g}"), "force")
+        if abs(self.tension - self.anchor_tension) > 1e-6 * abs(self.tension):
+            anchor = format_quantity(float(f"{self.anchor_tension:.3g}"), "force")
+            pull = f"{pull} at the motor, {anchor} at the anchor"
+        if self.slack > 0.0:
+            return f"slack by {format_quantity(float(f'{self.slack:.3g}'), 'length')}"
+        way = format_quantity(float(f"{abs(self.shortening):.3g}"), "length")
+        return f"{pull}, {'drawn in' if self.shortening >= 0.0 else 'paid out'} by {way}"
+
     def summary(self) -> dict[str, Any]:
         """Plain data."""
         names = ("tension", "anchor_tension", "length", "slack", "shortening")

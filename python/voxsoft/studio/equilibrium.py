@@ -104,6 +104,10 @@ def equilibrium_of(
         largest_strain=result.metric("max_stretch") - 1.0,
         warnings=[finding_of(warning) for warning in result.warnings],
         error_bars=source,
+        tendons=[
+            events.Told(name=name, words=tendon.words) for name, tendon in result.tendons.items()
+        ],
+        supplies=[events.Told(name=supply.name, words=supply.words) for supply in result.supplies],
     )
 
 

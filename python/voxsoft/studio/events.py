@@ -250,11 +250,15 @@ class BodyPlace(Entry):
 
 
 class BodyAttachment(Entry):
-    """What is attached to the body: the places that it joins, in turn."""
+    """What is attached to the body: the places that it joins, in turn.
+
+    `load` is the index of the load that pulls it; null where nothing does.
+    """
 
     name: str
     summary: str
     places: list[BodyPlace]
+    load: int | None = None
 
 
 class BodyProbe(Entry):
@@ -406,6 +410,13 @@ class Chamber(Entry):
     estimate: str = ""
 
 
+class Told(Entry):
+    """Something by its name, and what is said of it."""
+
+    name: str
+    words: str
+
+
 class Equilibrium(Event):
     """The numbers of the state that `frame` shows, and what is doubtful about it.
 
@@ -425,6 +436,8 @@ class Equilibrium(Event):
     chambers: list[Chamber]
     largest_strain: float
     warnings: list[Finding]
+    tendons: list[Told]
+    supplies: list[Told]
     error_bars: str = ""
 
 

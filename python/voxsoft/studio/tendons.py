@@ -67,12 +67,16 @@ def pulled(setup: Setup, factors: Sequence[float]) -> tuple[Tendon, ...]:
 def tendon_attachments(setup: Setup, surface: Surface) -> list[events.BodyAttachment]:
     """A line for each tendon, through points that go with what is drawn beside them."""
     found = []
-    for tendon in tendons_of(setup):
+    first = len(setup.design.loads)
+    for number, tendon in enumerate(tendons_of(setup)):
         count = len(tendon.points)
         chosen = np.unique(np.linspace(0, count - 1, min(count, _MOST_DRAWN)).round().astype(int))
         places = [_place(setup, surface, tendon, at) for at in chosen]
         summary = tendon.tendon.summary
-        found.append(events.BodyAttachment(name=tendon.name, summary=summary, places=places))
+        line = events.BodyAttachment(
+            name=tendon.name, summary=summary, places=places, load=first + number
+        )
+        found.append(line)
     return found
 
 

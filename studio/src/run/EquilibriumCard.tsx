@@ -32,6 +32,16 @@ export function EquilibriumCard() {
       formatKind(value === null ? null : cleaned(value, siUnit(kind)), kind),
       estimate,
     ]),
+    ...found.tendons.map(({ name, words }): [string, string, string] => [
+      `Tendon ${name}`,
+      words,
+      "",
+    ]),
+    ...found.supplies.map(({ name, words }): [string, string, string] => [
+      `Supply ${name}`,
+      words,
+      "",
+    ]),
     ["Largest strain", `${formatNumber(100 * found.largest_strain, 3)} %`, ""],
     ["Out of balance", `${found.residual} of the load`, ""],
   ];

@@ -154,7 +154,7 @@ function Solver() {
   // XPBD would go through what the body touches.
   const methods = still ? METHODS.filter(({ value }) => value !== "xpbd") : METHODS;
   return (
-    <Section title={still ? "Contact" : "Equilibrium"}>
+    <Section title={still ? "Solution" : "Equilibrium"}>
       <Select
         label="Solver"
         value={solver}

@@ -1,4 +1,4 @@
-// What is attached to the body, such as springs: a line through the places that it joins, which move with it.
+// What is attached to the body, such as springs and tendons: a line through the places that it joins, which move with it.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -10,9 +10,10 @@ import {
   PointsMaterial,
   Vector3,
 } from "three";
-import type { BodyAttachment, BodyPlace } from "../protocol";
+import type { BodyAttachment, BodyLoad, BodyPlace, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
 import type { Label } from "./labels";
+import { loadText } from "./symbols";
 import type { Places } from "./target";
 
 const COLOR = "#7ac74f";
@@ -56,8 +57,12 @@ export class Attachments {
       const start = attachment.places.flatMap((place) => place.center);
       const places = new BufferAttribute(new Float32Array(start), 3);
       const geometry = new BufferGeometry().setAttribute("position", places);
-      this.geometries.push(geometry);
-      for (const drawing of [new Line(geometry, this.line), new Points(geometry, this.ends)]) {
+      // Dots at its ends alone: a line that bends with the body has many places.
+      const [count, step] = [attachment.places.length, attachment.places.length - 1];
+      const ends = new BufferGeometry().setAttribute("position", places);
+      ends.setIndex(count > 1 ? [0, step] : [0]);
+      this.geometries.push(geometry, ends);
+      for (const drawing of [new Line(geometry, this.line), new Points(ends, this.ends)]) {
         drawing.frustumCulled = false;
         drawing.renderOrder = 7;
         this.group.add(drawing);
@@ -67,7 +72,12 @@ export class Attachments {
   }
 
   /** Draw everything where it is now, and give the words. */
-  update(mesh: Places, exaggeration: number): Label[] {
+  update(
+    mesh: Places,
+    exaggeration: number,
+    loads: readonly BodyLoad[],
+    stat: StatEvent | null,
+  ): Label[] {
     return this.drawn.map(({ attachment, places }, i) => {
       const middle = new Vector3();
       attachment.places.forEach((place, at) => {
@@ -76,14 +86,15 @@ export class Attachments {
         middle.addScaledVector(now, 1 / attachment.places.length);
       });
       places.needsUpdate = true;
+      const load = loads.find(({ index }) => index === attachment.load);
       return {
         key: `attachment-${i}`,
         kind: "attachment",
-        text: attachment.name,
+        text: load ? `${attachment.name} ${loadText(load, stat)}` : attachment.name,
         title: attachment.summary,
         color: COLOR,
         at: (out) => out.copy(middle),
-        onClick: () => showPane("design"),
+        onClick: () => showPane(load ? "run" : "design"),
       };
     });
   }

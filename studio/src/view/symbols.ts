@@ -25,7 +25,7 @@ const LOAD_COLOR = "#e8704a";
 const PROBE_COLOR = "#56b4e9";
 
 /** The value of a load as text, at present. */
-function loadText(load: BodyLoad, stat: StatEvent | null): string {
+export function loadText(load: BodyLoad, stat: StatEvent | null): string {
   const value = stat?.loads[load.index] ?? load.value;
   return `${formatNumber(value / load.factor, 3)} ${unitText(load.unit)}`.trim();
 }
@@ -81,7 +81,8 @@ export class Symbols {
     for (const clamp of body.clamps) this.points(clamp.points.flat());
     for (const load of body.loads) {
       const direction = new Vector3(...load.direction);
-      if (load.kind !== "pressure" && direction.lengthSq() > 0) {
+      // A tendon is a line of its own, which says how it is pulled.
+      if (load.kind !== "pressure" && load.kind !== "tendon" && direction.lengthSq() > 0) {
         direction.normalize();
         const tip = arrowTip(new Vector3(...load.at), direction, middle, 0.16 * size);
         this.arrow(tip, direction, 0.16 * size);
@@ -154,6 +155,7 @@ export class Symbols {
       });
     }
     for (const load of body.loads) {
+      if (load.kind === "tendon") continue;
       labels.push({
         key: `load-${load.index}`,
         kind: "load",

@@ -545,7 +545,7 @@ export class Viewport {
     // A shape comes before its words, which speak of vertices that another one may not have.
     if (body?.topology === mesh.topology.id && view.symbols) {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
-      labels.push(...this.attachments.update(mesh, view.exaggeration));
+      labels.push(...this.attachments.update(mesh, view.exaggeration, body.loads, stat));
       labels.push(...this.objects.labels());
       if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));

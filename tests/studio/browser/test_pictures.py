@@ -110,6 +110,48 @@ def listed(tab):
     take(tab, "runs")
 
 
+@pytest.fixture
+def robot(request, tmp_path, serving, open_tab):
+    """The design of a tutorial, solved."""
+    name = request.param
+    server = serving(tmp_path, (EXAMPLES / name).read_text(), name)
+    tab = open_tab(server.address)
+    tab.suffix = ""
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("rest").click()
+    tab.until("voxsoft.state === 'at-rest'", patience=JOB / 1000)
+    tab.find("equilibrium").wait_for()
+    yield tab
+    server.stop()
+
+
+@pytest.mark.parametrize("robot", ["tendon_trunk.toml"], indirect=True)
+def test_picture_of_the_trunk(robot):
+    robot.page.locator(".viewport canvas").focus()
+    robot.page.keyboard.press("f")
+    assert "drawn in by" in robot.find("equilibrium").inner_text()
+    take(robot, "trunk")
+    assert robot.errors == []
+
+
+@pytest.mark.parametrize("robot", ["toolkit_pneunet.toml"], indirect=True)
+def test_picture_of_the_pneunet(robot):
+    robot.find("section").click()
+    robot.page.get_by_label("Section axis").select_option("y")
+    take(robot, "pneunet")
+    assert robot.errors == []
+
+
+@pytest.mark.parametrize("robot", ["pumped_gripper.toml"], indirect=True)
+def test_picture_of_the_gripper(robot):
+    assert "of fluid" in robot.find("equilibrium").inner_text()
+    bar = robot.find("scrubber").bounding_box()
+    robot.page.mouse.click(bar["x"] + 0.7 * bar["width"], bar["y"] + bar["height"] / 2)
+    robot.page.get_by_text("sticks").first.wait_for()  # while it is held
+    take(robot, "gripper")
+    assert robot.errors == []
+
+
 def test_pictures_of_all_modes(gallery):
     designed(gallery)
     simulated(gallery)

@@ -80,6 +80,17 @@ impl Flow {
 }
 
 impl Line {
+    /// The same with its valve open to a part.
+    #[must_use]
+    pub fn opened(mut self, part: f64) -> Self {
+        match &mut self.valve {
+            Some(Valve::Gas { conductance, .. }) => *conductance *= part,
+            Some(Valve::Liquid { area }) => *area *= part,
+            None => {}
+        }
+        self
+    }
+
     /// The flow between two absolute pressures (Pa).
     pub fn flow(&self, from: f64, to: f64) -> Flow {
         match (self.valve, self.tube) {
@@ -311,6 +322,19 @@ mod tests {
         let (a, b) = (line.flow(4e5, 1e5), line.flow(4e5, 0.5e5));
         assert_eq!(a.mass, b.mass);
         assert!((a.mass - 1e-9 * 1.185 * 4e5).abs() < 1e-18);
+    }
+
+    #[test]
+    fn a_valve_that_is_half_open_has_half_of_its_size_and_a_tube_behind_it_all_of_its_own() {
+        for medium in [AIR, WATER] {
+            let valve = line(true, false, medium);
+            let (half, full) = (valve.opened(0.5).flow(2e5, 1e5), valve.flow(2e5, 1e5));
+            assert!((half.mass / full.mass - 0.5).abs() < 1e-12);
+            let both = line(true, true, medium);
+            let part = both.opened(0.5).flow(2e5, 1e5).mass / both.flow(2e5, 1e5).mass;
+            assert!(part > 0.5 && part < 1.0, "{part}");
+            assert_eq!(both.opened(0.0).flow(2e5, 1e5).mass, 0.0);
+        }
     }
 
     #[test]

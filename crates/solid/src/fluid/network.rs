@@ -49,12 +49,15 @@ pub enum End {
 }
 
 /// A line between two ends.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Branch {
     /// From the valve to the tube.
     pub ends: [End; 2],
     /// What is in between.
     pub line: Line,
+    /// Times in s, and to which part the valve is open then; without it: always and all.
+    #[serde(default)]
+    pub opening: Option<Course>,
 }
 
 /// Something that holds a pressure whatever flows.
@@ -170,7 +173,9 @@ impl Network {
         let chambers = self.chambers.iter().map(|chamber| &chamber.history);
         let sources = self.sources.iter().map(|source| &source.history);
         let pumps = self.pumps.iter().map(|pump| &pump.history);
-        if (chambers.chain(sources).chain(pumps)).any(|course| course.history().is_none()) {
+        let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
+        let courses = chambers.chain(sources).chain(pumps).chain(valves);
+        if courses.into_iter().any(|course| course.history().is_none()) {
             return Err("a history of a fluid");
         }
         if self.pumps.iter().any(|pump| pump.curve.pressures.len() < 2) {
@@ -184,7 +189,9 @@ impl Network {
         let chambers = self.chambers.iter().map(|chamber| chamber.history.end());
         let sources = self.sources.iter().map(|source| source.history.end());
         let pumps = self.pumps.iter().map(|pump| pump.history.end());
-        chambers.chain(sources).chain(pumps).fold(0.0, f64::max)
+        let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
+        let valves = valves.map(Course::end);
+        (chambers.chain(sources).chain(pumps).chain(valves)).fold(0.0, f64::max)
     }
 
     /// Whether lines join chambers: their pressures over time have no potential then.
@@ -192,6 +199,17 @@ impl Network {
         let joins =
             |branch: &Branch| matches!(branch.ends, [End::Chamber(a), End::Chamber(b)] if a != b);
         self.branches.iter().any(joins)
+    }
+
+    /// The branches through which something may flow at a time, each with its line as far as its valve is open then.
+    pub(super) fn open_branches(&self, time: f64) -> impl Iterator<Item = (&Branch, Line)> {
+        self.branches.iter().filter_map(move |branch| {
+            let part = branch
+                .opening
+                .as_ref()
+                .map_or(1.0, |course| course.at(time));
+            (part > 0.0).then(|| (branch, branch.line.opened(part)))
+        })
     }
 
     pub(super) fn contents(&self, part: f64, time: f64) -> Vec<Content> {
@@ -231,9 +249,9 @@ impl Network {
             End::Chamber(index) => self.atmosphere + pressures[index],
             End::Source(index) => self.atmosphere + sources[index],
         };
-        for branch in &self.branches {
+        for (branch, line) in self.open_branches(time) {
             let [from, to] = branch.ends;
-            let flow = branch.line.flow(pressure(from), pressure(to));
+            let flow = line.flow(pressure(from), pressure(to));
             for (end, sign) in [(from, -1.0), (to, 1.0)] {
                 let End::Chamber(row) = end else { continue };
                 flows[row] += sign * flow.mass;
@@ -259,7 +277,7 @@ impl Network {
         let sources = self.sources_at(1.0, time);
         let mut power = vec![0.0; pressures.len()];
         let contents = self.contents(1.0, time);
-        for branch in &self.branches {
+        for (branch, line) in self.open_branches(time) {
             let (source, chamber, sign) = match branch.ends {
                 [End::Source(source), End::Chamber(chamber)] => (source, chamber, 1.0),
                 [End::Chamber(chamber), End::Source(source)] => (source, chamber, -1.0),
@@ -267,9 +285,7 @@ impl Network {
             };
             let (from, to) = (sources[source], pressures[chamber]);
             let (from, to) = if sign > 0.0 { (from, to) } else { (to, from) };
-            let flow = branch
-                .line
-                .flow(self.atmosphere + from, self.atmosphere + to);
+            let flow = line.flow(self.atmosphere + from, self.atmosphere + to);
             power[chamber] += sign * flow.mass * self.worth(contents[chamber], sources[source]);
         }
         for pump in &self.pumps {

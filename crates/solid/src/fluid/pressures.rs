@@ -32,7 +32,7 @@ impl Network {
     fn groups(&self, part: f64, time: f64) -> Option<Vec<(Vec<usize>, Option<Vec<f64>>)>> {
         let mut group: Vec<usize> = (0..self.chambers.len()).collect();
         let mut held = vec![false; group.len()];
-        for branch in &self.branches {
+        for (branch, _) in self.open_branches(time) {
             match branch.ends {
                 [End::Chamber(a), End::Chamber(b)] => {
                     let (from, to) = (group[a], group[b]);
@@ -116,8 +116,8 @@ impl Network {
                 .any(|end| matches!(end, End::Chamber(c) if same(*c)))
         };
         let ends = self
-            .branches
-            .iter()
+            .open_branches(time)
+            .map(|(branch, _)| branch)
             .filter(of_group)
             .flat_map(|branch| branch.ends);
         let found: Vec<f64> = ends
