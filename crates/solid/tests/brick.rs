@@ -77,6 +77,18 @@ fn materials() -> Vec<HyperelasticMaterial> {
     ]
 }
 
+/// Fibers that are shorter by themselves, so that there is stress at rest.
+fn muscle() -> HyperelasticMaterial {
+    let fiber = Fiber {
+        direction: [0.0, 0.6, 0.8],
+        modulus: 5.0,
+        compression: true,
+        free: 0.8,
+    };
+    let rubber = HyperelasticMaterial::neo_hookean(1.0, 0.4, 1.0).unwrap();
+    rubber.with_fibers(vec![fiber]).unwrap()
+}
+
 fn moved() -> impl Strategy<Value = Vec<Vec3>> {
     let (_, rest) = cube();
     prop::collection::vec(prop::array::uniform3(-0.1..0.1f64), 8)
@@ -99,7 +111,7 @@ proptest! {
         let at = |t: f64| -> Vec<Vec3> {
             positions.iter().zip(&direction).map(|(x, d)| std::array::from_fn(|i| x[i] + t * d[i])).collect()
         };
-        for material in materials() {
+        for material in materials().into_iter().chain([muscle()]) {
             let here = forces(&brick, &material, &positions);
             let power: f64 = here.iter().zip(&direction).map(|(f, d)| f[0] * d[0] + f[1] * d[1] + f[2] * d[2]).sum();
             let change = (brick.energy(&material, &at(step)) - brick.energy(&material, &at(-step))) / (2.0 * step);

@@ -73,7 +73,7 @@ fn rubber() -> Body {
         direction: [0.6, 0.0, 0.8],
         modulus: 50e3,
         compression: true,
-        free: 0.95,
+        free: 1.0,
     };
     let rubber = HyperelasticMaterial::neo_hookean(60e3, 0.49, 1070.0).unwrap();
     body(rubber.with_fibers(vec![fiber]).unwrap())
