@@ -911,8 +911,8 @@ export interface Chamber {
   estimate: string;
 }
 
-/** Something by its name, and what is said of it. */
-export interface Told {
+/** Something by its name, and its state in words. */
+export interface Summarized {
   name: string;
   words: string;
 }
@@ -937,8 +937,8 @@ export interface EquilibriumEvent {
   chambers: Chamber[];
   largest_strain: number;
   warnings: Finding[];
-  tendons: Told[];
-  supplies: Told[];
+  tendons: Summarized[];
+  supplies: Summarized[];
   error_bars: string;
 }
 

@@ -206,7 +206,7 @@ class _Search:
         hint = "compare several voxel sizes"
         if asked != "finer" and not small:
             about = TIMES_AS_LONG * self.own.result.seconds
-            hint = f'error = "finer", which takes about {about:.2g} s'
+            hint = f'error = "finer", which takes about {float(f"{about:.2g}"):g} s'
         return ErrorBars.none("; ".join(reasons), hint)
 
     def until_accurate(self) -> ErrorBars:

@@ -90,7 +90,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
 
     def announce(size: float, voxels: int, seconds: float) -> None:
         length = format_quantity(float(f"{size:.4g}"), "length")
-        words = f"error bars: {voxels:,} voxels of {length}, about {seconds:.2g} s"
+        words = f"error bars: {voxels:,} voxels of {length}, about {float(f'{seconds:.2g}'):g} s"
         notify(Progress(0, 100, FURTHER, words))
 
     try:
@@ -118,7 +118,7 @@ def _error_bars(result: Result, notify: Listener) -> ErrorBars:
         nonlocal nearness, stage
         length = format_quantity(float(f"{size:.4g}"), "length")
         nearness = Nearness(result.design.solver)
-        stage = f"error bars: {voxels:,} voxels of {length}, about {seconds:.2g} s"
+        stage = f"error bars: {voxels:,} voxels of {length}, about {float(f'{seconds:.2g}'):g} s"
         notify(Progress(0, 100, FURTHER, stage))
 
     def report(_: int, when: float, residual: float) -> None:

@@ -80,12 +80,16 @@ class Cost(NamedTuple):
     @property
     def sentence(self) -> str:
         """The range in words."""
+        low, middle = _rounded(self.low), _rounded(self.seconds)
         if self.high is None:
-            return (
-                f"at least {self.low:.2g} s, rather {self.seconds:.2g} s: how far the loads move "
-                "the body decides"
-            )
-        return f"about {self.seconds:.2g} s ({self.low:.2g} to {self.high:.2g} s)"
+            way = "how far the loads move the body decides"
+            return f"at least {low} s, rather {middle} s: {way}"
+        return f"about {middle} s ({low} to {_rounded(self.high)} s)"
+
+
+def _rounded(seconds: float) -> str:
+    """To two digits, and never with an exponent that nobody reads."""
+    return f"{float(f'{seconds:.2g}'):.12g}"
 
 
 def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost:

@@ -105,9 +105,12 @@ def equilibrium_of(
         warnings=[finding_of(warning) for warning in result.warnings],
         error_bars=source,
         tendons=[
-            events.Told(name=name, words=tendon.words) for name, tendon in result.tendons.items()
+            events.Summarized(name=name, words=tendon.words)
+            for name, tendon in result.tendons.items()
         ],
-        supplies=[events.Told(name=supply.name, words=supply.words) for supply in result.supplies],
+        supplies=[
+            events.Summarized(name=supply.name, words=supply.words) for supply in result.supplies
+        ],
     )
 
 

@@ -410,8 +410,8 @@ class Chamber(Entry):
     estimate: str = ""
 
 
-class Told(Entry):
-    """Something by its name, and what is said of it."""
+class Summarized(Entry):
+    """Something by its name, and its state in words."""
 
     name: str
     words: str
@@ -436,8 +436,8 @@ class Equilibrium(Event):
     chambers: list[Chamber]
     largest_strain: float
     warnings: list[Finding]
-    tendons: list[Told]
-    supplies: list[Told]
+    tendons: list[Summarized]
+    supplies: list[Summarized]
     error_bars: str = ""
 
 

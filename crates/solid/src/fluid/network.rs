@@ -174,8 +174,8 @@ impl Network {
         let sources = self.sources.iter().map(|source| &source.history);
         let pumps = self.pumps.iter().map(|pump| &pump.history);
         let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
-        let courses = chambers.chain(sources).chain(pumps).chain(valves);
-        if courses.into_iter().any(|course| course.history().is_none()) {
+        let mut courses = chambers.chain(sources).chain(pumps).chain(valves);
+        if courses.any(|course| course.history().is_none()) {
             return Err("a history of a fluid");
         }
         if self.pumps.iter().any(|pump| pump.curve.pressures.len() < 2) {
