@@ -42,9 +42,11 @@ RIM = 70 * mm
 #: The heights [m] and the weight [N] on the scoreboard.
 HEIGHTS = (10 * mm, 30 * mm, 50 * mm)
 WEIGHT = 14.72
-#: Where a path of pressures begins, in parts of the pressure expected, and its next pressures. The
-#: force is smooth: a cubic spline through such steps is within 0.1 %, less than pressures scatter.
+#: Where a path of pressures begins, in parts of one that is expected, and how it goes on. The force
+#: is smooth: a cubic spline through such steps is within 0.1 %, less than pressures scatter.
 FIRST, STEP = 0.85, 1.1
+#: The same for a rubber that is softer than the one expected: its membrane is sooner a balloon.
+SOFTER, SMALLER = 0.7, 1.06
 #: How near the force is to the weight before one more secant is the pressure, which leaves 0.3 %.
 NEAR = 0.05
 #: Standard deviations of the middle 90 % of a normal distribution.
@@ -150,13 +152,14 @@ class Lifted:
             )
         return np.array(found)
 
-    def lifting(self, weight: float, expected: float) -> tuple[float, float]:
+    def lifting(self, weight: float, first: float, step: float) -> tuple[float, float]:
         """The pressure in Pa at which it lifts a weight in N, and the slope of the force in N/Pa.
 
-        By a path of pressures from below the expected one: quicker than secants that each begin at
-        rest.
+        By a path of pressures from a first one that is too low, each so many times the one before:
+        quicker than secants that each begin at rest, and it does not go far beyond what the
+        membrane can carry.
         """
-        pressures = [FIRST * expected * STEP**number for number in range(24)]
+        pressures = [first * step**number for number in range(40)]
         forces = self.forces(pressures, enough=weight)
         if len(forces) < 2 or not forces[0] < weight < forces[-1]:
             name = f"{self.membrane.name} at {self.height / mm:g} mm, {self.model.rubber}"
@@ -251,9 +254,9 @@ def predictions() -> list[Prediction]:
 
     Material: the same silicone in three laboratories. Pressures by the card of one tensile test, of
     another, and of a cantilever scatter, and the half-width is 1.645 times the standard deviation
-    of their relative changes; and the whole of what rings ten times as stiff change, as they are
-    described as cloth that does not stretch. Both to first order, from the force at the predicted
-    pressure. Geometry, assumed: the thickness within 5 %. Without its weight the force is of first
+    of their logarithms; and the whole of what rings ten times as stiff change, as they are
+    described as cloth that does not stretch. Geometry, assumed: the thickness within 5 %. Without
+    its weight the force is of first
     degree in pressure and stiffness together, so that the pressure p for a force F goes with the
     logarithm of the thickness like p − F / (dF/dp) (Euler). Numerics: what two voxels through two
     of the membranes change. Repeatability: the lowest and highest pressures that were recorded
@@ -264,10 +267,16 @@ def predictions() -> list[Prediction]:
     for membrane in MEMBRANES:
         near = expected(membrane, WEIGHT)
         for height in HEIGHTS:
-            here, slope = Lifted(membrane, DESCRIBED, height).lifting(WEIGHT, near)
+            here, slope = Lifted(membrane, DESCRIBED, height).lifting(WEIGHT, FIRST * near, STEP)
             near, key = here, (membrane.name, WEIGHT, height)
-            changes = [0.0, *(_change(membrane, model, height, here, slope) for model in ELSEWHERE)]
-            rings = _change(membrane, STIFF, height, here, slope) if membrane.rings else 0.0
+            logs = [np.log(here)]
+            for model in ELSEWHERE:
+                lifted = Lifted(membrane, model, height)
+                logs.append(np.log(lifted.lifting(WEIGHT, SOFTER * here, SMALLER)[0]))
+            rings = 0.0
+            if membrane.rings:
+                stiff = Lifted(membrane, STIFF, height)
+                rings = stiff.lifting(WEIGHT, FIRST * here, STEP)[0] / here - 1.0
             found.append(
                 Prediction(
                     "membranes",
@@ -275,7 +284,7 @@ def predictions() -> list[Prediction]:
                     "pressure",
                     real[key],
                     here,
-                    material=here * float(np.hypot(NINETY * np.std(changes, ddof=1), rings)),
+                    material=here * float(np.hypot(NINETY * np.std(logs, ddof=1), rings)),
                     geometry=THICKNESS * abs(here - WEIGHT / slope),
                     numerics=FINE[height] * here,
                     repeatability=scattered[key],
@@ -284,18 +293,12 @@ def predictions() -> list[Prediction]:
     return found
 
 
-def _change(
-    membrane: Membrane, model: Model, height: float, pressure: float, slope: float
-) -> float:
-    """What another model changes of a pressure in Pa, over it: to first order."""
-    return (WEIGHT - Lifted(membrane, model, height).force(pressure)) / slope / pressure
-
-
 def fine(height: float, membrane: Membrane) -> float:
-    """What two voxels through a membrane change of the pressure, over it."""
-    near = expected(membrane, WEIGHT)
-    here, slope = Lifted(membrane, DESCRIBED, height).lifting(WEIGHT, near)
-    return _change(membrane, Model(refine=2), height, here, slope)
+    """What two voxels through a membrane change of the pressure, over it: to first order."""
+    first = FIRST * expected(membrane, WEIGHT)
+    here, slope = Lifted(membrane, DESCRIBED, height).lifting(WEIGHT, first, STEP)
+    force = Lifted(membrane, Model(refine=2), height).force(here)
+    return (WEIGHT - force) / slope / here
 
 
 def main() -> None:
