@@ -31,8 +31,8 @@ Floats = NDArray[np.float64]
 
 DESIGN = Path(__file__).parent / "eth_beam.toml"
 DATA = Path(__file__).parents[1] / "data" / "eth_beam"
-#: A tensile test of the same silicone in another laboratory, and the strains that are read of it: up
-#: to three times the largest of the beam, as single points scatter by 1 kPa.
+#: A tensile test of the same silicone in another laboratory, and the strains that are read of it:
+#: up to three times the largest of the beam, as single points scatter by 1 kPa.
 COUPON, READ = Path(__file__).parents[1] / "data" / "tensile" / "dragon-skin-10.csv", 0.25
 MASSES = {"gravity": 0.0, "load52": 0.05202}
 GRAVITY = 9.81
@@ -198,8 +198,8 @@ def outcome(refine: int = 1) -> Outcome:
 def softening() -> float:
     """By which part the coupon's modulus falls for a strain of 1, from its start on.
 
-    Its stress over the stretch l is read as G (l − 1/l²) (1 − a (l − 1)) and a constant, as the load
-    cell's zero is off; a neo-Hookean material has a = 0.
+    Its stress over the stretch l is read as G (l − 1/l²) (1 − a (l − 1)) and a constant, as the
+    load cell's zero is off; a neo-Hookean material has a = 0.
     """
     with COUPON.open() as file:
         rows = [
@@ -238,10 +238,11 @@ def predictions() -> list[Prediction]:
     silicone, not of the same batch, says by how much it falls from the state that it is fitted to
     (secant) to that under 52 g (secant) and to the swinging about both (tangent). And it is that of
     rest, where the swinging has some Hz: a material whose motion loses a part of its energy is
-    stiffer than at rest by as large a part, if one relaxation near that frequency loses it. The loss
-    is that of the measured decay. Geometry, assumed: half a millimeter of where the weight sits
-    on the edge, and a tenth of the stems' mass, which nobody weighed: 2 %. Numerics: elements of
-    2.5 mm instead of 5 mm. Repeatability: 0.2 mm with the weight, and the two runs of each swinging.
+    stiffer than at rest by as large a part, if one relaxation near that frequency loses it. The
+    loss is that of the measured decay. Geometry, assumed: half a millimeter of where the weight
+    sits on the edge, and a tenth of the stems' mass, which nobody weighed: 2 %. Numerics: elements
+    of 2.5 mm instead of 5 mm. Repeatability: 0.2 mm with the weight, and the two runs of each
+    swinging.
     """
     coarse, fine = outcome(1), outcome(2)
     alone = coarse.sags["gravity"][1]
