@@ -40,7 +40,7 @@ START = 10 * kPa
 WALLS, ANGLES, ENOUGH = {10 * mm: 2 * mm, 7 * mm: 1 * mm}, (2, 5, 10, 15, 20), 20.0
 #: Initial shear moduli [Pa] that the laboratory publishes for the same tensile tests: Ogden's three
 #: terms, which are the card, Yeoh's model, a neo-Hookean and Mooney's.
-SHEAR = (24.8816 * kPa, 26.4458 * kPa, 27.3554 * kPa, 28.9445 * kPa)
+SHEAR = (24.88155 * kPa, 26.4458 * kPa, 27.3554 * kPa, 28.9445 * kPa)
 #: Standard deviations of the middle 90 % of a normal distribution.
 NINETY = 1.645
 #: Relative half-widths that are assumed: geometry and voxels.

@@ -141,6 +141,17 @@ def test_the_stiffness_that_is_open_is_that_of_four_published_sets():
     assert bender.stiffness_open() == pytest.approx(0.104, abs=5e-4)
 
 
+def test_the_tip_is_held_as_described():
+    blocked = case("epfl_blocked_force")
+    assert set(blocked.PRESSURES) <= set(blocked.measured())
+    design = blocked.Model(root=6 * mm).design(20 * kPa)
+    root, edge, cup = design.clamps
+    assert edge.axes == "yz"
+    assert (root.region.x[0], cup.region.x[0]) == pytest.approx((-6 * mm, -6 * mm))
+    assert blocked.DESCRIBED.film == pytest.approx(4.1e9)  # silk, as it is published
+
+
+@pytest.mark.slow
 def test_the_path_of_the_tip_that_is_held_is_that_of_single_runs():
     """At pressures that a few iterations reach; statics stops at 1e-6 of the load."""
     blocked = case("epfl_blocked_force")
