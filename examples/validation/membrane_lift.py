@@ -281,7 +281,7 @@ def predictions() -> Iterator[Prediction]:
     Material: the same silicone in three laboratories. Pressures by the card of one tensile test, of
     another, and of a cantilever scatter, and the half-width is 1.645 times the standard deviation
     of their logarithms; where the path of a softer card is lost, its last slope goes on. And the
-    whole of what rings ten times as stiff change, as they are described as cloth that does not stretch, or what
+    whole of what rings ten times as stiff change, as they are cloth that does not stretch, or what
     is known of it where their path is lost. Geometry, assumed: the thickness within 5 %. Without
     its weight the force is of first degree in pressure and stiffness together, so that the pressure
     p for a force F goes with the logarithm of the thickness like p − F / (dF/dp) (Euler). Numerics:
