@@ -55,8 +55,8 @@ NEAR = 0.05
 NINETY = 1.645
 #: What may be of other thickness: a cast sheet of 2 mm, within 0.1 mm. An assumption.
 THICKNESS = 0.05
-#: What two voxels through the membrane change of the pressure at each height, the
-#: largest of two membranes, without rings and with (`--fine`).
+#: What two voxels through the membrane change of the pressure at each height, rounded up: 0 to 2 %
+#: without rings (`docs/validation.md`). That rings change it no more is assumed; `--fine` computes it.
 FINE = {10 * mm: 0.01, 30 * mm: 0.02, 50 * mm: 0.02}
 
 
@@ -285,7 +285,7 @@ def predictions() -> Iterator[Prediction]:
     is known of it where their path is lost. Geometry, assumed: the thickness within 5 %. Without
     its weight the force is of first degree in pressure and stiffness together, so that the pressure
     p for a force F goes with the logarithm of the thickness like p − F / (dF/dp) (Euler). Numerics:
-    what two voxels through two of the membranes change. Repeatability: the lowest and highest
+    what two voxels through the membrane without rings change. Repeatability: the lowest and highest
     pressures that were recorded within 2 mm of the height.
 
     Where the path of the membrane itself is lost, its last pressure counts as the prediction, with
