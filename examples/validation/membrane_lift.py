@@ -56,7 +56,7 @@ NINETY = 1.645
 #: What may be of other thickness: a cast sheet of 2 mm, within 0.1 mm. An assumption.
 THICKNESS = 0.05
 #: What two voxels through the membrane change of the pressure at each height, rounded up: 0 to 2 %
-#: without rings (`docs/validation.md`). That rings change it no more is assumed; `--fine` computes it.
+#: without rings (`docs/validation.md`). That rings change it no more is assumed; see `--fine`.
 FINE = {10 * mm: 0.01, 30 * mm: 0.02, 50 * mm: 0.02}
 
 
