@@ -14,11 +14,10 @@ given height needs and that of a plate below it are the same reaction.
 
 from __future__ import annotations
 
-import csv
 import statistics
 import sys
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,51 +26,24 @@ from measure import Report
 import voxsoft as vs
 from voxsoft.units import MPa, kPa, mm
 
-ROOT = Path(__file__).parents[1]
-DESIGN = ROOT / "examples" / "validation" / "membrane.toml"
-DATA = ROOT / "examples" / "data" / "membrane_lift" / "pressure.csv"
+sys.path.insert(0, str(Path(__file__).parents[1] / "examples" / "validation"))
+
+from membrane_lift import HEIGHTS, MEMBRANES, Lifted, Membrane, Model, measured
+
 #: The heights that are compared, up to what was measured; with ``--fine`` all of them.
 ALL_HEIGHTS = tuple(step * mm for step in (10, 20, 30, 40, 50, 60))
-HEIGHTS = (10 * mm, 30 * mm, 50 * mm)
 WEIGHTS = (14.72, 24.52, 39.24)
-#: How near the force is to the weight before one more secant is the pressure. The force is smooth,
-#: so that this leaves 0.3 % of it: less than pressures scatter.
-NEAR = 0.05
-
-
-@dataclass(frozen=True)
-class Membrane:
-    """One of those measured: its values in the design, and whether it has rings."""
-
-    name: str
-    disc: float
-    thickness: float = 2 * mm
-    rings: dict[str, float] = field(default_factory=dict)
-
-    def values(self) -> dict[str, float]:
-        """The values of the design's parameters."""
-        return {"disc": self.disc, "thickness": self.thickness, **self.rings}
-
-
-MEMBRANES = (
-    Membrane("plain", 25.4 * mm),
-    Membrane("rings", 25.4 * mm, rings={"ring1": 49 * mm, "ring2": 62 * mm}),
-    Membrane("thick", 29.63 * mm, 2.33 * mm, {"ring1": 37.63 * mm, "ring2": 62 * mm}),
-)
 
 _EPFL = vs.Ogden(
     mu=(24.3610418 * kPa, 66.7032, 0.45381 * kPa), alpha=(1.7137766, 7.0678724, -3.3658807)
 )
 
 
-@dataclass(frozen=True)
-class Variant:
-    """What else it may be: another rubber, another modulus of the rings, smaller voxels."""
+@dataclass(frozen=True, kw_only=True)
+class Variant(Model):
+    """What else it may be, and what of it is compared."""
 
     name: str
-    rubber: str | vs.Ogden | vs.Gent = "ecoflex-00-30-epfl"
-    fabric: float = 3 * MPa
-    refine: int = 1
     membranes: tuple[str, ...] = ("plain", "rings", "thick")
     heights: tuple[float, ...] = HEIGHTS
     weights: tuple[float, ...] = WEIGHTS
@@ -81,74 +53,16 @@ _FEW = {"heights": (10 * mm, 30 * mm, 50 * mm), "weights": (14.72,)}
 #: The first was chosen before any pressure was computed: the card of the bending actuator, and the
 #: rings of the authors' theory.
 VARIANTS = (
-    Variant("as described"),
-    Variant("the card of the plain name", rubber="ecoflex-00-30", **_FEW),
-    Variant("nearly incompressible", rubber=_EPFL, membranes=("plain",), **_FEW),
-    Variant("tensile test of another laboratory", rubber="ecoflex-00-30-tensile", **_FEW),
-    Variant("constants of the authors' theory", rubber=vs.Gent(shear=31.7 * kPa, jm=39.6), **_FEW),
-    Variant("rings ten times as stiff", fabric=30 * MPa, membranes=("rings", "thick"), **_FEW),
-    Variant("two voxels across", refine=2, membranes=("plain", "rings"), **_FEW),
+    Variant(name="as described"),
+    Variant(name="the card of the plain name", rubber="ecoflex-00-30", **_FEW),
+    Variant(name="nearly incompressible", rubber=_EPFL, membranes=("plain",), **_FEW),
+    Variant(name="tensile test of another laboratory", rubber="ecoflex-00-30-tensile", **_FEW),
+    Variant(
+        name="constants of the authors' theory", rubber=vs.Gent(shear=31.7 * kPa, jm=39.6), **_FEW
+    ),
+    Variant(name="rings ten times as stiff", fabric=30 * MPa, membranes=("rings", "thick"), **_FEW),
+    Variant(name="two voxels across", refine=2, membranes=("plain", "rings"), **_FEW),
 )
-
-
-def measured() -> dict[tuple[str, float, float], float]:
-    """Pressure in Pa by membrane, weight in N and height in m."""
-    with DATA.open() as file:
-        return {
-            (row["membrane"], float(row["force_N"]), float(row["height_mm"]) * mm): float(
-                row["pressure_Pa"]
-            )
-            for row in csv.DictReader(file)
-        }
-
-
-class Lifted:
-    """One membrane with its disc at a height: the force on the disc over the pressure."""
-
-    def __init__(self, membrane: Membrane, variant: Variant, height: float) -> None:
-        self.membrane, self.variant, self.height = membrane, variant, height
-        self.seen: dict[float, float] = {}
-
-    def force(self, pressure: float) -> float:
-        """What it lifts at a pressure in Pa, in N; NaN where there is no equilibrium."""
-        if pressure not in self.seen:
-            self.seen[pressure] = self._solved(pressure)
-        return self.seen[pressure]
-
-    def _solved(self, pressure: float) -> float:
-        values = {**self.membrane.values(), "fabric": self.variant.fabric}
-        design = vs.load(DESIGN, height=self.height, pressure=pressure, **values)
-        (part,) = design.parts
-        part = part.model_copy(update={"material": self.variant.rubber})
-        layers = design.layers if self.membrane.rings else []
-        design = design.model_copy(update={"parts": [part], "layers": layers})
-        result = vs.simulate(design, refine=self.variant.refine)
-        if result.status != "ok":
-            print(f"{self.height / mm:g} mm, {pressure:.0f} Pa: {result.message}", file=sys.stderr)
-            return float("nan")
-        x, y, _ = result.mesh.vertices.T
-        half = self.membrane.thickness / self.variant.refine / 2
-        on_disc = np.hypot(x, y) <= self.membrane.disc + half
-        return -4.0 * float(result.reactions[on_disc, 2].sum())
-
-    def pressure(self, weight: float, start: float) -> float:
-        """The pressure in Pa at which it lifts a weight in N, NaN if none is found.
-
-        Secants from a pressure near it; the force grows steadily with the pressure.
-        """
-        here, force, slope = start, self.force(start), 0.0
-        for _ in range(8):
-            left = weight - force
-            if slope > 0.0 and abs(left) <= NEAR * weight:
-                return here + left / slope
-            # A step of a quarter at most: far beyond, the membrane is a balloon without end. And of
-            # a hundredth at least, for the slope.
-            size = np.clip(abs(left) / (slope or force / here), 0.01 * here, 0.25 * here)
-            then, before = here, force
-            here += float(np.copysign(size, left))
-            force = self.force(here)
-            slope = (force - before) / (here - then)
-        return float("nan")
 
 
 def curve(

@@ -12,8 +12,13 @@ from voxsoft.scoreboard import Scoreboard
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: Half-widths from the prediction at which the picture ends; what is farther stands at its edge.
+#: Half-widths from the prediction at which the picture ends; what is farther is an arrow at its
+#: edge.
 _FARTHEST: Final = 4.0
+#: From so many numbers on rows are closer: the height of one in inches, the size of its words.
+_MANY: Final = 40
+_ROOMY: Final = (0.24, 8.0)
+_CLOSE: Final = (0.15, 6.0)
 
 
 def plot_scoreboard(board: Scoreboard) -> Figure:
@@ -27,10 +32,11 @@ def plot_scoreboard(board: Scoreboard) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
-        The band is the interval; blue is inside.
+        The band is the interval; blue is inside, and an arrow stands for what is beyond the edge.
     """
     count = max(1, len(board.predictions))
-    figure = empty_figure(8.4, 1.2 + 0.24 * count)
+    height, size = _ROOMY if count < _MANY else _CLOSE
+    figure = empty_figure(8.4, 1.2 + height * count)
     axes = figure.subplots()
     off = np.array([(p.measured - p.predicted) / (p.half_width or 1.0) for p in board.predictions])
     rows = np.arange(len(board.predictions))
@@ -38,10 +44,15 @@ def plot_scoreboard(board: Scoreboard) -> Figure:
     inside = np.array([each.inside for each in board.predictions], dtype=bool)
     axes.axvspan(-1, 1, color=PALE, alpha=0.6, linewidth=0)
     axes.axvline(0, color="black", linewidth=0.8)
-    for chosen, color in ((inside, BLUE), (~inside, RED)):
-        axes.plot(shown[chosen], rows[chosen], "o", color=color, markersize=5)
+    for chosen, color, mark in (
+        (inside, BLUE, "o"),
+        (~inside & (np.abs(off) <= _FARTHEST), RED, "o"),
+        (off > _FARTHEST, RED, ">"),
+        (off < -_FARTHEST, RED, "<"),
+    ):
+        axes.plot(shown[chosen], rows[chosen], mark, color=color, markersize=5)
     labels = [f"{each.case}: {each.name}" for each in board.predictions]
-    axes.set_yticks(rows, labels, fontsize=8)
+    axes.set_yticks(rows, labels, fontsize=size)
     axes.set_ylim(count - 0.5, -0.5)
     axes.set_xlim(-_FARTHEST * 1.05, _FARTHEST * 1.05)
     share = f"{100 * board.coverage:.0f} % inside, mean width {100 * board.width:.0f} %"
