@@ -131,6 +131,8 @@ INNER = {
     "probes": {"top": {"point": [0, 0, 0]}},
 }
 SPECIAL |= {(model, "part"): ("plain",) for model in (FiberStrain, Strain, Swelling, Thermal)}
+# Of whole kelvins the forms make coefficients that leave nothing of a part.
+SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.

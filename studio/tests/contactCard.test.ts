@@ -1,6 +1,6 @@
 import { expect, it } from "vitest";
 import type { Touch } from "../src/protocol";
-import { forceOf, frictionOf } from "../src/run/ContactCard";
+import { forceOf, frictionOf, isSmooth } from "../src/run/ContactCard";
 import { holdOf } from "../src/run/hold";
 
 const touch = (first: string, second: string): Touch => ({
@@ -17,6 +17,13 @@ it("says how much of the friction is used", () => {
   expect(frictionOf(touch("body", "plate"))).toBe("3 N of 4 N (75 %)");
   const none = { ...touch("body", "plate"), friction: 1e-9, bound: 0 };
   expect(frictionOf(none)).toContain("(0 %)");
+});
+
+it("calls a surface without friction smooth, and a bond not", () => {
+  const pair = touch("body", "plate");
+  expect(isSmooth({ ...pair, bound: 0, slipping: 1 })).toBe(true);
+  expect(isSmooth({ ...pair, bound: 0, slipping: 0 })).toBe(false);
+  expect(isSmooth({ ...pair, slipping: 1 })).toBe(false);
 });
 
 it("says whether surfaces hold", () => {

@@ -64,10 +64,17 @@ def test_what_slides_has_the_friction_of_coulomb_in_both():
         run.label: np.array([run.quantities[f"contact with plate {axis}"].value for axis in "xyz"])
         for run in (own, outside)
     }
-    for force in forces.values():
-        # All of it slips in the end; facets of the plate and samples stick for 1 % at most.
-        assert force[0] == pytest.approx(-0.1 * force[2], rel=0.02)
-        assert force[2] < 0.0
+    # All of it slips in the end: at each sample friction is its bound, but for 1 % at most.
+    field = simulate(slid(0.1), method="statics", error="off").contact_field
+    size = np.linalg.norm(field.friction, axis=1) @ field.area
+    assert size == pytest.approx(0.1 * field.pressure @ field.area, rel=0.01)
+    # The top bulges while it slides, up to 0.45 · 0.15 · 4 mm = 0.3 mm at its rims beside some
+    # 1.6 mm of slip, and is pressed hardest there: directions differ by up to 20 degrees, so that
+    # up to 1 - cos 20° = 6 % of the friction cancels; 2 % do, alike in both codes.
+    shares = [-force[0] / (0.1 * force[2]) for force in forces.values()]
+    assert all(0.94 < share < 1.0 for share in shares)
+    assert shares[0] == pytest.approx(shares[1], rel=0.005)
+    assert all(force[2] < 0.0 for force in forces.values())
     # On two voxels across ours is 5 % above, by the singular edge of the clamp: estimates say so.
     assert found.agrees("contact with plate z")
 

@@ -37,13 +37,20 @@ export function ContactCard() {
                   <dd>{frictionOf(touch)}</dd>
                 </div>
               )}
-              <div>
-                <dt>Hold</dt>
-                <dd>
-                  <i className="hold" style={{ background: holdColor(touch.slipping) }} />
-                  {holdOf(touch.slipping)}
-                </dd>
-              </div>
+              {isSmooth(touch) ? (
+                <div>
+                  <dt>Friction</dt>
+                  <dd>none</dd>
+                </div>
+              ) : (
+                <div>
+                  <dt>Hold</dt>
+                  <dd>
+                    <i className="hold" style={{ background: holdColor(touch.slipping) }} />
+                    {holdOf(touch.slipping)}
+                  </dd>
+                </div>
+              )}
             </dl>
           </div>
         ))}
@@ -54,6 +61,11 @@ export function ContactCard() {
 
 function whoOf({ of: [first, second] }: Touch): string {
   return first === second ? `${first} on itself` : `${first} on ${second}`;
+}
+
+/** Without friction surfaces slip by their nature, which is no fault. */
+export function isSmooth({ bound, slipping }: Touch): boolean {
+  return (bound ?? 0) === 0 && slipping > 0.5;
 }
 
 /** How much of the friction that there can be is there: both in N, and as a part. */
