@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import solve_bvp
 
 import voxsoft as vs
-from voxsoft.design import MagneticField, Objective, Symmetry
+from voxsoft.design import Body, MagneticField, Objective, Rotation, Symmetry
+from voxsoft.design.mirrored import mirrored_part
 from voxsoft.errors import DesignError
 from voxsoft.materials import NeoHookean
 from voxsoft.simulation import Setup, gradient
@@ -91,6 +92,35 @@ def test_forces_sum_to_zero_and_turn_with_the_magnetic_moment():
     torque = np.cross(places, action.value).sum(axis=0)
     moment = np.array(part.remanence) * setup.mesh.volume / VACUUM_PERMEABILITY
     assert torque == pytest.approx(np.cross(moment, ball.loads[0].value), rel=1e-9)
+
+
+def test_each_body_has_the_remanence_of_its_own_part_along_its_own_axes():
+    def arm(name, remanence):
+        box = vs.Box(size=(20 * mm, 4 * mm, 4 * mm))
+        return vs.Part(name=name, body=name, shape=box, material=RUBBER, remanence=remanence)
+
+    turn = Rotation(axis=(0, 0, 1), angle="90 deg")
+    pair = vs.Design(
+        name="pair",
+        voxel_size=2 * mm,
+        bodies=[Body(name="along"), Body(name="turned", position=(0, 30 * mm, 0), rotation=turn)],
+        parts=[arm("along", (0.1, 0, 0)), arm("turned", (0.05, 0, 0))],
+        clamps=[vs.Clamp(region=vs.Region(x=(0, 0), body=name)) for name in ("along", "turned")],
+        loads=[MagneticField(value=(0, 0, 0.02))],
+    )
+    setup = Setup.of(pair)
+    action = setup.loads[0].actions[0]
+    for body, moment in zip(setup.mesh.bodies, ([0.1, 0, 0], [0, 0.05, 0]), strict=True):
+        own = (action.vertices >= body.vertices.start) & (action.vertices < body.vertices.stop)
+        places = setup.mesh.vertices[action.vertices[own]]
+        torque = np.cross(places, action.value[own]).sum(axis=0)
+        due = np.cross(moment, [0, 0, 0.02]) * body.mesh.volume / VACUUM_PERMEABILITY
+        assert torque == pytest.approx(due, abs=1e-9 * np.linalg.norm(due))
+
+
+def test_the_mirror_image_of_a_magnet_has_the_image_of_its_arrow():
+    part = cantilever(0.0).parts[0].replace(remanence=(0.1, 0.2, 0.3))
+    assert mirrored_part(part, "x").remanence == (-0.1, 0.2, 0.3)
 
 
 def test_the_derivative_by_the_field_and_the_remanence():

@@ -55,11 +55,18 @@ def mirrored_region(region: _Region, axis: Axis) -> _Region:
 
 
 def mirrored_part(part: Part, axis: Axis) -> Part:
-    """Return the image of a part with its fibers, under its name or else that of its shape."""
+    """Return the image of a part, under its name or else that of its shape.
+
+    Fibers and the arrow of a remanence are mirrored with it, as they are drawn.
+    """
     named = part.shape if isinstance(part.shape, str) else None
     fibers = [mirrored_fiber(fiber, axis) for fiber in part.fibers]
+    remanence = None if part.remanence is None else mirrored_point(part.remanence, axis)
     return part.replace(
-        shape=mirrored_shape(part.shape, axis), fibers=fibers, name=part.name or named
+        shape=mirrored_shape(part.shape, axis),
+        fibers=fibers,
+        remanence=remanence,
+        name=part.name or named,
     )
 
 

@@ -9,7 +9,7 @@ const DESIGN = {
     { kind: "magnetic_field", value: [0, 0, 0] },
   ],
   tendons: [{ name: "flexor", tension: 0.5 }],
-  activations: [{ kind: "thermal", part: "gel", value: 350 }],
+  activations: [{ kind: "thermal", part: "gel", value: 350, reference: 293 }],
   clamps: [{ motion: null }, { motion: { displacement: [0.01, 0, 0] } }],
 };
 
@@ -35,6 +35,8 @@ describe("changeable", () => {
       ["clamps[1].motion.displacement[0]", "motion of clamp 2 along x", "length"],
       ["reach", "parameter reach", "length"],
     ]);
+    // Heat begins where the part has its size: at zero kelvin there is nothing to solve.
+    expect(found.find((one) => one.kind === "temperature")?.start).toBe(293);
   });
 });
 
@@ -43,7 +45,7 @@ describe("overText", () => {
     const [pressure, , , , field] = changeable(DESIGN, []);
     expect(pressure && overText(pressure, 0, 30e3, 16)).toBe("loads[0].value=0..30 kPa/16");
     expect(field && overText(field, -0.0125, 0.0125, 5)).toBe("loads[2].value[2]=-12.5..12.5 mT/5");
-    const count = { key: "n", label: "", kind: "number", value: 1 };
+    const count = { key: "n", label: "", kind: "number", value: 1, start: 0 };
     expect(overText(count, 0, 0.3, 4)).toBe("n=0..0.3/4");
   });
 });

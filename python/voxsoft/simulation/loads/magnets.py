@@ -70,9 +70,10 @@ def magnet_forces(design: Design, mesh: Mesh, field: Floats, where: str) -> tupl
         if part.remanence is None or not any(part.remanence):
             continue
         for body in mesh.each_body:
-            own = body.mesh
-            numbers = np.flatnonzero(own.tet_part[::5] == index + 1)
-            corners, gradients = own.voxel_gradients(numbers)
+            # A body by itself counts its own parts; the joined mesh has those of the design.
+            tets = slice(body.first_tet, body.first_tet + len(body.mesh.tets))
+            numbers = np.flatnonzero(mesh.tet_part[tets][::5] == index + 1)
+            corners, gradients = body.mesh.voxel_gradients(numbers)
             corners = corners + body.first_vertex
             np.add.at(slopes, corners, gradients @ np.asarray(part.remanence))
             touched[corners] = True

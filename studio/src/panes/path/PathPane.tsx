@@ -34,7 +34,7 @@ export default function PathPane() {
       </Empty>
     );
   }
-  const path = (job && paths[job.id]) ?? Object.values(paths).at(-1) ?? null;
+  const path = (job ? paths[job.id] : Object.values(paths).at(-1)) ?? null;
   return (
     <div className="pane" data-testid="path-pane">
       <div className="section">
@@ -66,7 +66,7 @@ function Setup(props: { choices: readonly Changeable[]; valid: boolean }) {
   const [count, setCount] = useState(POINTS);
   const expect = useNewJob("run");
   const what = choices.find((one) => one.key === key) ?? (choices[0] as Changeable);
-  const [from, to] = range ?? [0, what.value];
+  const [from, to] = range ?? [what.start, what.value];
   const start = () => {
     expect();
     const name = `${what.label} along a path`;

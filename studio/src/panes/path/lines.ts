@@ -12,6 +12,8 @@ export interface Changeable {
   readonly kind: string;
   /** In SI units. */
   readonly value: number;
+  /** Where a path begins unless it is said otherwise, in SI units. */
+  readonly start: number;
 }
 
 const LOADS: Readonly<Record<string, readonly [label: string, kind: string]>> = {
@@ -38,12 +40,20 @@ function tables(value: unknown): readonly Table[] {
 
 /** A number, or the components of a vector that are not zero (all of them where all are). */
 function numbers(value: unknown, key: string, label: string, kind: string): Changeable[] {
-  if (typeof value === "number") return [{ key, label, kind, value }];
+  if (typeof value === "number") return [{ key, label, kind, value, start: 0 }];
   if (!Array.isArray(value)) return [];
   const some = value.some((x) => x !== 0);
   return value.flatMap((x, axis) =>
     typeof x === "number" && (x !== 0 || !some)
-      ? [{ key: `${key}[${axis}]`, label: `${label} along ${"xyz"[axis]}`, kind, value: x }]
+      ? [
+          {
+            key: `${key}[${axis}]`,
+            label: `${label} along ${"xyz"[axis]}`,
+            kind,
+            value: x,
+            start: 0,
+          },
+        ]
       : [],
   );
 }
@@ -66,7 +76,13 @@ export function changeable(design: Table, parameters: readonly Parameter[]): Cha
   tables(design.activations).forEach((each, i) => {
     const kind = ACTIVATIONS[String(each.kind)] ?? "number";
     const label = `${String(each.kind)} of ${String(each.part)}`;
-    found.push(...numbers(each.value, `activations[${i}].value`, label, kind));
+    const start = typeof each.reference === "number" ? each.reference : 0;
+    found.push(
+      ...numbers(each.value, `activations[${i}].value`, label, kind).map((one) => ({
+        ...one,
+        start,
+      })),
+    );
   });
   tables(design.clamps).forEach((clamp, i) => {
     const way = (clamp.motion as Table | null | undefined)?.displacement;
@@ -75,7 +91,8 @@ export function changeable(design: Table, parameters: readonly Parameter[]): Cha
   });
   for (const one of parameters) {
     if (one.formula) continue;
-    found.push({ key: one.name, label: `parameter ${one.name}`, kind: one.kind, value: one.value });
+    const { name, kind, value } = one;
+    found.push({ key: name, label: `parameter ${name}`, kind, value, start: one.min ?? 0 });
   }
   return found;
 }
