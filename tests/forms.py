@@ -130,6 +130,7 @@ INNER = {
     "clamps": [{"region": {"z": ["-inf", 0]}}],
     "probes": {"top": {"point": [0, 0, 0]}},
 }
+SPECIAL[History, "expression"] = ("1 - exp(-t)", "sin(2*pi*t)^2")
 SPECIAL |= {(model, "part"): ("plain",) for model in (FiberStrain, Strain, Swelling, Thermal)}
 # Of whole kelvins the forms make coefficients that leave nothing of a part.
 SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
@@ -173,6 +174,8 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (Fiber, "axis"): {"direction": None, "angle": "30 deg"},
     (Fiber, "center"): {"direction": None, "axis": "z", "angle": "30 deg"},
     (History, "sine"): {"time": (), "factor": ()},
+    (History, "expression"): {"time": (), "factor": (), "duration": "3 s"},
+    (History, "duration"): {"time": (), "factor": (), "expression": "1 - exp(-t)"},
     (Guide, "fixed"): {"point": None},
     **{(Tendon, name): {"tension": None} for name in ("length", "shortening")},
     (Tendon, "stiffness"): {"tension": None, "length": "50 mm"},

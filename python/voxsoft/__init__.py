@@ -112,7 +112,15 @@ if TYPE_CHECKING:
         Union,
         voxelize,
     )
-    from voxsoft.simulation import Result, Simulator, follow, modes, simulate, simulate_many
+    from voxsoft.simulation import (
+        Result,
+        Simulator,
+        follow,
+        modes,
+        simulate,
+        simulate_many,
+        workspace,
+    )
     from voxsoft.simulation.check import check
     from voxsoft.simulation.gradient import gradient
     from voxsoft.study import Study
@@ -192,6 +200,7 @@ _HOMES = {
         "modes",
         "simulate",
         "simulate_many",
+        "workspace",
     ),
     "voxsoft.study": ("Study",),
     "voxsoft.voxels": ("Voxels",),

@@ -168,7 +168,21 @@ class Fields:
         ndarray of float64, shape (n, 3)
             In 1/m.
         """
-        voxel = self.where("max_stretch", percent)
+        return self.stretch_slope(self.where("max_stretch", percent))
+
+    def stretch_slope(self, voxel: int | None) -> Floats:
+        """Derivative of the largest stretch of one voxel; zero without one.
+
+        Parameters
+        ----------
+        voxel
+            Its index, as :meth:`where` returns it.
+
+        Returns
+        -------
+        ndarray of float64, shape (n, 3)
+            In 1/m.
+        """
         if voxel is None:
             return np.zeros_like(self._positions)
         return self._core.stretch_slope(self._positions, int(self._order[voxel]))
@@ -198,7 +212,18 @@ class Fields:
 
     def where(self, name: FieldName, percent: float = 100.0) -> int | None:
         """The voxel with the value of :meth:`percentile`; None where no voxel has a number."""
-        values = self._values(name)
+        return self.where_of(self._values(name), percent)
+
+    def where_of(self, values: Floats, percent: float = 100.0) -> int | None:
+        """The voxel that has a percentile of a number of your own.
+
+        Parameters
+        ----------
+        values
+            For each voxel, (k,); those that are not finite do not count, nor do rigid parts.
+        percent
+            As for :meth:`percentile`.
+        """
         if not 0.0 < percent <= 100.0:
             raise DesignError("percentile", f"{percent:g} is not above 0 and at most 100", "try 99")
         counted = np.flatnonzero(np.isfinite(values) & ~self.rigid)

@@ -8,10 +8,12 @@ from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
-from voxsoft.design import families
-from voxsoft.simulation import simulate
+from voxsoft.design import Objective, families
+from voxsoft.metrics import METRICS
+from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.collapse import COLLAPSED, collapsed_voxels
 from voxsoft.simulation.fields import fields_of
+from voxsoft.simulation.loaded_state import LoadedState
 from voxsoft.simulation.tested_range import beyond_tests
 
 #: What makes the PneuNet the lattice that the studio's template once was.
@@ -60,8 +62,8 @@ def test_pressed_and_turned_voxels_are_distinguished(height, severity):
     assert all(f"{COLLAPSED:.0%}" in each.what or severity == "error" for each in found)
 
 
-def stretched(tested, share, by=1.5):
-    """A bar of which a share along its length is stretched."""
+def drawn(tested, share, by=1.5):
+    """A bar, and where its vertices are when a share along its length is stretched."""
     design = families.beam(length="100 mm").with_values(
         f'parts.0.material={{model="neo-hookean", young="60 kPa", tested_stretch={tested}}}',
         "voxel_size=2.5 mm",
@@ -71,7 +73,13 @@ def stretched(tested, share, by=1.5):
     end = x.min() + share * np.ptp(x)
     positions = mesh.vertices.copy()
     positions[:, 0] = np.where(x <= end + 1e-9, end + by * (x - end), x)
-    return design, fields_of(design, mesh, positions)
+    return design, positions
+
+
+def stretched(tested, share, by=1.5):
+    """Such a bar with its fields."""
+    design, positions = drawn(tested, share, by)
+    return design, fields_of(design, vs.mesh_of(design), positions)
 
 
 def test_a_strain_past_the_tests_is_reported_with_its_place_and_share():
@@ -82,6 +90,19 @@ def test_a_strain_past_the_tests_is_reported_with_its_place_and_share():
     assert warning.where == "parts[0]"
     inside = fields.max_stretch[np.argmin(np.linalg.norm(fields.centers - warning.at, axis=1))]
     assert inside == pytest.approx(1.5)
+
+
+def test_the_share_of_the_tested_strain_is_a_metric():
+    design, positions = drawn("{largest = 1.4}", share=0.25)
+    metric = METRICS["tested_share"]
+    state = LoadedState(Setup.of(design), positions)
+    # A half more of its length beside four tenths; three quarters of the volume are at rest.
+    assert metric.value(state, Objective(minimize="tested_share")) == pytest.approx(0.5 / 0.4)
+    most = Objective(minimize="tested_share", percentile=70)
+    assert metric.value(state, most) == pytest.approx(0.0, abs=1e-9)
+    assert metric.is_of(state)
+    rubber = 'parts.0.material={model="neo-hookean", young="60 kPa"}'
+    assert not metric.is_of(LoadedState(Setup.of(design.with_values(rubber)), positions))
 
 
 def test_a_hundredth_of_the_volume_may_go_farther():

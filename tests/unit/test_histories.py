@@ -18,6 +18,20 @@ def test_a_sine_is_one():
     assert sine.at(100.0) == pytest.approx(-0.5)
 
 
+def test_an_expression_is_followed_closely():
+    charge = vs.History(expression="1 - exp(-t / 0.05)", duration="3 s")
+    times = np.linspace(0.0, 3.0, 1001)
+    found = np.array([charge.at(float(t)) for t in times])
+    # By construction: an eight-hundredth of the range.
+    assert np.abs(found - (1.0 - np.exp(-times / 0.05))).max() < 1.0 / 800.0
+    assert 64 < len(charge.times) < 4097
+    assert charge.at(100.0) == pytest.approx(1.0)
+    swing = vs.History(expression="sin(2*pi*t)^2 * min(1, t)", duration="1 s")
+    assert swing.at(0.25) == pytest.approx(0.25, abs=2e-3)
+    flat = vs.History(expression="0.5", duration="1 s", repeat=2)
+    assert set(flat.factors) == {0.5}
+
+
 def test_a_cycle_repeats_without_a_seam():
     puff = vs.History(time=("0.5 s", "1 s", "2 s"), factor=(0, 1, 0), repeat=3)
     assert puff.times == pytest.approx((0.5, 1.0, 2.0, 2.5, 3.5, 4.0, 5.0))
@@ -28,11 +42,18 @@ def test_a_cycle_repeats_without_a_seam():
     ("given", "words"),
     [
         ({}, "has no instants"),
-        ({"time": (0.0,), "factor": (1.0,), "sine": {"period": 1.0}}, "a sine and instants"),
+        ({"time": (0.0,), "factor": (1.0,), "sine": {"period": 1.0}}, "instants and a sine"),
         ({"time": (0.0, 1.0), "factor": (0.0, 1.0), "repeat": 2}, "end where it begins"),
         ({"time": (0.0, 0.0), "factor": (0.0, 1.0)}, "does not rise"),
         ({"sine": {"period": 1.0, "cycles": 1000}, "repeat": 1000}, "stay below"),
         ({"sine": {"period": 0.0}}, "period"),
+        ({"expression": "t", "duration": 1.0, "sine": {"period": 1.0}}, "a sine and an expression"),
+        ({"expression": "t"}, "duration: is missing"),
+        ({"time": (0.0,), "factor": (1.0,), "duration": 1.0}, "expression: is missing"),
+        ({"expression": "t + tt", "duration": 1.0}, 'character 5: "tt" is not known; known are t'),
+        ({"expression": "x", "duration": 1.0}, "function of t in seconds"),
+        ({"expression": "1/t", "duration": 1.0}, "no value at 0 s"),
+        ({"expression": "t", "duration": 1.0, "repeat": 2}, "end where it begins"),
     ],
 )
 def test_bad_histories_are_refused(given, words):

@@ -193,6 +193,7 @@ def test_results_and_metrics_tell_what_supplies_do():
     assert found.metric("chamber_pressure", cavity="inside") == chamber.pressure
     assert found.metric("supplied_work") == chamber.work > 0.0
     assert found.metric("supplied_energy") == chamber.energy > chamber.work
+    assert found.metric("supply_efficiency") == chamber.work / chamber.energy
     assert found.metrics["supplied_work"] == chamber.work
     (summary,) = found.summary()["supplies"]
     assert summary["efficiency"] == chamber.work / chamber.energy
@@ -202,7 +203,7 @@ def test_results_and_metrics_tell_what_supplies_do():
 def test_a_pressure_load_is_a_chamber_pressure_too():
     found = simulate(cube(loads=[vs.Pressure(value=3 * kPa)]))
     assert found.metric("chamber_pressure") == 3 * kPa
-    assert found.metric("supplied_work") == 0.0
+    assert found.metric("supplied_work") == found.metric("supply_efficiency") == 0.0
     # Nothing is supplied: a list that nobody asked for leaves it out.
     assert not {"chamber_pressure", "supplied_work", "supplied_energy"} & found.metrics.keys()
     assert found.supplies == ()

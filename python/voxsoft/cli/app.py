@@ -19,6 +19,7 @@ from voxsoft.cli.run import run
 from voxsoft.cli.studio import studio
 from voxsoft.cli.study import optimize, sweep
 from voxsoft.cli.verify import verify
+from voxsoft.cli.workspace import workspace
 
 app = typer.Typer(
     name="voxsoft",
@@ -30,7 +31,7 @@ app = typer.Typer(
     pretty_exceptions_show_locals=False,
 )
 _COMMANDS = (
-    *(new, check, mesh, run, calibrate, sweep, optimize),
+    *(new, check, mesh, run, workspace, calibrate, sweep, optimize),
     *(compare, verify, again, export, studio),
 )
 for command in _COMMANDS:

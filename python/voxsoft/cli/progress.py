@@ -79,6 +79,11 @@ class ProgressBar:
         if self._fancy:
             self._bar.stop()
 
+    def set_total(self, total: int) -> None:
+        """Say how many steps there are, where that is known only after the first."""
+        self._total = total
+        self._bar.update(self._task, total=total)
+
     def advance_to(self, done: int, note: str = "") -> None:
         """Show that `done` steps are done, with a short note such as the best value so far."""
         if self._first is None:

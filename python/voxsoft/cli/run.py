@@ -180,7 +180,7 @@ def _stress_line(result: Result) -> str:
 
 
 def _stretch_line(result: Result) -> str:
-    from voxsoft.simulation.tested_range import tested_ranges
+    from voxsoft.design.tested import tested_ranges
 
     fields = result.fields
     line = (

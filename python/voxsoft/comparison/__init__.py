@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from voxsoft.comparison.path_bars import path_error_bars
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
+    from voxsoft.comparison.workspace_bars import line_error
 
 __all__ = [
     "Comparison",
@@ -26,6 +27,7 @@ __all__ = [
     "confirm",
     "discretization_error",
     "error_bars",
+    "line_error",
     "path_error_bars",
 ]
 
@@ -41,6 +43,7 @@ _HOMES = {
     "confirm": "voxsoft.comparison.confirmation",
     "discretization_error": "voxsoft.comparison.richardson",
     "error_bars": "voxsoft.comparison.bars",
+    "line_error": "voxsoft.comparison.workspace_bars",
     "path_error_bars": "voxsoft.comparison.path_bars",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

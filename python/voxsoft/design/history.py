@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import os
+import re
 from bisect import bisect_right
 from collections.abc import Mapping
 from functools import cached_property
@@ -15,12 +16,17 @@ from typing import Any, Final, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft import _core
+from voxsoft.errors import DesignError, ErrorDetail, ShapeError
 from voxsoft.records import Record, closest, place
 from voxsoft.units import Dimensionless, PositiveTime, Time, to_si
 
 #: Straight pieces in a period of a sine: they are off by an eight-hundredth of its height at most.
 _PIECES: Final = 64
+#: An expression is cut into as many pieces as bring it this near, as a part of its range.
+_NEAR: Final = 1.0 / 800.0
+#: The most pieces of an expression: what is steeper, such as a step, is a ramp this short.
+_MOST_PIECES: Final = 4096
 #: The most instants of a history.
 _MOST: Final = 100_000
 #: Factors at the ends of a cycle are the same to this part of the largest.
@@ -63,6 +69,12 @@ class History(Record):
         What the load is multiplied by at each instant.
     sine
         Swings in place of `time` and `factor`.
+    expression
+        A function of ``t``, the time in seconds, in place of `time` and `factor`; the functions of
+        :class:`voxsoft.shapes.Expression`. It is followed by straight pieces, an eight-hundredth
+        of its range off at most.
+    duration
+        How long the expression goes on; then its last value stays.
     repeat
         How many times the whole is gone through; its end must be its beginning. Default: once.
 
@@ -74,20 +86,35 @@ class History(Record):
     >>> breath = History(sine={"period": "2 s"}, repeat=2)
     >>> breath.at(1.0), breath.at(3.0), breath.times[-1]
     (1.0, 1.0, 4.0)
+    >>> charge = History(expression="1 - exp(-t / 0.5)", duration="3 s")
+    >>> round(charge.at("0.5 s"), 2)
+    0.63
     """
 
     time: tuple[Time, ...] = Field((), max_length=_MOST)
     factor: tuple[Dimensionless, ...] = Field((), max_length=_MOST)
     sine: Sine | None = None
+    expression: str | None = None
+    duration: PositiveTime | None = None
     repeat: int = Field(1, ge=1)
 
     @model_validator(mode="after")
     def _check(self) -> History:
-        if self.sine is not None and (self.time or self.factor):
-            raise DesignError("", "has a sine and instants", "give one of them")
-        if self.sine is None and not self.time:
-            hint = "give time and factor, or a sine"
+        ways = {
+            "instants": self.time or self.factor,
+            "a sine": self.sine is not None,
+            "an expression": self.expression is not None,
+        }
+        given = [way for way, is_given in ways.items() if is_given]
+        if len(given) > 1:
+            raise DesignError("", f"has {' and '.join(given)}", "give one of them")
+        if not given:
+            hint = "give time and factor, a sine, or an expression"
             raise DesignError("", "has no instants", hint)
+        if (self.expression is None) != (self.duration is None):
+            missing = "expression" if self.expression is None else "duration"
+            hint = 'give both, as in expression = "1 - exp(-t / 0.5)", duration = "3 s"'
+            raise DesignError(missing, "is missing", hint)
         if self.time and not self.factor:
             raise DesignError("factor", "is empty; at least 1 is needed", "give one for each time")
         if len(self.time) != len(self.factor):
@@ -111,6 +138,8 @@ class History(Record):
     @cached_property
     def _cycle(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Instants and factors, gone through once."""
+        if self.expression is not None and self.duration is not None:
+            return _pieces_of(self.expression, self.duration)
         if self.sine is None:
             return self.time, self.factor
         sine, count = self.sine, self.sine.cycles * _PIECES
@@ -195,6 +224,38 @@ class History(Record):
         (1.0, 0.0)
         """
         return cls(**read_table(path, column), **more)
+
+
+def _pieces_of(expression: str, duration: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Instants and values of an expression, near enough to each other to be joined by lines."""
+    pieces = _PIECES
+    while True:
+        times = np.linspace(0.0, duration, pieces + 1)
+        values = _values_of(expression, times)
+        # Halfway between two instants a chord is farthest from a smooth curve.
+        middles = _values_of(expression, (times[1:] + times[:-1]) / 2.0)
+        off = np.abs(middles - (values[1:] + values[:-1]) / 2.0).max()
+        if off <= _NEAR * np.ptp(values) or pieces == _MOST_PIECES:
+            return tuple(times.tolist()), tuple(values.tolist())
+        pieces *= 2
+
+
+def _values_of(expression: str, times: np.ndarray) -> np.ndarray:
+    """Values of a function of t, read as an expression of shapes reads a function of x alone."""
+    hint = 'write a function of t in seconds, such as "1 - exp(-t / 0.5)"'
+    if re.search(r"\b[xyz]\b", expression):
+        raise DesignError("expression", "is a function of x, y or z", hint)
+    try:
+        function = _core.Shape.expression(re.sub(r"\bt\b", "x", expression))
+    except ShapeError as error:
+        what = error.what.replace("x y z pi", "t pi")
+        raise DesignError("expression", what, hint) from None
+    points = np.column_stack([times, np.zeros_like(times), np.zeros_like(times)])
+    values = np.asarray(function.evaluate(points), dtype=float)
+    if not np.isfinite(values).all():
+        at = times[~np.isfinite(values)][0]
+        raise DesignError("expression", f"has no value at {at:g} s", hint)
+    return values
 
 
 def read_table(path: str | os.PathLike[str], column: str | None) -> dict[str, list[float]]:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from voxsoft.files.path_table import write_path
     from voxsoft.files.run_folder import write_run
     from voxsoft.files.study_folder import write_confirmation, write_study
+    from voxsoft.files.workspace_folder import write_workspace
 
 __all__ = [
     "check_design",
@@ -33,6 +34,7 @@ __all__ = [
     "write_path",
     "write_run",
     "write_study",
+    "write_workspace",
 ]
 
 # Loaded when first used: a study folder needs matplotlib and pandas, a design file does not.
@@ -51,5 +53,6 @@ _HOMES = {
     "write_path": "voxsoft.files.path_table",
     "write_run": "voxsoft.files.run_folder",
     "write_study": "voxsoft.files.study_folder",
+    "write_workspace": "voxsoft.files.workspace_folder",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

@@ -17,8 +17,13 @@ from voxsoft.metrics.penetration import PENETRATION
 from voxsoft.metrics.reaction import REACTION
 from voxsoft.metrics.rotation import ROTATION
 from voxsoft.metrics.stress import MAX_STRESS
-from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO
-from voxsoft.metrics.supplies import CHAMBER_PRESSURE, SUPPLIED_ENERGY, SUPPLIED_WORK
+from voxsoft.metrics.stretch import MAX_STRETCH, MIN_VOLUME_RATIO, TESTED_SHARE
+from voxsoft.metrics.supplies import (
+    CHAMBER_PRESSURE,
+    SUPPLIED_ENERGY,
+    SUPPLIED_WORK,
+    SUPPLY_EFFICIENCY,
+)
 from voxsoft.metrics.tangent import COMPLIANCE, NATURAL_FREQUENCY, STIFFNESS
 from voxsoft.metrics.tendon import TENDON_LENGTH, TENDON_TENSION
 from voxsoft.metrics.whole_body import ELASTIC_ENERGY, MASS, VOLUME
@@ -42,6 +47,7 @@ _ALL: Final[dict[str, Metric]] = {
         REACTION,
         MAX_DISPLACEMENT,
         MAX_STRETCH,
+        TESTED_SHARE,
         MAX_STRESS,
         MIN_VOLUME_RATIO,
         PENETRATION,
@@ -55,6 +61,7 @@ _ALL: Final[dict[str, Metric]] = {
         CHAMBER_PRESSURE,
         SUPPLIED_WORK,
         SUPPLIED_ENERGY,
+        SUPPLY_EFFICIENCY,
         TENDON_TENSION,
         TENDON_LENGTH,
     )

@@ -1,4 +1,4 @@
-"""How far a body is stretched, and how far its voxels are pressed."""
+"""How far a body is stretched, beside the tests of its materials, and how far it is pressed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from typing import Final
 
 import numpy as np
 
+from voxsoft.design.tested import tested_ranges
 from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
 
 
@@ -15,6 +16,32 @@ def _stretch(state: State, target: Target) -> float:
 
 def _stretch_slope(state: SlopeState, target: Target) -> Floats:
     return state.fields.max_stretch_slope(target.percentile or 100.0)
+
+
+def _tested(state: State) -> Floats:
+    """The strain up to which the material of each voxel was tested; NaN where it is not known."""
+    ranges = tested_ranges(state.design)
+    of_parts = np.array([np.nan if each is None else each.largest - 1.0 for each in ranges])
+    tested: Floats = of_parts[state.fields.parts]
+    return tested
+
+
+def _share(state: State, target: Target) -> float:
+    fields = state.fields
+    shares = (fields.max_stretch - 1.0) / _tested(state)
+    voxel = fields.where_of(shares, target.percentile or 100.0)
+    return float("nan") if voxel is None else float(shares[voxel])
+
+
+def _share_slope(state: SlopeState, target: Target) -> Floats:
+    fields, tested = state.fields, _tested(state)
+    voxel = fields.where_of((fields.max_stretch - 1.0) / tested, target.percentile or 100.0)
+    slope = fields.stretch_slope(voxel)
+    return slope if voxel is None else slope / float(tested[voxel])
+
+
+def _is_tested(state: State) -> bool:
+    return any(each is not None for each in tested_ranges(state.design))
 
 
 def _volume_ratio(state: State, _: Target) -> float:
@@ -28,6 +55,15 @@ MAX_STRETCH: Final = Metric(
     _stretch_slope,
     takes=frozenset({"percentile"}),
     is_peak=True,
+)
+TESTED_SHARE: Final = Metric(
+    "tested_share",
+    "number",
+    _share,
+    _share_slope,
+    takes=frozenset({"percentile"}),
+    is_peak=True,
+    is_of=_is_tested,
 )
 MIN_VOLUME_RATIO: Final = Metric(
     "min_volume_ratio", "number", _volume_ratio, slope=None, is_peak=True

@@ -28,6 +28,11 @@ def _energy(state: State, target: Target) -> float:
     return sum(each.energy for each in _chosen(state, target))
 
 
+def _efficiency(state: State, target: Target) -> float:
+    energy = _energy(state, target)
+    return _work(state, target) / energy if energy > 0.0 else 0.0
+
+
 def _are_supplied(state: State) -> bool:
     return bool(state.supplies)
 
@@ -46,4 +51,12 @@ SUPPLIED_WORK: Final = Metric(
 )
 SUPPLIED_ENERGY: Final = Metric(
     "supplied_energy", "energy", _energy, None, takes=frozenset({"cavity"}), is_of=_are_supplied
+)
+SUPPLY_EFFICIENCY: Final = Metric(
+    "supply_efficiency",
+    "number",
+    _efficiency,
+    None,
+    takes=frozenset({"cavity"}),
+    is_of=_are_supplied,
 )

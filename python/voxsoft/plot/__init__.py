@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from voxsoft.plot.path import plot_path
     from voxsoft.plot.scoreboard import plot_scoreboard
     from voxsoft.plot.study import plot_history, plot_pareto, plot_paths, plot_scatter
+    from voxsoft.plot.workspace import plot_workspace
 
 __all__ = [
     "body_image",
@@ -53,6 +54,7 @@ __all__ = [
     "plot_shape",
     "plot_shapes",
     "plot_times",
+    "plot_workspace",
 ]
 
 # Loaded when first used: the picture of a body needs no fit of coupons.
@@ -74,5 +76,6 @@ _HOMES = {
     "plot_shape": "voxsoft.plot.calibration",
     "plot_shapes": "voxsoft.plot.comparison",
     "plot_times": "voxsoft.plot.comparison",
+    "plot_workspace": "voxsoft.plot.workspace",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)

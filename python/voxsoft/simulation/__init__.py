@@ -10,6 +10,7 @@ from voxsoft.simulation.many import Ensemble, Settled, simulate_many
 from voxsoft.simulation.observation import ChamberState, Observation
 from voxsoft.simulation.over import Over
 from voxsoft.simulation.penetration import Overlap, Penetration, find_penetration
+from voxsoft.simulation.reachable import Workspace, workspace
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.run import ProgressCallback, balance, relax, simulate
 from voxsoft.simulation.setup import Setup, named_regions
@@ -36,6 +37,7 @@ __all__ = [
     "Setup",
     "Simulator",
     "Status",
+    "Workspace",
     "balance",
     "check",
     "check_solver",
@@ -48,4 +50,5 @@ __all__ = [
     "relax",
     "simulate",
     "simulate_many",
+    "workspace",
 ]

@@ -194,6 +194,7 @@ def follow(
     given = require_design(design).assembled
     asked = over if isinstance(over, Over) else _read(over, values, given)
     solver = given.solver if not settings else given.solver.replace(**settings)
+    given = given.replace(solver=solver)
     _check(given, solver)
     if asked.key == TIME:
         _check_supplies(given)
@@ -230,7 +231,7 @@ def follow(
         start, before = Start(result.positions), instant
         whole = result if part is None else part.unfolded(result)
         results.append(replace(whole, design=designs[number]))
-        path = LoadPath(given.replace(solver=solver), asked, tuple(results))
+        path = LoadPath(given, asked, tuple(results))
         if step is not None:
             step(path)
         if result.status != "ok":

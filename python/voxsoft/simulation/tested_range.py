@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Design
+from voxsoft.design.tested import tested_ranges
 from voxsoft.fields import Fields
-from voxsoft.materials import Hyperelastic, Lattice, StretchRange
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.units import format_percent
 
@@ -47,23 +47,6 @@ def beyond_tests(design: Design, fields: Fields) -> Iterator[Diagnostic]:
         if tested.smallest is not None:
             pressed = fields.principal_stretches[own, 2]
             yield from _beyond(fields, own, pressed, tested.smallest, where, "pressed", -1.0)
-
-
-def tested_ranges(design: Design) -> list[StretchRange | None]:
-    """How far the material of each part was tested; None where that is not known.
-
-    Examples
-    --------
-    >>> from voxsoft.design import families
-    >>> beam = families.beam().with_values("parts.0.material=rtv615-tensile")
-    >>> tested_ranges(beam)
-    [StretchRange(largest=2.92)]
-    """
-    materials = [design.material_of(part) for part in design.parts]
-    return [
-        material.tested_stretch if isinstance(material, Hyperelastic | Lattice) else None
-        for material in materials
-    ]
 
 
 def _beyond(
