@@ -333,6 +333,13 @@ export interface LiveCommand {
   seq: number;
 }
 
+/** Draw the equilibrium that is shown in one of its natural vibrations, from 0; null stops it. */
+export interface VibrateCommand {
+  t: "vibrate";
+  seq: number;
+  mode?: number | null;
+}
+
 /** What this tab shows: the field, the surface or the tetrahedra, and whether it is visible. */
 export interface ViewCommand {
   t: "view";
@@ -942,6 +949,25 @@ export interface EquilibriumEvent {
   error_bars: string;
 }
 
+/**
+ * The slowest natural vibrations of the state that `frame` shows, in Hz.
+ *
+ * `mode` is the one that is drawn, from 0, `amplitude` how far it is drawn in m, and `period` how
+ * long a drawn swing takes in s. While they are looked for there are none; `trouble` says why
+ * there are none, and `hint` what to do.
+ */
+export interface VibrationEvent {
+  t: "vibration";
+  topology: number;
+  frame: number;
+  frequencies: number[];
+  mode: number | null;
+  amplitude: number;
+  period: number;
+  trouble: string;
+  hint: string;
+}
+
 /** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */
 export interface OverlapPlace {
   depth: number;
@@ -1327,6 +1353,7 @@ export type AnyCommand =
   | PaceCommand
   | SeekCommand
   | LiveCommand
+  | VibrateCommand
   | ViewCommand
   | PickCommand
   | ProbeCommand
@@ -1353,6 +1380,7 @@ export type AnyEvent =
   | BodyEvent
   | StatEvent
   | EquilibriumEvent
+  | VibrationEvent
   | OverlapEvent
   | MomentsEvent
   | MomentNewsEvent

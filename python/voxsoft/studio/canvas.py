@@ -73,6 +73,20 @@ class Canvas:
             rest, topology=topology, frame=0, field=field, seq=seq, flags=_STILL
         )
 
+    def swung(
+        self, positions: NDArray[np.float64], field: int, mode: str, seq: int, frame: int
+    ) -> bytes:
+        """A frame of an equilibrium that is drawn elsewhere, with a field of where it is drawn."""
+        display = self._tets if mode == "tets" else self._surface
+        return display.pack_frame(
+            positions,
+            topology=self._body.topology,
+            frame=frame,
+            field=field if field < len(FIELDS) else DISPLACEMENT,
+            seq=seq & 0xFFFF_FFFF,
+            flags=_FLAGS["at-rest"],
+        )
+
     def _touched(
         self,
         player: Player | None,

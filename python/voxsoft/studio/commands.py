@@ -203,6 +203,12 @@ class Seek(Command):
     time: float | None = None
 
 
+class Vibrate(Command):
+    """Draw the equilibrium in one of its natural vibrations, counted from 0; null stops it."""
+
+    mode: Count | None = None
+
+
 class Live(Command):
     """Go back from a stored frame to the present."""
 
@@ -420,6 +426,7 @@ AnyCommand = (
     | Pace
     | Seek
     | Live
+    | Vibrate
     | View
     | Pick
     | Probe

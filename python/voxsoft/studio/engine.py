@@ -16,6 +16,9 @@ from voxsoft.studio.exports import Shown
 from voxsoft.studio.stage import Stage
 from voxsoft.studio.tab import Tab
 
+#: Commands beside which a natural vibration goes on.
+_BESIDE = (commands.View, commands.Pick, commands.Probe, commands.Vibrate)
+
 
 class Engine(threading.Thread):
     """Owns the stage; what other threads ask is done on its own thread, one thing at a time.
@@ -36,7 +39,8 @@ class Engine(threading.Thread):
         """Do what is asked, and move the body meanwhile, until the end."""
         while True:
             try:
-                task = self._inbox.get(block=not self._stage.playback.moving)
+                playback = self._stage.playback
+                task = self._inbox.get(block=not (playback.moving or playback.swinging))
             except queue.Empty:
                 task = self._stage.advance
             if task is None:
@@ -80,6 +84,8 @@ class Engine(threading.Thread):
 
         def task() -> None:
             try:
+                if not isinstance(command, _BESIDE):
+                    self._stage.stand_still()
                 execute(command, self._stage, tab)
             except VoxSoftError as error:
                 reported = events.Error(

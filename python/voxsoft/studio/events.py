@@ -441,6 +441,24 @@ class Equilibrium(Event):
     error_bars: str = ""
 
 
+class Vibration(Event):
+    """The slowest natural vibrations of the state that `frame` shows, in Hz.
+
+    `mode` is the one that is drawn, from 0, `amplitude` how far it is drawn in m, and `period` how
+    long a drawn swing takes in s. While they are looked for there are none; `trouble` says why
+    there are none, and `hint` what to do.
+    """
+
+    topology: int
+    frame: int
+    frequencies: list[float]
+    mode: int | None = None
+    amplitude: float = 0.0
+    period: float = 0.0
+    trouble: str = ""
+    hint: str = ""
+
+
 class ObjectPose(Entry):
     """Where an object is: the middle of its box in m, and its rotation, nine numbers by rows."""
 
@@ -815,6 +833,7 @@ AnyEvent = (
     | Body
     | Stat
     | Equilibrium
+    | Vibration
     | Overlap
     | Moments
     | MomentNews

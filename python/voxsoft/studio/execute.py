@@ -88,6 +88,14 @@ def _on_seek(command: commands.Seek, stage: Stage, tab: Tab) -> None:
 
 
 @execute.register
+def _on_vibrate(command: commands.Vibrate, stage: Stage, tab: Tab) -> None:
+    if command.mode is None:
+        stage.stand_still()
+    else:
+        stage.vibrate(command.mode)
+
+
+@execute.register
 def _on_live(command: commands.Live, stage: Stage, tab: Tab) -> None:
     if stage.playback.player is not None:
         stage.playback.do(command)

@@ -87,6 +87,14 @@ class Pictures:
         body, canvas = playback.body, playback.canvas
         if body is None or canvas is None or not tab.ready:
             return
+        vibration = playback.vibration
+        if vibration is not None and vibration.mode is not None:
+            tab.painted = None
+            frame = playback.frame
+            self._bus.frame(
+                tab, canvas.swung(vibration.now(), view.field, view.mode, tab.seq, frame)
+            )
+            return
         key = (body.topology, playback.frame, view.field, view.mode, playback.state)
         if tab.painted != key:
             tab.painted = key

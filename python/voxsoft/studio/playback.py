@@ -21,6 +21,7 @@ from voxsoft.studio.objects import film_of, moments_of
 from voxsoft.studio.player import Command, Event, Player
 from voxsoft.studio.probes import Probe, moved_probes, placed_probes
 from voxsoft.studio.sentences import time_text
+from voxsoft.studio.vibration import Vibration
 
 #: How a search for rest may have ended, in the words of the page.
 _STATES: Final[dict[str, events.SimulationState]] = {"ok": "at-rest", "diverged": "diverged"}
@@ -47,6 +48,8 @@ class Playback:
         The solver of the search for rest.
     result
         The state at rest that a solver found, while the body is in it.
+    vibration
+        Its natural vibrations, once they are found, and which of them is drawn.
     moments, contact_fields
         Poses of objects and contacts, for each stored frame of a solution with contact; and what
         touches each vertex, for the last frame of one.
@@ -60,6 +63,7 @@ class Playback:
     progress: float | None = None
     method: str = "auto"
     result: Result | None = None
+    vibration: Vibration | None = None
     moments: list[events.Moment] = field(default_factory=list)
     contact_fields: dict[int, ContactField] = field(default_factory=dict)
     _pace: float | None = None
@@ -80,7 +84,7 @@ class Playback:
         moved = [] if before is None else moved_probes(self._probes, before, body)
         self.body, self.canvas, self.player = body, Canvas(body), None
         self._probes = [*placed_probes(body), *moved]
-        self.result = self.doing = self.progress = None
+        self.result = self.vibration = self.doing = self.progress = None
         self.moments, self.contact_fields = [], {}
         self.sentence = "" if body.refusal is None else f"Cannot be solved: {body.refusal}"
         if body.refusal is None and self._hands is not None:
@@ -220,6 +224,11 @@ class Playback:
     def moving(self) -> bool:
         """Whether time runs."""
         return self.player is not None and self.player.moving
+
+    @property
+    def swinging(self) -> bool:
+        """Whether a natural vibration is drawn."""
+        return self.vibration is not None and self.vibration.mode is not None
 
     @property
     def state(self) -> events.SimulationState:

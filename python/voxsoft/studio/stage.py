@@ -6,8 +6,12 @@ import time
 from collections.abc import Callable, Sequence
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from voxsoft import _core
-from voxsoft.simulation import Result
+from voxsoft.errors import SimulationError, VoxSoftError
+from voxsoft.simulation import Modes, Result
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
@@ -18,6 +22,7 @@ from voxsoft.studio.pictures import Pictures
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.rest import RestSearch
 from voxsoft.studio.tab import Tab
+from voxsoft.studio.vibration import ModesSearch, Vibration
 
 #: Part of the time of a frame that stepping may take; the rest is for packing and other threads.
 SHARE_OF_FRAME: Final = 0.8
@@ -91,6 +96,8 @@ class Stage:
             self.bus.send_to(tab, newest)
         if self._equilibrium is not None:
             self.bus.send_to(tab, self._equilibrium)
+        if self.playback.vibration is not None:
+            self.bus.send_to(tab, self.playback.vibration.event())
 
     # Time
 
@@ -116,6 +123,10 @@ class Stage:
         """Take one frame, tell of it, and wait until the next is due."""
         started = time.perf_counter()
         frame = _core.FRAME_TIME
+        if self.playback.swinging:
+            self.pictures.paint_all()
+            time.sleep(max(0.0, frame - (time.perf_counter() - started)))
+            return
         reported = self.playback.advance(frame, budget=frame * SHARE_OF_FRAME)
         self.pictures.paint_all()
         self.overlaps.look()
@@ -213,6 +224,58 @@ class Stage:
         if body is not None and equilibrium.topology == body.topology:
             self._equilibrium = equilibrium
             self.bus.publish(equilibrium)
+
+    # Vibrations
+
+    def vibrate(self, mode: int) -> None:
+        """Draw the equilibrium in one of its natural vibrations, once they are known.
+
+        Raises
+        ------
+        SimulationError
+            There is no equilibrium, or no such mode.
+        """
+        playback = self.playback
+        body, topology, frame = playback.body, playback.require_body().topology, playback.frame
+        if playback.state != "at-rest":
+            raise SimulationError("modes", "are those of an equilibrium", "press Solve first")
+        known = playback.vibration
+        if known is not None and (known.topology, known.frame) == (topology, frame):
+            playback.vibration = known.with_mode(mode)
+            self.bus.publish(playback.vibration.event())
+            return
+        self.bus.publish(events.Vibration(topology=topology, frame=frame, frequencies=[]))
+
+        def is_shown() -> bool:
+            now = playback.body is body and playback.state == "at-rest"
+            return now and playback.frame == frame
+
+        def begin(positions: NDArray[np.float64], found: Modes) -> None:
+            if is_shown():
+                vibration = Vibration(topology, frame, positions, found)
+                playback.vibration = vibration.with_mode(min(mode, len(found.frequencies) - 1))
+                self.bus.publish(playback.vibration.event())
+
+        def fail(error: VoxSoftError) -> None:
+            if is_shown():
+                none = events.Vibration(topology=topology, frame=frame, frequencies=[])
+                none.trouble, none.hint = error.what, error.hint
+                self.bus.publish(none)
+
+        ModesSearch(
+            playback.shown_as("", "").measured,
+            lambda positions, found: self._later(lambda: begin(positions, found)),
+            lambda error: self._later(lambda: fail(error)),
+        ).start()
+
+    def stand_still(self) -> None:
+        """Draw the equilibrium where it is."""
+        playback = self.playback
+        if playback.vibration is not None and playback.swinging:
+            playback.vibration = playback.vibration.with_mode(None)
+            self.bus.publish(playback.vibration.event())
+            self.pictures.forget()
+            self.pictures.paint_all()
 
     # Telling
 

@@ -10,6 +10,7 @@ import { viewport } from "../view/instance";
 import { useOverlap } from "../view/overlap";
 import { ContactCard } from "./ContactCard";
 import { EquilibriumCard, useEquilibrium } from "./EquilibriumCard";
+import { VibrationCard } from "./VibrationCard";
 import "./run.css";
 
 const METHOD_TITLES: Readonly<Record<SolverCommand["method"], string>> = {
@@ -36,6 +37,7 @@ export default function RunPane() {
       <State />
       <ContactCard />
       <EquilibriumCard />
+      <VibrationCard />
       <Section title="Loads">
         {body.loads.length === 0 && (
           <p className="muted">

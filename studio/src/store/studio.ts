@@ -25,6 +25,7 @@ import type {
   StatEvent,
   TrialEvent,
   TrialsEvent,
+  VibrationEvent,
 } from "../protocol";
 import type { Gathered } from "./gather";
 import { PlotHistory } from "./history";
@@ -61,6 +62,7 @@ export interface Studio {
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
+  vibration: VibrationEvent | null;
   /** What is known of frames of a solution with contact, by their numbers. */
   moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
@@ -101,6 +103,7 @@ export const useStudio = create<Studio>(() => ({
   askedPace: undefined,
   overlap: null,
   equilibrium: null,
+  vibration: null,
   moments: new Map(),
   picked: null,
   jobs: {},
@@ -181,6 +184,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "equilibrium":
       set({ equilibrium: event });
+      break;
+    case "vibration":
+      set({ vibration: event });
       break;
     case "overlap":
       set({ overlap: event });
