@@ -333,7 +333,7 @@ export interface LiveCommand {
   seq: number;
 }
 
-/** Draw the equilibrium that is shown in one of its natural vibrations, from 0; null stops it. */
+/** Draw the equilibrium in one of its natural vibrations, counted from 0; null stops it. */
 export interface VibrateCommand {
   t: "vibrate";
   seq: number;
@@ -968,6 +968,22 @@ export interface VibrationEvent {
   hint: string;
 }
 
+/** A volume of gas or liquid over time: gauge pressure in Pa, volume in m³, flow in kg/s. */
+export interface ChamberCurve {
+  name: string;
+  pressure: number[];
+  volume: number[];
+  flow: number[];
+}
+
+/** What supplies did in the motion that is shown, at instants in s; empty where nothing did. */
+export interface ChambersEvent {
+  t: "chambers";
+  topology: number;
+  times: number[];
+  chambers: ChamberCurve[];
+}
+
 /** Where a body is in itself: how deep in m, and a point of it unloaded and now, m. */
 export interface OverlapPlace {
   depth: number;
@@ -1381,6 +1397,7 @@ export type AnyEvent =
   | StatEvent
   | EquilibriumEvent
   | VibrationEvent
+  | ChambersEvent
   | OverlapEvent
   | MomentsEvent
   | MomentNewsEvent

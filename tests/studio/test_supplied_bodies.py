@@ -7,7 +7,7 @@ import pytest
 
 from voxsoft.errors import SimulationError
 from voxsoft.files.designs import load
-from voxsoft.studio import commands
+from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.rest import RestSearch
@@ -56,6 +56,13 @@ def test_solve_shows_the_motion_as_a_film(finger):
     left = result.recording.chambers["left"]
     assert len(left.pressure) == len(result.recording.frames) > 2
     assert (np.diff(left.pressure) > 0.0).all()
+    told = playback.go_to_rest(result)
+    (curves,) = [event for event in told if isinstance(event, events.Chambers)]
+    assert curves.times == result.recording.times.tolist()
+    named = {each.name: each for each in curves.chambers}
+    assert named["left"].pressure == left.pressure.tolist()
+    (emptied,) = [event for event in playback.reset() if isinstance(event, events.Chambers)]
+    assert emptied.chambers == []
     playback.go_to_rest(result)
     assert playback.stat().time == pytest.approx(0.04)
     assert result.metrics["chamber_pressure"] == pytest.approx(left.pressure[-1])

@@ -200,6 +200,12 @@ def test_results_and_metrics_tell_what_supplies_do():
     assert found.summary()["cavities"][0]["pressure"] == chamber.pressure
 
 
+def test_a_gas_spring_is_no_pressure_load():
+    """What is locked in pushes back when a body swings; modes do not know of it yet."""
+    with pytest.raises(SimulationError, match="with supplies"):
+        vs.modes(simulate(cube(SYRINGE)))
+
+
 def test_a_pressure_load_is_a_chamber_pressure_too():
     found = simulate(cube(loads=[vs.Pressure(value=3 * kPa)]))
     assert found.metric("chamber_pressure") == 3 * kPa

@@ -142,6 +142,9 @@ def test_what_has_no_modes_is_refused(still):
     touching = vs.simulate(bar(contact=Contact()))
     with pytest.raises(SimulationError, match="contact"):
         vs.modes(touching)
+    moving = {"method": "dynamics", "end_time": 0.01, "time_step": 5e-3}
+    with pytest.raises(SimulationError, match="motion over time"):
+        vs.modes(vs.simulate(bar(solver=moving)))
     # Buckled: Euler's load is 0.2 N.
     load = vs.Force(region=vs.Region(x=(LONG, LONG)), value=(-0.03, 0, 0))
     with pytest.raises(SimulationError, match="not stable"):

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from voxsoft import _core
 from voxsoft._memory import memory_limit
 from voxsoft.errors import SimulationError
+from voxsoft.simulation.choice import kind_of
 from voxsoft.simulation.equilibrium import too_large_a_tangent
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.touching import has_contact
@@ -62,8 +64,8 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
     Raises
     ------
     SimulationError
-        The result is no stable equilibrium, something touches, or the tangent does not fit in
-        memory.
+        The result is no stable equilibrium, something touches, chambers have supplies, or the
+        tangent does not fit in memory.
 
     Examples
     --------
@@ -77,6 +79,12 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
         raise SimulationError("modes", f"the run is {result.status}", "bring it to rest first")
     if count < 1:
         raise SimulationError("count", f"is {count}", "ask for one mode or more")
+    if not kind_of(result.design, result.design.solver).to_rest:
+        what = "are those of an equilibrium, and the run is motion over time"
+        raise SimulationError("modes", what, "leave out end_time and other settings of motion")
+    if has_supplies(result.design):
+        hint = "give the chambers pressure loads of the same value instead"
+        raise SimulationError("modes", "are not known of bodies with supplies", hint)
     if has_contact(result.design):
         raise SimulationError(
             "modes", "are not known of bodies in contact", "leave contact and objects out"

@@ -459,6 +459,23 @@ class Vibration(Event):
     hint: str = ""
 
 
+class ChamberCurve(Entry):
+    """A volume of gas or liquid over time: gauge pressure in Pa, volume in m³, flow in kg/s."""
+
+    name: str
+    pressure: list[float]
+    volume: list[float]
+    flow: list[float]
+
+
+class Chambers(Event):
+    """What supplies did in the motion that is shown, at instants in s; empty where nothing did."""
+
+    topology: int
+    times: list[float]
+    chambers: list[ChamberCurve]
+
+
 class ObjectPose(Entry):
     """Where an object is: the middle of its box in m, and its rotation, nine numbers by rows."""
 
@@ -834,6 +851,7 @@ AnyEvent = (
     | Stat
     | Equilibrium
     | Vibration
+    | Chambers
     | Overlap
     | Moments
     | MomentNews

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
@@ -68,6 +69,11 @@ def touches_live(setup: Setup) -> bool:
     return has_contact(setup.design) and not not_live(setup)
 
 
+def is_filmed(design: Design) -> bool:
+    """Whether what is solved of a design has moments that the page is told of."""
+    return has_contact(design) or has_supplies(design)
+
+
 def film_of(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times and positions of what was recorded before the state that a result ends in."""
     times, frames = result.recording.times, result.recording.frames
@@ -77,7 +83,7 @@ def film_of(result: Result) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def moments_of(result: Result, last: int) -> list[events.Moment]:
     """Poses and contacts in each frame of a solution whose last frame has the number `last`."""
-    if not has_contact(result.design):
+    if not is_filmed(result.design):
         return []
     names = [each.name for each in result.design.objects]
     recording, count = result.recording, len(film_of(result)[0])
@@ -89,7 +95,8 @@ def moments_of(result: Result, last: int) -> list[events.Moment]:
         }
         number = last - count + index
         when = float(recording.times[index])
-        found.append(_moment(number, when, names, poses, recording.contacts[index]))
+        contacts = recording.contacts[index] if recording.contacts else ()
+        found.append(_moment(number, when, names, poses, contacts))
     end = _moment(last, result.time, names, result.objects, result.contacts)
     end.fields = result.contact_field is not None
     return [*found, end]

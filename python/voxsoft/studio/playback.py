@@ -10,14 +10,15 @@ from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
 from voxsoft.simulation.contact_field import ContactField
+from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.result import Status
-from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.canvas import Canvas
+from voxsoft.studio.chambers import chambers_of
 from voxsoft.studio.exports import Shown
 from voxsoft.studio.hands import Hands
-from voxsoft.studio.objects import film_of, moments_of
+from voxsoft.studio.objects import film_of, is_filmed, moments_of
 from voxsoft.studio.player import Command, Event, Player
 from voxsoft.studio.probes import Probe, moved_probes, placed_probes
 from voxsoft.studio.sentences import time_text
@@ -131,7 +132,11 @@ class Playback:
         if self.player is None:
             self.sentence = ""
             return [self.plot(), self.stat()]
-        return [*self.moments_event(), *self.do(commands.Reset(seq=0))]
+        return [
+            *self.moments_event(),
+            *self.chambers_event(),
+            *self.do(commands.Reset(seq=0)),
+        ]
 
     def choose_pace(self, factor: float | None) -> None:
         """Take the user's pace for this body and all that come, or None for the automatic one."""
@@ -207,14 +212,23 @@ class Playback:
         self.moments += moments_of(result, player.frame)
         if result.contact_field is not None:
             self.contact_fields[player.frame] = result.contact_field
-        return [*reported, *self.moments_event()]
+        return [*reported, *self.moments_event(), *self.chambers_event()]
 
     def moments_event(self) -> list[events.Event]:
         """What is known of stored frames beside their pictures; nothing for most bodies."""
         body = self.body
-        if body is None or not has_contact(body.setup.design):
+        if body is None or not is_filmed(body.setup.design):
             return []
         return [events.Moments(topology=body.topology, moments=self.moments)]
+
+    def chambers_event(self) -> list[events.Event]:
+        """What supplies did in the motion that is shown; nothing for a design without any."""
+        body = self.body
+        if body is None or not has_supplies(body.setup.design):
+            return []
+        if self.result is None:
+            return [events.Chambers(topology=body.topology, times=[], chambers=[])]
+        return [chambers_of(self.result, body.topology)]
 
     def newest_moment(self) -> events.MomentNews | None:
         """What touches in the present of a body that moves."""

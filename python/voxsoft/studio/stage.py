@@ -89,7 +89,7 @@ class Stage:
         self.pictures.send_snapshot(tab)
         self.bus.send_to(tab, self.playback.complete(self.playback.stat()))
         self.overlaps.send_snapshot(tab)
-        for event in self.playback.moments_event():
+        for event in (*self.playback.moments_event(), *self.playback.chambers_event()):
             self.bus.send_to(tab, event)
         newest = self.playback.newest_moment()
         if newest is not None:

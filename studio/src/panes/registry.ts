@@ -20,6 +20,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("view", "View", () => import("../view/ViewPane")),
   pane("run", "Run", () => import("../run/RunPane")),
   pane("probes", "Probes", () => import("../run/ProbesPane")),
+  pane("chambers", "Chambers", () => import("../run/ChambersPane")),
   pane("energy", "Energy and residual", () => import("../run/EnergyPane")),
   pane("design", "Design", () => import("./design/DesignPane")),
   pane("text", "Text", () => import("./design/text/TextPane")),

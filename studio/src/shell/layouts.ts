@@ -26,7 +26,10 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
   simulate: {
     left: [["run", "path", "design"]],
     main: ["view"],
-    bottom: [["probes"], ["energy", "log"]],
+    bottom: [
+      ["probes", "chambers"],
+      ["energy", "log"],
+    ],
     right: [["body", "export"]],
     leftShare: 0.21,
   },

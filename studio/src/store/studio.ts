@@ -5,6 +5,7 @@ import type {
   AnyEvent,
   BodyEvent,
   CalibratedEvent,
+  ChambersEvent,
   ComparedEvent,
   DesignFilesEvent,
   DocumentEvent,
@@ -63,6 +64,8 @@ export interface Studio {
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
   vibration: VibrationEvent | null;
+  /** What supplies did in the motion that is shown. */
+  chambers: ChambersEvent | null;
   /** What is known of frames of a solution with contact, by their numbers. */
   moments: ReadonlyMap<number, Moment>;
   picked: PickedEvent | null;
@@ -104,6 +107,7 @@ export const useStudio = create<Studio>(() => ({
   overlap: null,
   equilibrium: null,
   vibration: null,
+  chambers: null,
   moments: new Map(),
   picked: null,
   jobs: {},
@@ -187,6 +191,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "vibration":
       set({ vibration: event });
+      break;
+    case "chambers":
+      set({ chambers: event });
       break;
     case "overlap":
       set({ overlap: event });
