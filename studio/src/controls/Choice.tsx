@@ -77,6 +77,8 @@ export interface ButtonProps {
   children: ReactNode;
   /** Read by screen readers and shown as a tip; needed for icon buttons. */
   label?: string;
+  /** What it does, shown as a tip where the words on it say it shortly. */
+  title?: string;
   kind?: "plain" | "primary" | "quiet" | "danger";
   icon?: boolean;
   pressed?: boolean;
@@ -93,7 +95,7 @@ export function Button(props: ButtonProps) {
       className={`button${kind}${props.icon ? " icon" : ""}`}
       aria-label={props.label}
       aria-pressed={props.pressed}
-      title={props.label}
+      title={props.title ?? props.label}
       disabled={props.disabled}
       data-testid={props.testId}
       onClick={props.onClick}

@@ -3,11 +3,13 @@ import { Button, Empty } from "../controls/Choice";
 import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { Transport } from "../run/Transport";
 import { openDocument } from "../shell/actions";
+import { chooseFace } from "../store/face";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView } from "../store/view";
 import { ContactBanner } from "./ContactBanner";
 import { Cube } from "./Cube";
+import { FaceCard } from "./FaceCard";
 import { ForceLegend } from "./ForceLegend";
 import { viewport } from "./instance";
 import { Legend } from "./Legend";
@@ -137,18 +139,22 @@ function Picked() {
   const place = (point: readonly number[]) =>
     point.map((x) => formatNumber(x * 1000, 4)).join(", ");
   return (
-    <aside className="picked" data-testid="picked" aria-label="Values at a vertex">
+    <aside className="picked" data-testid="picked" aria-label="What is here">
       <header>
-        <strong>Vertex {picked.vertex}</strong>
+        <strong>This place</strong>
         <Button
           icon
           kind="quiet"
           label="Close"
-          onClick={() => useStudio.setState({ picked: null })}
+          onClick={() => {
+            chooseFace(null);
+            useStudio.setState({ picked: null });
+          }}
         >
           ×
         </Button>
       </header>
+      <FaceCard />
       <dl className="facts">
         <div>
           <dt>Unloaded</dt>

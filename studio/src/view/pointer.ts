@@ -134,5 +134,6 @@ function clicked(view: Viewport, hit: Target): void {
   else {
     send({ t: "pick", vertex: hit.vertex });
     view.choose(hit.vertex);
+    view.chooseFace(hit);
   }
 }

@@ -13,6 +13,7 @@ import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
 import { BODY, roomOf } from "../panes/design/several";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
+import { chooseFace, useFace } from "../store/face";
 import { usePage } from "../store/page";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -22,6 +23,8 @@ import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { type ColorRange, colorRange } from "./colorRange";
 import { withoutDust } from "./dust";
+import { faceAt, triangleAt } from "./face";
+import { FaceMark } from "./faceMark";
 import { ContactForces } from "./forces";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
@@ -65,6 +68,7 @@ export class Viewport {
   readonly rig = new CameraRig();
   readonly grabs = new Grabs();
   readonly tape = new Tape();
+  private readonly faceMark = new FaceMark();
   private readonly spot = new Spot(() => this.request());
   private readonly painter = new Painter();
   private readonly stopwatch: Stopwatch;
@@ -144,6 +148,7 @@ export class Viewport {
       this.attachments.group,
       this.grabs.group,
       this.tape.group,
+      this.faceMark.mesh,
     );
     new ResizeObserver(() => this.resize()).observe(this.element);
     new MutationObserver(() => this.recolor()).observe(document.documentElement, {
@@ -151,6 +156,7 @@ export class Viewport {
     });
     listen(this);
     useView.subscribe((now, before) => this.viewChanged(now, before));
+    useFace.subscribe(() => this.request());
     usePage.subscribe((now, before) => now.mode !== before.mode && this.request());
     useStudio.subscribe((now, before) => {
       if (now.body !== before.body) this.bodyChanged();
@@ -214,6 +220,7 @@ export class Viewport {
     this.pullsDue = true;
     this.tape.clear();
     this.spot.clear();
+    chooseFace(null);
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
     if (this.fitNext) this.rig.fit(box, true);
@@ -507,6 +514,7 @@ export class Viewport {
     const moved = this.mover.shift.some((one) => one !== 0);
     if (moved && body && view.chosen) this.several.placeMoved(body, view.chosen, this.mover.shift);
     else this.several.place(body, this.surface, view.chosen, view.exaggeration);
+    this.faceMark.place(useFace.getState().face, this.surface, view.exaggeration);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
   }
@@ -644,6 +652,17 @@ export class Viewport {
   choose(vertex: number): void {
     const entry = this.several.entryAt(useStudio.getState().body, vertex);
     if (entry) setView({ chosen: entry });
+  }
+
+  /** Mark the face of the body that was pressed, for what can be done there. */
+  chooseFace(hit: Target): void {
+    const topology = this.surface?.topology;
+    // A page of its own has no design that could be changed.
+    if (!topology || currentEngine()?.kind !== "server") return;
+    const { x, y, z } = this.rig.toEye;
+    const triangle = triangleAt(topology, hit.triangle, [x, y, z]);
+    chooseFace(triangle === null ? null : faceAt(topology, triangle));
+    this.request();
   }
 
   /** What of the body is at a place of the page. */

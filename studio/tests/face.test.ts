@@ -1,0 +1,135 @@
+import { describe, expect, it } from "vitest";
+import type { Topology } from "../src/engine/frames";
+import {
+  coordinate,
+  pointInside,
+  regionAround,
+  regionOfFace,
+  verbsAt,
+  verbsIn,
+} from "../src/panes/design/here";
+import type { Parameter } from "../src/protocol";
+import { type Face, faceAt, triangleAt } from "../src/view/face";
+
+/** Faces of boxes as two triangles each, outward; vertices of one box are shared. */
+function boxes(...all: { low: number[]; high: number[]; owner?: number }[]): Topology {
+  const rest: number[] = [];
+  const triangles: number[] = [];
+  const owners: number[] = [];
+  for (const { low, high, owner = 0 } of all) {
+    const base = rest.length / 3;
+    for (let i = 0; i < 8; i++)
+      for (let axis = 0; axis < 3; axis++)
+        rest.push(((i >> axis) & 1 ? high : low)[axis] as number);
+    const quads = [
+      [0, 4, 6, 2],
+      [1, 3, 7, 5],
+      [0, 1, 5, 4],
+      [2, 6, 7, 3],
+      [0, 2, 3, 1],
+      [4, 5, 7, 6],
+    ];
+    for (const [a, b, c, d] of quads as [number, number, number, number][]) {
+      triangles.push(...[a, b, c, a, c, d].map((one) => base + one));
+      owners.push(owner, owner);
+    }
+  }
+  return {
+    kind: "topology",
+    id: 7,
+    tets: false,
+    voxelSize: 0.005,
+    rest: new Float32Array(rest),
+    triangles: new Uint32Array(triangles),
+    edges: new Uint32Array(),
+    owners: new Uint8Array(owners),
+  };
+}
+
+const length = (name: string, value: number) => ({ name, value, kind: "length" }) as Parameter;
+
+describe("the face that is pressed", () => {
+  const one = boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] });
+
+  it("is all of its plane, and nothing around the corner", () => {
+    const face = faceAt(one, 2); // the first of the two at the largest x
+    expect(face.axis).toBe(0);
+    expect(face.normal[0]).toBeCloseTo(1);
+    expect(new Set(face.triangles).size).toBe(4);
+    expect(face.triangles).toHaveLength(6);
+    expect(face.low[0]).toBeCloseTo(0.04);
+    expect(face.shared).toBe(false);
+    expect(face.cavity).toBeNull();
+  });
+
+  it("says where others lie in its plane", () => {
+    const two = boxes(
+      { low: [0, 0, 0], high: [0.01, 0.01, 0.01] },
+      { low: [0.03, 0, 0], high: [0.04, 0.01, 0.01] },
+    );
+    const top = faceAt(two, 10);
+    expect(top.normal[2]).toBeCloseTo(1);
+    expect(top.shared).toBe(true);
+    expect(regionOfFace(top, [])).toEqual({
+      x: [0, "10 mm"],
+      y: [0, "10 mm"],
+      z: ["10 mm", "10 mm"],
+    });
+  });
+
+  it("is found by its corners, or else by what faces the eye", () => {
+    const corners = [...one.triangles.slice(6, 9)] as [number, number, number];
+    expect(triangleAt(one, corners, [0, 0, 1])).toBe(2);
+    expect(faceAt(one, triangleAt(one, [7, 7, 7], [0, 0, 1]) as number).axis).toBe(2);
+    expect(faceAt(one, triangleAt(one, [7, 7, 7], [0, 1, 0]) as number).axis).toBe(1);
+  });
+});
+
+describe("what is written of it", () => {
+  const end = faceAt(boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] }), 2);
+
+  it("follows the parameter that it comes from", () => {
+    expect(regionOfFace(end, [length("length", 0.04)])).toEqual({ x: ["= length", "= length"] });
+    expect(coordinate(-0.02, [length("width", 0.04)], 0.005)).toBe("= -width/2");
+    expect(coordinate(0, [length("nothing", 0)], 0.005)).toBe(0);
+  });
+
+  it("does not guess between two", () => {
+    const two = [length("length", 0.04), length("height", 0.04)];
+    expect(regionOfFace(end, two)).toEqual({ x: ["40 mm", "40 mm"] });
+  });
+
+  it("is a ball where the surface is oblique", () => {
+    const oblique: Face = { ...end, axis: null };
+    expect(regionOfFace(oblique, [])).toBeNull();
+    expect(regionAround(oblique)).toMatchObject({ radius: "7.5 mm" });
+  });
+
+  it("goes behind what is there, under a free name", () => {
+    const source = { clamps: [{}], probes: { probe: {} }, layers: [{ name: "fabric" }] };
+    const verbs = Object.fromEntries(
+      verbsAt({ x: [0, 0] }, end.normal, source).map((verb) => [verb.id, verb.changes[0]]),
+    );
+    expect(verbs.clamp).toEqual({ path: ["clamps", 1], value: { region: { x: [0, 0] } } });
+    expect(verbs.probe?.path).toEqual(["probes", "probe-2"]);
+    expect(verbs.layer?.value).toMatchObject({ name: "fabric-2" });
+    // It pushes into the body.
+    expect(verbs.push?.value).toMatchObject({ kind: "force", value: ["-100 mN", 0, 0] });
+  });
+
+  it("names a chamber by a point within it", () => {
+    const wall = boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01], owner: 128 + 1 });
+    const face = faceAt(wall, 2);
+    expect(face.cavity).toBe(1);
+    expect(pointInside(face)[0]).toBeCloseTo(0.0425);
+    const [fill, name] = verbsIn(face, "", {});
+    expect(fill?.changes.map(({ path }) => path)).toEqual([
+      ["chambers", "chamber"],
+      ["loads", 0],
+    ]);
+    expect(name?.id).toBe("name");
+    const known = verbsIn(face, "left", { chambers: { left: {} } });
+    expect(known).toHaveLength(1);
+    expect(known[0]?.changes[0]?.value).toMatchObject({ cavity: "left" });
+  });
+});
