@@ -151,6 +151,20 @@ export interface EditCommand {
   value?: unknown;
 }
 
+/** A value of the document at a path; `null` removes the key. */
+export interface OneEdit {
+  path: (string | number)[];
+  value?: unknown;
+}
+
+/** Set several values one after the other, as one step that is undone together. */
+export interface EditsCommand {
+  t: "edits";
+  seq: number;
+  rev: number;
+  changes: OneEdit[];
+}
+
 /** A copy that is moved by a vector, m. */
 export interface Beside {
   kind: "beside";
@@ -1349,6 +1363,7 @@ export type AnyCommand =
   | OpenCommand
   | TextCommand
   | EditCommand
+  | EditsCommand
   | CopyCommand
   | MoveCommand
   | RemoveCommand

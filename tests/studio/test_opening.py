@@ -107,3 +107,33 @@ def test_only_design_files_are_shown(make_studio, tmp_path, name):
             assert "secret" not in str(error)
 
     run(scenario())
+
+
+def test_from_nothing_several_edits_are_one_step(fresh_studio):
+    async def scenario():
+        async with fresh_studio.page() as page:
+            rev = page.rev
+            await page.send("open", what="template", name="empty")
+            await page.until("document", lambda d: d.rev > rev)
+            empty = page.document
+            sphere = {"kind": "sphere", "radius": "20 mm"}
+            part = {"shape": "ball", "material": "ecoflex-00-30"}
+            changes = [
+                {"path": ["shapes", "ball"], "value": sphere},
+                {"path": ["parts", 0], "value": part},
+            ]
+            await page.send("edits", rev=empty.rev, changes=changes)
+            await page.until("document", lambda d: d.rev > empty.rev)
+            made = page.document
+            body = await page.until("body", lambda b: b.rev == made.rev)
+            await page.send("undo")
+            await page.until("document", lambda d: d.rev > made.rev)
+            return empty, made, body, page.document
+
+    empty, made, body, undone = run(scenario())
+    assert not empty.valid
+    assert empty.name == "robot.toml"
+    assert made.valid
+    # 5 mm voxels in a ball of 20 mm: 33.5 mL of 0.125 mL each, and stairs at its surface.
+    assert body.voxels == pytest.approx(268, rel=0.1)
+    assert undone.text == empty.text

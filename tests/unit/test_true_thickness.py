@@ -94,3 +94,12 @@ def _times(what):
     words = what.split(" times")[0].split()
     numbers = [float(w) for w in words if w.replace(".", "").isdigit()]
     return (numbers[0], numbers[-1])
+
+
+def test_edges_that_a_hollow_leaves_are_no_slopes():
+    """Points beside an edge run into it, where the mean of both slopes is that of no surface."""
+    solid = Box(size=(40 * mm, 40 * mm, 40 * mm))
+    hollow = vs.Difference(of=(solid, solid.offset(-10 * mm)))
+    design = families.beam().replace(shapes={"solid": hollow}, parts=[PART])
+    mesh = vs.mesh_of(design)
+    assert list(doubtful_thickness(design, mesh)) == []

@@ -57,6 +57,20 @@ class Edit(Command):
     value: Json = None
 
 
+class OneEdit(Entry):
+    """A value of the document at a path; `null` removes the key."""
+
+    path: Path
+    value: Json = None
+
+
+class Edits(Command):
+    """Set several values one after the other, as one step that is undone together."""
+
+    rev: int
+    changes: Annotated[list[OneEdit], Meta(min_length=1, max_length=100)]
+
+
 class Beside(Entry, tag_field="kind", tag="beside"):
     """A copy that is moved by a vector, m."""
 
@@ -406,6 +420,7 @@ AnyCommand = (
     | Open
     | Text
     | Edit
+    | Edits
     | Copy
     | Move
     | Remove

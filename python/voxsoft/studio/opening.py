@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from pathlib import Path
+from typing import Final
 
 from voxsoft.design import families
 from voxsoft.errors import FileError, VoxSoftError
@@ -14,15 +15,27 @@ from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.uploads import MESHES, design_of_array, design_of_mesh
 from voxsoft.units import format_quantity
 
+#: The name of the design that holds nothing yet.
+EMPTY: Final = "empty"
+_NOTHING: Final = """\
+schema = "voxsoft/1"
+name = "robot"
+voxel_size = "5 mm"
+"""
+
 
 def template_document(name: str, home: Path) -> DesignDocument:
     """A shipped family of designs, as a new document that would be saved in the folder `home`.
+
+    With the name ``"empty"`` it is a design that holds nothing yet.
 
     Raises
     ------
     VoxSoftError
         There is no such family.
     """
+    if name == EMPTY:
+        return DesignDocument(_NOTHING, "robot.toml", folder=home)
     return DesignDocument(families.family_text(name), f"{name}.toml", folder=home)
 
 

@@ -192,6 +192,11 @@ class Session:
         self._changed(self.document.edit(command.path, command.value))
 
     @_execute.register
+    def _on_edits(self, command: commands.Edits, tab: Tab) -> None:
+        self._author = tab
+        self._change(self.document, [(each.path, each.value) for each in command.changes])
+
+    @_execute.register
     def _on_copy(self, command: commands.Copy, tab: Tab) -> None:
         self._author = tab
         document, name = self._of_several(command.name)

@@ -1,4 +1,4 @@
-import { type ReactNode, useId } from "react";
+import { type MouseEvent, type ReactNode, useId } from "react";
 
 export interface Option {
   readonly value: string;
@@ -84,7 +84,7 @@ export interface ButtonProps {
   pressed?: boolean;
   disabled?: boolean;
   testId?: string;
-  onClick(): void;
+  onClick(event: MouseEvent): void;
 }
 
 export function Button(props: ButtonProps) {

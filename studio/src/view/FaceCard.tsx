@@ -2,7 +2,7 @@
 import { useState } from "react";
 import { Button, Select } from "../controls/Choice";
 import { formatNumber } from "../controls/units";
-import { edit } from "../panes/design/edits";
+import { editAll } from "../panes/design/edits";
 import { regionAround, regionOfFace, type Verb, verbsAt, verbsIn } from "../panes/design/here";
 import { chooseFace, useFace } from "../store/face";
 import { toast, useStudio } from "../store/studio";
@@ -61,7 +61,7 @@ function Verbs(props: { title: string; verbs: readonly Verb[] }) {
 }
 
 function run(verb: Verb): void {
-  for (const { path, value } of verb.changes) edit(path, value);
+  editAll(verb.changes);
   chooseFace(null);
   useStudio.setState({ picked: null });
   toast({

@@ -1,6 +1,7 @@
 import { useEffect, useRef } from "react";
 import { Button, Empty } from "../controls/Choice";
 import { cleaned, formatNumber, formatQuantity } from "../controls/units";
+import { EMPTY } from "../panes/design/empty";
 import { Transport } from "../run/Transport";
 import { openDocument } from "../shell/actions";
 import { chooseFace } from "../store/face";
@@ -62,7 +63,7 @@ function Welcome() {
           Or drop a .toml, .stl, .obj or .npy file, or a run folder (.zip), anywhere on the page.
         </p>
         <div className="welcome-grid">
-          {templates?.map((template) => (
+          {[EMPTY, ...(templates ?? [])].map((template) => (
             <button
               key={template.name}
               type="button"

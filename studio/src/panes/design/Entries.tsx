@@ -10,6 +10,7 @@ import { setView, useView } from "../../store/view";
 import { edit, problemsAt, replaceText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
+import type { MenuPlace } from "./Menu";
 import { NAME, type Named, renamed } from "./rename";
 import { swapped, TableFields } from "./SchemaField";
 import { controlOf, resolve, type Schema, single, summary } from "./schema";
@@ -25,7 +26,11 @@ interface EntryProps {
   depth?: number;
   /** Whether it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
-  actions: readonly { readonly glyph: "up" | "down" | "trash"; label: string; run(): void }[];
+  actions: readonly {
+    readonly glyph: "up" | "down" | "trash" | "more";
+    label: string;
+    run(at: MenuPlace): void;
+  }[];
   children: ReactNode;
 }
 
@@ -54,7 +59,13 @@ export function Entry(props: EntryProps) {
         </button>
         <span className="entry-actions">
           {props.actions.map((action) => (
-            <Button key={action.label} icon kind="quiet" label={action.label} onClick={action.run}>
+            <Button
+              key={action.label}
+              icon
+              kind="quiet"
+              label={action.label}
+              onClick={(event) => action.run({ x: event.clientX, y: event.clientY })}
+            >
               <Glyph name={action.glyph} />
             </Button>
           ))}

@@ -4,9 +4,11 @@ import type { Template } from "../../protocol";
 import { upload } from "../../shell/DropZone";
 import { useStudio } from "../../store/studio";
 import { openHere } from "./edits";
+import { EMPTY } from "./empty";
 
 // A sign for each shipped family: what it does under load, from the side.
 const SKETCHES: Readonly<Record<string, string>> = {
+  empty: "M28 14v20M18 24h20M8 8h6M8 8v6M48 8h-6m6 0v6M8 40h6m-6 0v-6m40 6h-6m6 0v-6",
   beam: "M6 8v32M6 14h20c12 0 20 6 24 16M6 22h18c9 0 15 5 18 13",
   cylinder: "M14 12c0-6 28-6 28 0v26c0 6-28 6-28 0zm0 0c0 6 28 6 28 0M28 30v-9m-4 4 4-4 4 4",
   finger: "M20 42V16c0-10 16-10 16 0v26zM24 20h8M24 27h8M24 34h8M8 16h8m-3-3 3 3-3 3",
@@ -57,6 +59,7 @@ export function Gallery() {
     >
       {shown && (
         <div className="gallery" data-testid="gallery">
+          <Card template={EMPTY} onOpened={() => unfold(false)} />
           {(templates ?? []).map((template) => (
             <Card key={template.name} template={template} onOpened={() => unfold(false)} />
           ))}

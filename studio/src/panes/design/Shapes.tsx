@@ -1,14 +1,21 @@
+import { useState } from "react";
 import { Section } from "../../controls/Choice";
+import { useStudio } from "../../store/studio";
 import { Adder, Entry, NameField, type Table } from "./Entries";
-import { edit, problemsAt } from "./edits";
+import { edit, editAll, problemsAt } from "./edits";
 import { useForm } from "./form";
+import { Menu, type MenuPlace } from "./Menu";
 import { TableFields } from "./SchemaField";
 import { resolve } from "./schema";
 import { shapeTree } from "./shapeTree";
-import { freeName } from "./starters";
+import { isUsed, shapeVerbs, withShape } from "./shapeVerbs";
 
 export function Shapes() {
   const { root, source, diagnostics } = useForm();
+  const [menu, setMenu] = useState<{ name: string; at: MenuPlace } | null>(null);
+  const body = useStudio((state) => state.body);
+  const room = body && { low: body.bounds[0], high: body.bounds[1] };
+  const voxel = body?.voxel_size || 0.005;
   const schema = resolve(root, root.properties?.shapes ?? {}).additionalProperties;
   if (typeof schema !== "object") return null;
   const shapes = (source.shapes as Record<string, Table> | undefined) ?? {};
@@ -19,10 +26,7 @@ export function Shapes() {
         <Adder
           what="a shape"
           schema={schema}
-          onAdd={(value) => {
-            const kind = String((value as Table).kind ?? "shape");
-            edit(["shapes", freeName(kind, Object.keys(shapes))], value);
-          }}
+          onAdd={(value) => editAll(withShape(value as Table, source))}
         />
       }
     >
@@ -42,11 +46,16 @@ export function Shapes() {
           <Entry
             key={node.name}
             title={node.name}
-            about={String(shapes[node.name]?.kind ?? "")}
+            about={`${shapes[node.name]?.kind ?? ""}${isUsed(node.name, source) ? "" : ", not used yet"}`}
             depth={node.depth}
             wrong={problemsAt(diagnostics, ["shapes", node.name]).length > 0}
             testId={`shapes-${node.name}`}
             actions={[
+              {
+                glyph: "more",
+                label: `What to do with ${node.name}`,
+                run: (at) => setMenu({ name: node.name, at }),
+              },
               {
                 glyph: "trash",
                 label: `Remove ${node.name}`,
@@ -58,6 +67,17 @@ export function Shapes() {
             <TableFields path={["shapes", node.name]} schema={schema} value={shapes[node.name]} />
           </Entry>
         ),
+      )}
+      {menu && (
+        <Menu
+          label={`What to do with ${menu.name}`}
+          at={menu.at}
+          items={shapeVerbs(menu.name, source, room, voxel).map(({ label, changes }) => ({
+            label,
+            run: () => editAll(changes),
+          }))}
+          onClose={() => setMenu(null)}
+        />
       )}
     </Section>
   );

@@ -16,6 +16,22 @@ export function edit(path: Path, value: unknown): void {
   send({ t: "edit", rev, path: [...path], value });
 }
 
+/** One change of the document. */
+export interface Change {
+  readonly path: Path;
+  readonly value: unknown;
+}
+
+/** Set several values as one step, which is undone together. */
+export function editAll(changes: readonly Change[]): void {
+  const rev = useStudio.getState().document?.rev ?? 0;
+  send({
+    t: "edits",
+    rev,
+    changes: changes.map(({ path, value }) => ({ path: [...path], value })),
+  });
+}
+
 /** Replace the text of the document. */
 export function replaceText(text: string): void {
   flushText();

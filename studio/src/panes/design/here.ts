@@ -1,18 +1,12 @@
 // What can be done at a face of the body that was pressed, and how it is written into the design.
 import type { Parameter } from "../../protocol";
 import type { Face } from "../../view/face";
-import type { Path } from "./edits";
+import type { Change } from "./edits";
 import { written, writtenPlace } from "./placing";
 import { freeName } from "./starters";
 
 type Table = Readonly<Record<string, unknown>>;
 type Triple = readonly [number, number, number];
-
-/** One change of the document. */
-export interface Change {
-  readonly path: Path;
-  readonly value: unknown;
-}
 
 /** Something that can be done at a face. */
 export interface Verb {
