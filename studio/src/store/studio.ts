@@ -172,9 +172,10 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       set({ designs: event });
       break;
     case "body":
-      set(({ body, moments, askedPace }) => ({
+      set(({ body, moments, askedPace, picked }) => ({
         body: event,
-        picked: null,
+        // What the checks report comes behind a body, of which a place may be picked already.
+        picked: body?.topology === event.topology ? picked : null,
         // Another body starts with the pace that was chosen, and counts anew.
         askedPace: body?.topology === event.topology ? askedPace : undefined,
         moments: body?.topology === event.topology ? moments : new Map(),

@@ -14,24 +14,38 @@ class Hand:
     def __init__(self, tab):
         self.tab, self.actions = tab, 0
 
-    def press(self, *, text=None, name=None, test_id=None, first=False):
-        where = self.tab.page.get_by_role("button", name=name, exact=True) if name else None
-        where = self.tab.find(test_id) if test_id else where
-        where = self.tab.page.get_by_text(text, exact=True) if text else where
-        (where.first if first else where).click()
+    def press(self, *, name=None, test_id=None, then=None):
+        """A button, and then an entry of the menu that it opens."""
+        page = self.tab.page
+        (
+            self.tab.find(test_id) if test_id else page.get_by_role("button", name=name, exact=True)
+        ).click()
         self.actions += 1
+        if then:
+            page.get_by_role("menuitem", name=then, exact=True).click()
+            self.actions += 1
 
     def choose(self, label, value):
         self.tab.page.get_by_label(label, exact=True).select_option(value)
         self.actions += 1
 
-    def item(self, label):
-        self.tab.page.get_by_role("menuitem", name=label, exact=True).click()
+    def number(self, field, text):
+        field.fill(text)
+        field.press("Enter")
         self.actions += 1
+
+    def here(self, verb):
+        """What is offered at the face that was pressed; the body comes anew with it."""
+        renewed(self.tab, lambda: self.press(test_id=verb))
 
     def key(self, key):
         self.tab.page.locator(".viewport canvas").focus()
         self.tab.page.keyboard.press(key)
+        # The camera is where the key put it once it has been drawn.
+        self.tab.page.evaluate(
+            "() => new Promise((drawn) => "
+            "requestAnimationFrame(() => requestAnimationFrame(() => drawn(null))))"
+        )
         self.actions += 1
 
     def body(self, dx=0, dy=0):
@@ -39,6 +53,44 @@ class Hand:
         self.tab.page.mouse.click(x + dx, y + dy)
         self.tab.find("face-verbs").wait_for()
         self.actions += 1
+
+    def face(self, axis, side):
+        """Press the outermost face of the body along an axis, in its middle."""
+        x, y = self.tab.page.evaluate(MIDDLE_OF_FACE, [axis, side])
+        self.tab.page.mouse.click(x, y)
+        self.tab.find("face-verbs").wait_for()
+        self.actions += 1
+
+
+#: Where the middle of the outermost face along an axis is on the page.
+MIDDLE_OF_FACE = """([axis, side]) => {
+    const all = [];
+    for (let i = 0, at; (at = window.voxsoft.vertexPosition(i)) !== null; i++) all.push(at[axis]);
+    const far = Math.max(...all.map((x) => side * x));
+    const seen = [...all.keys()]
+        .filter((i) => side * all[i] > far - 1e-4)
+        .map((i) => window.voxsoft.screenOf(i));
+    return [0, 1].map((k) => seen.reduce((sum, at) => sum + at[k], 0) / seen.length);
+}"""
+
+
+def renewed(tab, change):
+    """Make a change, and wait until the body that comes of it is shown."""
+    topology = tab.page.evaluate("voxsoft.topology")
+    change()
+    tab.until(f"voxsoft.topology !== {topology} && voxsoft.triangles > 0")
+
+
+def first_shape(tab, hand, kind):
+    renewed(tab, lambda: hand.choose("Add a shape", kind))
+
+
+def saved(tab, file):
+    """The design, saved under its own name."""
+    tab.page.keyboard.press("Control+s")
+    tab.page.get_by_role("button", name="Save", exact=True).last.click()
+    until(file.exists)
+    return vs.load(file)
 
 
 def test_a_chamber_from_nothing_to_rest_under_pressure(serving, tmp_path, open_tab):
@@ -50,31 +102,20 @@ def test_a_chamber_from_nothing_to_rest_under_pressure(serving, tmp_path, open_t
         hand.press(test_id="templates")
         hand.press(test_id="template-empty")
         tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
-        topology = tab.page.evaluate("voxsoft.topology")
-        hand.choose("Add a shape", "box")
-        tab.until(f"voxsoft.topology !== {topology} && voxsoft.triangles > 0")
+        first_shape(tab, hand, "box")
         tab.shot("nothing-1-box")
-        topology = tab.page.evaluate("voxsoft.topology")
-        hand.press(name="What to do with box")
-        hand.item("Hollow it out")
-        tab.until(f"voxsoft.topology !== {topology} && voxsoft.triangles > 0")
+        renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
         hand.body()
-        hand.press(test_id="here-clamp")
-        tab.find("face-verbs").wait_for(state="detached")
+        hand.here("here-clamp")
         hand.key("1")
         hand.key("x")
         hand.body(60, 40)
         tab.shot("nothing-2-wall")
-        hand.press(test_id="here-fill")
-        tab.find("face-verbs").wait_for(state="detached")
+        hand.here("here-fill")
         hand.key("r")
         tab.until("voxsoft.state === 'at-rest'")
         tab.shot("nothing-3-rest")
-        tab.page.keyboard.press("Control+s")
-        tab.page.get_by_role("button", name="Save", exact=True).last.click()
-        file = tmp_path / "robot.toml"
-        until(file.exists)
-        design = vs.load(file)
+        design = saved(tab, tmp_path / "robot.toml")
         assert [load.kind for load in design.loads] == ["pressure"]
         result = vs.simulate(design)
         assert result.status == "ok"
@@ -82,5 +123,47 @@ def test_a_chamber_from_nothing_to_rest_under_pressure(serving, tmp_path, open_t
         assert tab.errors == []
         # The aim of a first user: a dozen actions.
         assert hand.actions <= 12
+    finally:
+        server.stop()
+
+
+def test_a_bending_finger_with_a_layer_from_nothing(serving, tmp_path, open_tab):
+    server = serving(tmp_path)
+    try:
+        tab = open_tab(server.address, mode="design", symbols=False)
+        tab.page.wait_for_selector("[data-testid='design-form']")
+        hand = Hand(tab)
+        hand.press(test_id="templates")
+        hand.press(test_id="template-empty")
+        tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
+        first_shape(tab, hand, "box")
+        entry = tab.find("shapes-box")
+        entry.get_by_role("button", expanded=False).first.click()
+        hand.actions += 1
+        for axis, size in (("x", "100 mm"), ("z", "30 mm")):
+            hand.number(entry.get_by_label(f"Size {axis}", exact=True), size)
+        renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
+        hand.key("f")
+        for axis, side, verb in ((0, 1, "clamp"), (2, 1, "layer")):
+            hand.face(axis, side)
+            hand.here(f"here-{verb}")
+        hand.key("3")  # from the left, at the free end
+        hand.face(0, -1)
+        hand.here("here-probe")
+        hand.key("1")
+        hand.key("x")
+        hand.body(60, 20)
+        hand.here("here-fill")
+        hand.key("r")
+        tab.until("voxsoft.state === 'at-rest'")
+        tab.shot("finger-rest")
+        design = saved(tab, tmp_path / "robot.toml")
+        assert [layer.name for layer in design.layers] == ["fabric"]
+        bent = vs.simulate(design)
+        assert bent.status == "ok"
+        # The top cannot stretch: the free end rises.
+        assert bent.probes["probe"][2] > 1e-4
+        assert tab.errors == []
+        assert hand.actions <= 25
     finally:
         server.stop()
