@@ -19,6 +19,7 @@ from voxsoft.materials.coupon.modulus_test import (
 )
 from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
 from voxsoft.materials.coupon.table import read_curve
+from voxsoft.materials.coupon.untested import UntestedMode
 
 __all__ = [
     "DEFAULT_MAX_STRAIN",
@@ -33,6 +34,7 @@ __all__ = [
     "ModelFit",
     "Toe",
     "ToeCorrection",
+    "UntestedMode",
     "fit_coupons",
     "read_curve",
     "read_modulus_tests",

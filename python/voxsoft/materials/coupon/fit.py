@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -14,6 +14,7 @@ from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, ToeCorrection
 from voxsoft.materials.coupon.families import FAMILIES, Anchor, Block, Data, Family, NoFit
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
 from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
+from voxsoft.materials.coupon.untested import UntestedMode, untested_modes
 from voxsoft.materials.hyperelastic import NEARLY_INCOMPRESSIBLE, Floats, Hyperelastic
 from voxsoft.materials.lattice import SILICONE_DENSITY
 from voxsoft.materials.stability import stable_range, stable_ranges
@@ -126,7 +127,25 @@ def fit_coupons(
         max_strain,
         tuple(ranked),
         rejected,
+        _untested(used, families, solved, whole, ranked),
     )
+
+
+def _untested(
+    curves: Sequence[Curve],
+    families: Sequence[Family],
+    solved: Mapping[Family, Floats],
+    whole: Data,
+    ranked: Sequence[ModelFit],
+) -> tuple[UntestedMode, ...]:
+    """Compare the models that are not unstable over the curves in the modes that no curve has."""
+    unstable = {fit.name for fit in ranked if not fit.stable_in_fit}
+    kept = [family for family in families if family.name not in unstable]
+    best = min(
+        (_noise(family, constants, curves) for family, constants in solved.items()),
+        key=lambda noise: noise[0],
+    )
+    return untested_modes(curves, kept, whole, best[1])
 
 
 def _data(

@@ -12,6 +12,7 @@ from voxsoft.errors import MaterialError
 from voxsoft.materials.card import Card
 from voxsoft.materials.coupon.curve import Curve, Toe, ToeCorrection
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
+from voxsoft.materials.coupon.untested import UntestedMode
 from voxsoft.materials.hyperelastic import Hyperelastic
 from voxsoft.materials.stability import StableRange
 from voxsoft.materials.tested import StretchRange
@@ -115,6 +116,8 @@ class CouponFit:
         The fits, best prediction first.
     rejected
         Models that could not be fitted, and why.
+    untested
+        The stress in each mode that no curve has, by all models that fit alike.
     """
 
     measured: tuple[Curve, ...]
@@ -125,6 +128,7 @@ class CouponFit:
     max_strain: float
     models: tuple[ModelFit, ...]
     rejected: Mapping[str, str]
+    untested: tuple[UntestedMode, ...] = ()
 
     @property
     def recommended(self) -> ModelFit:
@@ -171,6 +175,7 @@ class CouponFit:
                 "Only uniaxial curves: mooney-rivlin and ogden are guesses in the other modes; "
                 "neo-hookean, gent and yeoh are safer there"
             )
+        found += [mode.sentence for mode in self.untested if mode.sentence]
         young = self.recommended.young.value
         if not _RUBBER[0] < young < _RUBBER[1]:
             found.append(
@@ -250,6 +255,7 @@ class CouponFit:
             "observed": [seen._asdict() for seen in self.observed],
             "models": [_summary_of(fit) for fit in self.models],
             "rejected": dict(self.rejected),
+            "untested": [mode._asdict() for mode in self.untested],
             "warnings": self.recommended.warnings + self.warnings,
         }
 
