@@ -44,7 +44,7 @@ def test_the_true_stress_lies_in_the_spread(name, noise):
 def test_the_warning_vanishes_once_the_other_modes_are_tested():
     alone = fitted(TRELOAR, "uniaxial")
     equibiaxial = alone.untested[0]
-    warning = next(w for w in alone.warnings if w.startswith("equibiaxial stress at stretch 1.5 is"))
+    warning = next(w for w in alone.warnings if w.startswith("equibiaxial stress at stretch 1.5"))
     assert "test a membrane" in warning
     assert warning in alone.card("rubber").caution
     assert alone.summary()["untested"][0]["high"] == equibiaxial.high
