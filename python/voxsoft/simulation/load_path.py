@@ -30,6 +30,7 @@ from voxsoft.simulation.result import Result
 from voxsoft.simulation.run import ProgressCallback, result_of
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import check_softening
 from voxsoft.simulation.start import Start
 from voxsoft.simulation.touching import refuse_contact
 
@@ -195,6 +196,7 @@ def follow(
     asked = over if isinstance(over, Over) else _read(over, values, given)
     solver = given.solver if not settings else given.solver.replace(**settings)
     _check(given, solver)
+    check_softening(given)
     if asked.key == TIME:
         _check_supplies(given)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
