@@ -84,7 +84,7 @@ proptest! {
             .zip(&moves)
             .map(|(x, m)| std::array::from_fn(|k| 1.1 * x[k] + m[k]))
             .collect();
-        check_term(problem.body().brick_term(), rest, &places);
+        check_term(problem.body().brick_term(), rest, &places).unwrap();
     }
 }
 
