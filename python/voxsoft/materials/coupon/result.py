@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -165,7 +166,17 @@ class CouponFit:
         MeasurementError
             The cycles show no softening.
         """
-        return fit_softening(self.of(model).material, self.cycles) if self.cycles else None
+        if not self.cycles:
+            return None
+        fit = self.of(model)
+        if fit.name not in self._softenings:
+            self._softenings[fit.name] = fit_softening(fit.material, self.cycles)
+        return self._softenings[fit.name]
+
+    @cached_property
+    def _softenings(self) -> dict[str, SofteningFit]:
+        """Those that were asked for, by the name of the model."""
+        return {}
 
     @property
     def warnings(self) -> list[str]:
