@@ -235,8 +235,8 @@ def _warnings(constants: Mapping[str, Interval], *, both: bool) -> list[str]:
     found = []
     if not both:
         found.append(
-            "cycles to one peak tell m + beta P alone, and m is taken for zero: go on to a larger "
-            "peak to tell how softening grows with it"
+            "cycles to one peak show m + beta P alone, and m is taken for zero: go on to a larger "
+            "peak to see how softening grows with it"
         )
     for name, interval in constants.items():
         if interval.half_width > abs(interval.value - (1.0 if name == "r" else 0.0)):
