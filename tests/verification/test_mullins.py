@@ -10,6 +10,8 @@ from voxsoft.design import families
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Mullins, cycled_stress
 from voxsoft.materials.homogeneous import principal_stretches
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.html import page_of
 from voxsoft.units import kPa, mm
 
 SIDE = 4 * mm
@@ -144,3 +146,11 @@ def test_what_knows_nothing_of_softening_refuses():
         vs.gradient(vs.simulate(soft), "elastic_energy", "clamps.3.motion.displacement.0")
     with pytest.raises(VoxSoftError, match="is not known to the simulator"):
         vs.Simulator(soft)
+
+
+def test_the_studio_solves_it_and_does_not_play_it():
+    body = StudioBody.of(block(RUBBERS["yeoh"]), rev=0, topology=0)
+    assert body.refusal is None
+    assert "softening" in body.not_live
+    with pytest.raises(VoxSoftError, match="is not known to exported pages"):
+        page_of(block(RUBBERS["yeoh"]))

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design.contact import names_of
-from voxsoft.simulation.softening import refuse_softening
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.message import Triple
 from voxsoft.studio.objects import touches_live
@@ -36,7 +35,6 @@ def scene_of(body: StudioBody, probes: Sequence[Probe] | None = None) -> _core.S
         The body cannot be solved.
     """
     design, solver = body.setup.design, body.setup.design.solver
-    refuse_softening(design, "live motion")
     surfaces: list[str] = []
     middles: list[Triple] = []
     if body.setup.touching is not None and touches_live(body.setup):
