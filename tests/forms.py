@@ -29,7 +29,7 @@ from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
 from voxsoft.design.target import Constraint, Objective
 from voxsoft.design.tendon import Guide, Tendon
 from voxsoft.errors import VoxSoftError
-from voxsoft.materials import Card, Fiber, StretchRange
+from voxsoft.materials import Card, Fiber, Mullins, StretchRange
 from voxsoft.records import Record
 from voxsoft.shapes import Blend, Expression, Grade, Gyroid, Sphere, TriangleMesh
 from voxsoft.units import KINDS, UnitOf
@@ -101,6 +101,7 @@ SPECIAL: dict[tuple[type, str], tuple[Any, ...]] = {
     (Parameter, "kind"): tuple(sorted(KINDS)),
     (Constraint, "kind"): tuple(sorted(KINDS)),
     (StretchRange, "largest"): (4.0, 1 + 1 / 3, np.float32(2.5), "4"),
+    (Mullins, "r"): (1.5, 4 / 3, np.float32(2.5), "1.25"),
     (Pump, "flow"): (("2 L/min", 0), [1e-5 / 3, "3 mL/s", "0 L/min"], ("= p_volume_flow", 0)),
     (Pump, "pressure"): ((0, "40 kPa"), [0, 1e4 / 3], (0, "= p_pressure")),
     **{

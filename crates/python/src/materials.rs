@@ -2,7 +2,7 @@
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, ProblemError, Winding,
+    Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, Mullins, ProblemError, Winding,
 };
 
 use crate::errors::{exception, to_python};
@@ -137,6 +137,23 @@ impl PyMaterial {
     /// The same material with these branches that relax: share of the instantaneous modulus, time in s.
     fn with_prony(&self, py: Python<'_>, branches: Vec<(f64, f64)>) -> PyResult<Self> {
         made(self.rubber(py, "prony")?.with_prony(branches))
+    }
+
+    /// The same material, softer where it was stretched more before: Ogden and Roxburgh's constants, `m` in J/m³, and the
+    /// energy (J/m³) that all of it has had.
+    #[pyo3(signature = (r, m, beta, first=0.0))]
+    fn with_mullins(
+        &self,
+        py: Python<'_>,
+        r: f64,
+        m: f64,
+        beta: f64,
+        first: f64,
+    ) -> PyResult<Self> {
+        let mullins = Mullins::new(r, m, beta, first).map_err(to_python)?;
+        Ok(Self(
+            self.rubber(py, "mullins")?.with_mullins(mullins).into(),
+        ))
     }
 
     /// The same material, free of stress when it is so many times as long along every axis.

@@ -584,6 +584,28 @@ impl PyProblem {
         Ok(PyArray1::from_vec(py, found))
     }
 
+    /// The largest isochoric energy (J/m³) that each hyperelastic voxel has had, if any softens.
+    fn peaks<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let peaks = self.problem.body().brick_term().peaks()?;
+        Some(PyArray1::from_vec(py, peaks))
+    }
+
+    /// Lets voxels that soften have had these energies (J/m³).
+    fn set_peaks(&self, peaks: PyReadonlyArray1<'_, f64>) -> PyResult<()> {
+        let bricks = self.problem.body().brick_term();
+        let (got, expected) = (peaks.len()?, bricks.bricks.len());
+        if got != expected {
+            let what = "peaks of voxels";
+            return Err(to_python(ProblemError::Length {
+                what,
+                got,
+                expected,
+            }));
+        }
+        bricks.set_peaks(&peaks.as_array().to_vec());
+        Ok(())
+    }
+
     /// Elastic energy in J and forces in N at the given positions.
     fn elastic<'py>(
         &self,

@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::color::{color_order, interleave};
-use crate::hyperelastic::Wound;
+use crate::hyperelastic::{Mullins, Wound};
 use crate::lattice::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
@@ -188,6 +188,7 @@ impl Body {
                         fraction,
                         filling,
                         warping: Warping::NONE,
+                        peak: material.mullins().map_or(0.0, Mullins::first),
                     };
                     if !material.windings().is_empty() {
                         let axes = axes_of(mesh, block).unwrap_or(IDENTITY);
@@ -254,10 +255,7 @@ impl Body {
             edges: Edges(edges),
             tets: Tets(tets),
             voxels,
-            bricks: Bricks {
-                bricks,
-                materials: hyperelastic,
-            },
+            bricks: Bricks::new(bricks, hyperelastic),
             membranes,
             attachments,
             foreign: Vec::new(),
@@ -272,12 +270,29 @@ impl Body {
     /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex. `pressed` are the
     /// triangles under pressure.
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
-        let Bricks { bricks, materials } = &self.bricks;
+        let Bricks {
+            bricks, materials, ..
+        } = &self.bricks;
         let membranes = &self.membranes.0;
         let each = free_faces::warpings(bricks, materials, &self.voxels, membranes, held, pressed);
         for (brick, warping) in self.bricks.bricks.iter_mut().zip(each) {
             brick.warping = warping;
         }
+    }
+
+    /// Voxels that soften forget the way to where they were.
+    pub(crate) fn start(&self) {
+        self.bricks.start();
+    }
+
+    /// Voxels that soften take `positions` as a state that has been.
+    pub(crate) fn accept(&self, positions: &[Vec3]) {
+        self.bricks.accept(positions);
+    }
+
+    /// Remembers on its own, whatever copies of this body do.
+    pub(crate) fn own_memory(&mut self) {
+        self.bricks.own_memory();
     }
 
     /// Positions at rest in m.

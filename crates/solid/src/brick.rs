@@ -81,6 +81,8 @@ pub struct Brick {
     pub filling: Filling,
     /// How its free faces warp.
     pub warping: Warping,
+    /// The largest isochoric energy (J/m³) that it has had, by which it may be softer.
+    pub peak: f64,
 }
 
 /// Which tangent.
@@ -211,12 +213,22 @@ impl Brick {
     }
 
     fn rotated(&self, positions: &[Vec3]) -> Rotated {
-        Rotated::of(&self.modes(positions), self.filling, self.warping)
+        Rotated::of(
+            &self.modes(positions),
+            self.filling,
+            self.warping,
+            self.peak,
+        )
     }
 
     /// The elastic energy in J.
     pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
         self.volume() * self.rotated(positions).energy(material)
+    }
+
+    /// The isochoric energy (J/m³) that it would have, had it not been stretched before.
+    pub fn virgin_energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
+        self.rotated(positions).virgin(material).value
     }
 
     /// The mean deformation gradient over the material.
@@ -246,12 +258,15 @@ impl Brick {
     }
 
     /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of
-    /// [`Brick::forces`]; bending modes have no part in it.
+    /// [`Brick::forces`]; bending modes have no part in it, but for how much softer they have made it.
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
         let mut modes = self.modes(positions);
+        let softness = self.rotated(positions).softness(material);
         modes[3..].fill([0.0; 3]);
-        let state = Rotated::of(&modes, Filling::FULL, self.warping);
-        let stress = to_matrix(&state.gradient(material).stress);
+        let state = Rotated::of(&modes, Filling::FULL, self.warping, self.peak);
+        let mut mean = state.virgin(material);
+        mean.gradient = mean.gradient.map(|x| softness * x);
+        let stress = to_matrix(&state.gradient_of(material, &mean).stress);
         let stretch = to_matrix(&state.stretch);
         let couple = multiply(&stress, &stretch);
         let y = solve_spd(&spin_matrix(&stretch), axial(&couple));

@@ -82,6 +82,8 @@ pub(crate) struct Rotated {
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
     pub bilinear: Vec3,
+    /// The largest isochoric energy before, in J/m³.
+    pub peak: f64,
 }
 
 /// The stress of a voxel in its rotated frame: the gradient of the energy by the generalized coordinates.
@@ -200,10 +202,11 @@ impl Rotated {
             stretch: strain.stretch,
             hourglass: strain.hourglass,
             bilinear: self.bilinear,
+            peak: self.peak,
         }
     }
 
-    pub fn of(modes: &Modes, filling: Filling, warping: Warping) -> Self {
+    pub fn of(modes: &Modes, filling: Filling, warping: Warping, peak: f64) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);
         Self {
@@ -212,6 +215,7 @@ impl Rotated {
             stretch: to_sym(&stretch),
             hourglass: std::array::from_fn(|m| apply_transposed(&rotation, modes[3 + m])),
             bilinear: modes[6],
+            peak,
             rotation,
         }
     }
@@ -322,14 +326,52 @@ impl Rotated {
         mean
     }
 
+    /// The isochoric energy with its gradient, softened if the material does.
+    fn isochoric(&self, material: &HyperelasticMaterial) -> Shaped {
+        let mut mean = self.virgin(material);
+        self.soften(material, false, &mut mean);
+        mean
+    }
+
+    /// The same where nothing was stretched before.
+    pub fn virgin(&self, material: &HyperelasticMaterial) -> Shaped {
+        let thinning = material.thinning();
+        self.warped_mean(thinning, None, |at| stress_only(material, at))
+    }
+
+    /// The part `η` that softening leaves of the isochoric stress.
+    pub fn softness(&self, material: &HyperelasticMaterial) -> f64 {
+        material.mullins().map_or(1.0, |mullins| {
+            mullins.soften(self.virgin(material).value, self.peak)[1]
+        })
+    }
+
+    /// Softens the mean isochoric energy: a voxel remembers one peak.
+    ///
+    /// Strain that grows and falls in proportion has the same `W/P` everywhere, and with it the same `η`, up to `m`: what a
+    /// voxel that bends would gain from a peak at each of its points is of second order.
+    fn soften(&self, material: &HyperelasticMaterial, second: bool, mean: &mut Shaped) {
+        let Some(mullins) = material.mullins() else {
+            return;
+        };
+        let [value, slope, turn] = mullins.soften(mean.value, self.peak);
+        if second {
+            for (row, own) in mean.hessian.iter_mut().zip(&mean.gradient) {
+                for (entry, other) in row.iter_mut().zip(&mean.gradient) {
+                    *entry = slope * *entry + turn * own * other;
+                }
+            }
+        }
+        mean.value = value;
+        mean.gradient = mean.gradient.map(|x| slope * x);
+    }
+
     pub fn energy(&self, material: &HyperelasticMaterial) -> f64 {
         let thinning = material.thinning();
         let change = self.volume(thinning, false).value - 1.0;
         let mut value = 0.5 * material.bulk() * change * change
             + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>()
-            + self
-                .warped_mean(thinning, None, |at| stress_only(material, at))
-                .value;
+            + self.isochoric(material).value;
         for fiber in material.fibers() {
             value += fiber::energy(fiber, &self.stretch);
         }
@@ -345,7 +387,7 @@ impl Rotated {
     pub fn response(&self, material: &HyperelasticMaterial, pressure: Pressure) -> Parted {
         let thinning = material.thinning();
         let bulk = material.bulk();
-        let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
+        let mean = self.isochoric(material);
         let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
         for fiber in material.fibers() {
@@ -374,16 +416,24 @@ impl Rotated {
     }
 
     pub fn gradient(&self, material: &HyperelasticMaterial) -> BrickStress {
+        self.gradient_of(material, &self.isochoric(material))
+    }
+
+    /// The gradient with an isochoric part.
+    pub fn gradient_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
         let volume = self.volume(material.thinning(), false);
         let pressure = material.bulk() * (volume.value - 1.0);
-        self.deviatoric(material)
+        self.deviatoric_of(material, mean)
             .plus(&volume.gradient.map(|slope| pressure * slope))
     }
 
     /// The part of the gradient that does not come from the mean change of volume.
     pub fn deviatoric(&self, material: &HyperelasticMaterial) -> BrickStress {
+        self.deviatoric_of(material, &self.isochoric(material))
+    }
+
+    fn deviatoric_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
         let thinning = material.thinning();
-        let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
         let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
         for fiber in material.fibers() {
             fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
@@ -412,11 +462,11 @@ impl Rotated {
         let thinning = material.thinning();
         let bulk = material.bulk();
         let volume = self.volume(thinning, true);
-        let mut hessian = self
-            .warped_mean(thinning, Some(curvature), |at| {
-                isochoric(material.model(), at)
-            })
-            .hessian;
+        let mut mean = self.warped_mean(thinning, Some(curvature), |at| {
+            isochoric(material.model(), at)
+        });
+        self.soften(material, true, &mut mean);
+        let mut hessian = mean.hessian;
         for (k, row) in hessian.iter_mut().enumerate() {
             for (l, entry) in row.iter_mut().enumerate() {
                 *entry = share * *entry

@@ -87,7 +87,7 @@ pub use floor::Floor;
 pub use fluid::Fluid;
 pub use hands::{Grab, Hands};
 pub use history::History;
-pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Winding};
+pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};
 pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use loads::{
     Drive, ExternalForce, Gravity, Hydrostatic, Load, LoadKind, Place, PointForces, Pressure,

@@ -227,13 +227,15 @@ impl Problem {
         Cow::Owned(problem)
     }
 
-    /// Loads forget the way to where the body was.
+    /// Loads and what softens forget the way to where the body was.
     pub fn start_loads(&self) {
+        self.body.start();
         self.loads.iter().for_each(|load| load.kind.start());
     }
 
-    /// Loads take `positions` as the state from which the way goes on.
+    /// Loads and what softens take `positions` as the state from which the way goes on.
     pub fn accept_loads(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
+        self.body.accept(positions);
         let on = self.vertices(positions);
         for load in &self.loads {
             load.kind.accept(on, factor_of(load));
@@ -243,7 +245,8 @@ impl Problem {
     /// Whether the answer depends on the way to it.
     pub fn depends_on_way(&self) -> bool {
         let contact = self.contact().is_some_and(Contact::depends_on_way);
-        contact || self.loads.iter().any(|load| load.kind.depends_on_way())
+        let softens = self.body.brick_term().soften();
+        contact || softens || self.loads.iter().any(|load| load.kind.depends_on_way())
     }
 
     /// The same where loads keep during a step what would leave them without a potential, if they can.
@@ -256,9 +259,10 @@ impl Problem {
         self
     }
 
-    /// The same with loads that remember on their own, whatever copies of this problem do.
+    /// The same with loads and a body that remember on their own, whatever copies of this problem do.
     #[must_use]
     pub fn with_own_memory(mut self) -> Self {
+        self.body.own_memory();
         for load in &mut self.loads {
             load.kind = load.kind.with_own_memory();
         }

@@ -16,6 +16,7 @@ fn cube() -> (Brick, Vec<Vec3>) {
         fraction: 0.7,
         filling: Filling::FULL,
         warping: Warping::NONE,
+        peak: 0.0,
     };
     (brick, (0..8).map(corner).collect())
 }

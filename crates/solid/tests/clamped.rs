@@ -18,6 +18,7 @@ fn voxel(free: &[(usize, usize)], held: bool) -> Brick {
         fraction: 1.0,
         filling: Filling::FULL,
         warping: Warping::of(&faces),
+        peak: 0.0,
     }
 }
 

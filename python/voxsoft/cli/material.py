@@ -46,6 +46,10 @@ def fit(
     equibiaxial: Annotated[
         list[Path] | None, _curves("--equibiaxial", "Curve of equibiaxial tension. Repeatable.")
     ] = None,
+    cyclic: Annotated[
+        list[Path] | None,
+        _curves("--cyclic", "Uniaxial test with load and unload, for softening. Repeatable."),
+    ] = None,
     modulus: Annotated[
         list[Path] | None,
         _curves("--modulus", "Bending, frequency or known moduli (TOML). Repeatable."),
@@ -85,7 +89,12 @@ def fit(
 ) -> None:
     """Fit all hyperelastic models to coupon tests, rank them, and write a card with a picture."""
     from voxsoft.files.cards import card_name
-    from voxsoft.files.coupons import load_curve, load_modulus_tests, write_coupon_fit
+    from voxsoft.files.coupons import (
+        load_curve,
+        load_cycles,
+        load_modulus_tests,
+        write_coupon_fit,
+    )
     from voxsoft.materials import NeoHookean
     from voxsoft.materials.coupon import fit_coupons
     from voxsoft.units import UnitOf
@@ -103,20 +112,25 @@ def fit(
             for path in paths or []
         ]
         observed = [seen for path in modulus or [] for seen in load_modulus_tests(path)]
+        cycles = [load_cycles(path, area=section, length=gauge) for path in cyclic or []]
         answer = fit_coupons(
             curves,
             observed,
+            cycles=cycles,
             toe=cast("ToeCorrection", toe),
             max_strain=farthest,
             poisson=rest.poisson,
             density=rest.density,
         )
-        chosen = name or card_name(Path(curves[0].name).stem)
+        chosen = name or card_name(Path(answer.curves[0].name).stem)
         card = answer.card(chosen, model, source=source)
         folder = out or Path("runs") / f"{folder_name(chosen, 'card')}-material"
         written = write_coupon_fit(answer, card, folder)
         if json:
-            print_json(answer.summary() | {"card": str(written[0]), "folder": str(folder)})
+            print_json(
+                answer.summary(str(card.calibration["model"]))
+                | {"card": str(written[0]), "folder": str(folder)}
+            )
         else:
             _show_fit(answer, str(card.calibration["model"]))
             say(f"wrote {plain(str(folder))}: {', '.join(file.name for file in written)}")
@@ -196,9 +210,24 @@ def _show_fit(answer: CouponFit, chosen: str) -> None:
             for name, i in constants.items()
         ],
     )
+    soft = answer.softening(chosen)
+    if soft is not None:
+        show_table(
+            f"Softening, with an error of {_kpa(soft.rmse)}",
+            ["name", "value", "95 % interval"],
+            [
+                [
+                    name,
+                    _softening(name, i.value),
+                    f"{_softening(name, i.low)} to {_softening(name, i.high)}",
+                ]
+                for name, i in soft.constants.items()
+            ],
+        )
     for name, why in answer.rejected.items():
         say(f"{name}: {plain(why)}")
-    for warning in answer.of(chosen).warnings + answer.warnings:
+    softening = [] if soft is None else list(soft.warnings)
+    for warning in answer.of(chosen).warnings + answer.warnings + softening:
         say(f"[yellow]warning:[/yellow] {plain(warning)}")
 
 
@@ -217,6 +246,10 @@ def _constant(name: str, value: float) -> str:
     if name == "jm" or name.startswith("alpha"):
         return f"{value:.4g}"
     return quantity(value, "modulus")
+
+
+def _softening(name: str, value: float) -> str:
+    return quantity(value, "modulus") if name == "m" else f"{value:.4g}"
 
 
 def _moduli(material: Material) -> tuple[float, float]:

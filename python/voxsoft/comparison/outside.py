@@ -96,6 +96,9 @@ compare a hyperelastic material, such as the neo-Hookean one of the same Young's
     """
     if not isinstance(material, Hyperelastic):
         raise no_such_material(code, material.model, where)
+    if material.mullins is not None:
+        what = f"{code} is given no softening"
+        raise SimulationError(where, what, "leave mullins out to compare the first loading")
     return material.model, material.constants, material.bulk
 
 

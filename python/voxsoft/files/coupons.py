@@ -15,8 +15,10 @@ from voxsoft.materials.card import Card
 from voxsoft.materials.coupon import (
     CouponFit,
     Curve,
+    Cycles,
     MeasuredModulus,
     read_curve,
+    read_cycles,
     read_modulus_tests,
 )
 from voxsoft.plot.coupon import plot_coupons
@@ -55,14 +57,33 @@ def load_curve(
     >>> float(load_curve(file).stress[-1])
     17000.0
     """
-    name = Path(path).name
+    text, name = _table(path), Path(path).name
+    return read_curve(text, name=name, mode=mode, area=area, length=length)
+
+
+def load_cycles(
+    path: FilePath, *, area: float | None = None, length: float | None = None
+) -> Cycles:
+    """Read a uniaxial test with load and unload from a CSV file, as :func:`load_curve` does.
+
+    Raises
+    ------
+    FileError
+        A missing, unreadable or too large file.
+    MeasurementError
+        Text that is not UTF-8, a table that cannot be used, or no cycle in it.
+    """
+    return read_cycles(_table(path), name=Path(path).name, area=area, length=length)
+
+
+def _table(path: FilePath) -> str:
+    """The text of a table."""
     try:
-        text = read_text(path)
+        return read_text(path)
     except FileError as error:
         if "UTF-8" in error.what:
             raise MeasurementError(error.where, error.what, "save the table as CSV") from None
         raise
-    return read_curve(text, name=name, mode=mode, area=area, length=length)
 
 
 def load_modulus_tests(path: FilePath) -> list[MeasuredModulus]:
@@ -115,7 +136,7 @@ def write_coupon_fit(fit: CouponFit, card: Card, folder: FilePath) -> list[Path]
     place = make_folder(folder)
     written = [place / f"{folder_name(card.name, 'card')}.toml", place / "summary.json"]
     save_card(card, written[0])
-    write_json(written[1], fit.summary() | provenance())
+    write_json(written[1], fit.summary(str(card.calibration["model"])) | provenance())
     written.append(
         save_figure(plot_coupons(fit, str(card.calibration["model"])), place / "fits.png")
     )

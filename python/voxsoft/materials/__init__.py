@@ -26,9 +26,11 @@ from voxsoft.materials.hyperelastic import Hyperelastic, PronyTerm
 from voxsoft.materials.lattice import SILICONE_DENSITY, CompliantLattice, Lattice
 from voxsoft.materials.model import AnyMaterial, Material
 from voxsoft.materials.mooney_rivlin import MooneyRivlin
+from voxsoft.materials.mullins import Mullins
 from voxsoft.materials.neo_hookean import NeoHookean
 from voxsoft.materials.ogden import Ogden
 from voxsoft.materials.rigid import Rigid
+from voxsoft.materials.softening import cycled_stress
 from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
 from voxsoft.materials.tested import StretchRange
 from voxsoft.materials.yeoh import Yeoh
@@ -46,6 +48,7 @@ __all__ = [
     "Material",
     "Mode",
     "MooneyRivlin",
+    "Mullins",
     "NeoHookean",
     "Ogden",
     "PronyTerm",
@@ -55,6 +58,7 @@ __all__ = [
     "Yeoh",
     "card_names",
     "constants_of",
+    "cycled_stress",
     "is_card_path",
     "load_card",
     "material_of",

@@ -19,6 +19,7 @@ from pydantic import (
 from voxsoft import _core
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.materials.lattice import SILICONE_DENSITY
+from voxsoft.materials.mullins import Mullins
 from voxsoft.materials.tested import StretchRange
 from voxsoft.records import Record
 from voxsoft.units import PositiveDensity, PositiveTime, UnitOf, format_quantity
@@ -31,7 +32,7 @@ SignedModulus = Annotated[float, UnitOf("modulus")]
 #: Poisson's ratio where a model names none: the bulk modulus is then 500 shear moduli.
 NEARLY_INCOMPRESSIBLE = 0.499
 
-_STANDING = ("poisson", "density", "prony", "tested_stretch")
+_STANDING = ("poisson", "density", "prony", "mullins", "tested_stretch")
 
 
 def _below_half(poisson: float) -> float:
@@ -92,6 +93,9 @@ class Hyperelastic(Record):
         Branches that relax. The constants are those at rest, when all branches have relaxed; a
         sudden load meets ``1/(1 - Σ g)`` times as much. Their ``g`` add up to less than 1.
         Default: none, a purely elastic material.
+    mullins
+        How it softens where it was stretched more before, see :class:`Mullins`. The constants are
+        those of the first loading. Default: not at all.
     tested_stretch
         How far the specimens were stretched that the constants come from, if that is known;
         results that go farther carry a warning. Default: not known.
@@ -103,6 +107,7 @@ class Hyperelastic(Record):
     poisson: PoissonRatio = NEARLY_INCOMPRESSIBLE
     density: PositiveDensity = SILICONE_DENSITY
     prony: tuple[PronyTerm, ...] = Field(default=())
+    mullins: Mullins | None = None
     tested_stretch: StretchRange | None = None
 
     if TYPE_CHECKING:
@@ -155,7 +160,19 @@ class Hyperelastic(Record):
     @property
     def core(self) -> _core.Material:
         """What the Rust core takes."""
-        return self.elastic_core.with_prony([(term.g, term.tau) for term in self.prony])
+        core = self.elastic_core.with_prony([(term.g, term.tau) for term in self.prony])
+        if self.mullins is None:
+            return core
+        soft = self.mullins
+        return core.with_mullins(soft.r, soft.m, soft.beta, self.first_peak)
+
+    @property
+    def first_peak(self) -> float:
+        """Energy in J/m³ that all of the material has had, as it is preconditioned."""
+        if self.mullins is None:
+            return 0.0
+        stretch = 1.0 + self.mullins.preconditioned
+        return float(self.energy(np.array([stretch, stretch**-0.5, stretch**-0.5])))
 
     @model_validator(mode="after")
     def _possible(self) -> Self:
@@ -167,6 +184,12 @@ class Hyperelastic(Record):
                 f"the initial shear modulus is {format_quantity(self.shear, 'modulus')}; "
                 "it must be above zero for the material to resist at all",
                 "check signs and units, or fit another model",
+            )
+        if not math.isfinite(self.first_peak):
+            raise MaterialError(
+                "mullins.preconditioned",
+                "is a strain that this material cannot reach",
+                "take less, or a larger limit jm",
             )
         if (relaxed := sum(branch.g for branch in self.prony)) >= 1.0:
             raise MaterialError(

@@ -46,7 +46,7 @@ def plot_coupons(fit: CouponFit, model: str | None = None) -> Figure:
     matplotlib.figure.Figure
         Four panels: stress over strain with all models, and the same up to a strain of 50 %; the
         error of each model; and what the emphasized model says of all three modes, dotted where it
-        is unstable.
+        is unstable, with a bar for what all models that fit alike say of a mode without a curve.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def _draw_modes(axes: Axes, fit: CouponFit, chosen: ModelFit, scale: Scale) -> N
     """Stress of one model in all modes, from compression to the largest strain of the fit.
 
     The panel ends at three times the largest measured stress: a model that goes off there in a mode
-    that nobody measured is not to be trusted in it.
+    that nobody measured is not to be trusted in it. Bars span all models that fit alike.
     """
     limit = 3.0 * max(float(np.abs(curve.stress).max()) for curve in fit.curves) * scale.factor
     top = 0.0
@@ -190,6 +190,11 @@ def _draw_modes(axes: Axes, fit: CouponFit, chosen: ModelFit, scale: Scale) -> N
             markersize=3,
             zorder=1,
         )
+    colors = dict(zip(MODES, SERIES, strict=False))
+    for open_mode in fit.untested:
+        at, ends = open_mode.stretch - 1.0, np.array([open_mode.low, open_mode.high]) * scale.factor
+        axes.plot([at, at], ends, "_-", color=colors[open_mode.mode], linewidth=1.2, markersize=8)
+        top = max(top, min(1.1 * float(ends[1]), limit))
     axes.axvspan(*_span(list(fit.curves), np.inf), color=PALE, alpha=0.3, linewidth=0)
     axes.set_ylim(-0.5 * top, top)
     title = f"{chosen.name} in all modes (dotted: unstable; shaded: fitted)"

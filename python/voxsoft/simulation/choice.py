@@ -25,6 +25,7 @@ from voxsoft.simulation.equilibrium import (
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
+from voxsoft.simulation.softening import softening_parts, unknown_with_softening
 from voxsoft.simulation.touching import has_contact
 
 #: Every method.
@@ -165,6 +166,12 @@ def unused_settings(
         Other keys of :data:`USERS`, where they are given.
     """
     kind = kind_of(design, solver)
+    if kind not in STATICS:
+        for index in softening_parts(design):
+            what = f"is known to statics, and the settings mean {_explicit(kind)}"
+            hint = 'write method = "statics", follow a path, or leave mullins out'
+            yield ErrorDetail(f"parts[{index}].material.mullins", what, hint)
+    yield from unknown_with_softening(design)
     if has_contact(design):
         yield from _without_contact(design, solver, kind)
     elif design.assembled.tendons:

@@ -9,12 +9,15 @@ from voxsoft.design import Design
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.adjoint import adjoint_states
+from voxsoft.simulation.fields import remember
 from voxsoft.simulation.setup import Setup
 
 Floats = NDArray[np.float64]
 
 
-def compliance(design: Design, mesh: Mesh, positions: Floats, place: Place) -> Floats:
+def compliance(
+    design: Design, mesh: Mesh, positions: Floats, place: Place, peaks: Floats | None = None
+) -> Floats:
     """How a force along x, y or z, shared by a place as its weights say, moves it.
 
     With the weights ``w`` of the place on the vertices it is ``wᵀ K⁻¹ w``, of the tangent ``K`` at
@@ -28,6 +31,8 @@ def compliance(design: Design, mesh: Mesh, positions: Floats, place: Place) -> F
         Its equilibrium, (n, 3), m.
     place
         Where.
+    peaks
+        What voxels that soften remember.
 
     Returns
     -------
@@ -39,7 +44,9 @@ def compliance(design: Design, mesh: Mesh, positions: Floats, place: Place) -> F
     SimulationError
         The tangent is singular there, or does not fit in memory.
     """
-    return compliance_of(Setup(design, mesh), positions, place)
+    setup = Setup(design, mesh)
+    remember(setup.problem, peaks)
+    return compliance_of(setup, positions, place)
 
 
 def compliance_of(setup: Setup, positions: Floats, place: Place) -> Floats:

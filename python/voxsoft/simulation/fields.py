@@ -13,11 +13,18 @@ from voxsoft.mesh import Mesh
 from voxsoft.simulation.setup import Setup
 
 
+def remember(problem: _core.Problem, peaks: NDArray[np.float64] | None) -> None:
+    """Let voxels that soften have had the energies that a result says."""
+    if peaks is not None:
+        problem.set_peaks(peaks)
+
+
 def fields_of(
     design: Design,
     mesh: Mesh,
     positions: NDArray[np.float64],
     problem: _core.Problem | None = None,
+    peaks: NDArray[np.float64] | None = None,
 ) -> Fields:
     """Measure stress and strain of a design's body at some positions.
 
@@ -29,6 +36,8 @@ def fields_of(
         Its vertices in m, (n, 3).
     problem
         Its problem, where there is one already.
+    peaks
+        Without a problem: what its voxels remember, where they soften.
 
     Examples
     --------
@@ -44,5 +53,6 @@ def fields_of(
         setup = Setup(design, mesh)
         bonds = setup.touching is not None and setup.touching.bonds
         problem = setup.problem if bonds else setup.problem_alone
+        remember(problem, peaks)
     rigid = [isinstance(design.material_of(part), Rigid) for part in design.parts]
     return Fields.of(_core.Fields(problem), mesh, positions, rigid)

@@ -25,6 +25,7 @@ from voxsoft.simulation.path_gradient import check_residual, path_gradient
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import has_contact, refuse_bodies
 
 Floats = NDArray[np.float64]
@@ -100,6 +101,7 @@ def gradient(
     for target in chosen.values():
         _check_slope(target)
     names = [parameters] if isinstance(parameters, str) else list(parameters)
+    refuse_softening(result.design, "derivatives, which depend on the way then")
     setup = Setup(result.design, result.mesh)
     taut = tuple(result.tendons[each.name].tension > 0.0 for each in setup.tendons)
     base = _State(setup, result.positions, taut)

@@ -30,6 +30,7 @@ from voxsoft.simulation.result import Result
 from voxsoft.simulation.run import ProgressCallback, result_of
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import check_softening
 from voxsoft.simulation.start import Start
 from voxsoft.simulation.touching import refuse_contact
 
@@ -196,6 +197,7 @@ def follow(
     solver = given.solver if not settings else given.solver.replace(**settings)
     given = given.replace(solver=solver)
     _check(given, solver)
+    check_softening(given)
     if asked.key == TIME:
         _check_supplies(given)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]

@@ -142,6 +142,8 @@ class Result(Shown):
     supplies
         Pressure, volume, mass, flow, work and energy of each volume of gas or liquid: those of the
         design's supplies in their order, then those that only a connection reaches.
+    peaks
+        Where voxels soften: the largest energy of the change of shape that each has had, in J/m³.
     """
 
     design: Design
@@ -174,6 +176,7 @@ class Result(Shown):
     contact_field: ContactField | None = field(default=None, repr=False)
     tendons: Mapping[str, TendonState] = field(default_factory=dict)
     supplies: tuple[ChamberState, ...] = ()
+    peaks: NDArray[np.float64] | None = field(default=None, repr=False)
 
     @property
     def history(self) -> NoReturn:
@@ -216,7 +219,7 @@ class Result(Shown):
     @cached_property
     def fields(self) -> Fields:
         """Stress and strain in each voxel, and averaged on the vertices."""
-        return fields_of(self.design, self.mesh, self.positions)
+        return fields_of(self.design, self.mesh, self.positions, peaks=self.peaks)
 
     @property
     def chamber_volumes(self) -> dict[str, float]:
@@ -341,7 +344,7 @@ class Result(Shown):
         """
         from voxsoft.simulation.compliance import compliance  # needs a setup, which makes results
 
-        return compliance(self.design, self.mesh, self.positions, place)
+        return compliance(self.design, self.mesh, self.positions, place, self.peaks)
 
     def natural_frequency(self) -> float:
         """That of the slowest small vibration, Hz; errors as those of :func:`voxsoft.modes`."""

@@ -23,6 +23,7 @@ from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import format_percent, si_value
 
@@ -132,6 +133,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     """
     refuse_contact(setup.design, "relaxation")
     refuse_supplies(setup.design, "relaxation")
+    refuse_softening(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
     answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
@@ -238,6 +240,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
             for tendon, found in zip(setup.tendons, answer.tendons, strict=True)
         },
         supplies=() if fluids is None else fluids.states(answer.chambers),
+        peaks=setup.problem.peaks(),
     )
 
 

@@ -18,6 +18,7 @@ from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import refuse_contact
 from voxsoft.units import NonNegativeRate, NonNegativeTime, PositiveTime
 
@@ -95,6 +96,7 @@ class Simulator:
         design = require_design(design, "design").assembled
         refuse_contact(design, "the simulator")
         refuse_supplies(design, "the simulator")
+        refuse_softening(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)

@@ -13,6 +13,7 @@ from voxsoft._memory import memory_limit
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import kind_of
 from voxsoft.simulation.equilibrium import too_large_a_tangent
+from voxsoft.simulation.fields import remember
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.result import Result
 from voxsoft.simulation.setup import Setup
@@ -89,7 +90,9 @@ def modes(result: Result, count: int = DEFAULT_COUNT) -> Modes:
         raise SimulationError(
             "modes", "are not known of bodies in contact", "leave contact and objects out"
         )
-    return modes_of(Setup(result.design, result.mesh), result.positions, count)
+    setup = Setup(result.design, result.mesh)
+    remember(setup.problem, result.peaks)
+    return modes_of(setup, result.positions, count)
 
 
 def modes_of(setup: Setup, positions: NDArray[np.float64], count: int) -> Modes:

@@ -24,6 +24,7 @@ from voxsoft.files.meshes import read_mesh_file
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
+from voxsoft.simulation.softening import softening_parts
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
 from voxsoft.studio.runs import RunList, kind_of, read_summary
@@ -213,7 +214,11 @@ def _of_run(folder: Path) -> Still:
     except OSError:
         status = "ok"
     positions = content.mesh.vertices + np.asarray(moved, dtype=np.float64)
-    return Still(Setup(design, content.mesh), positions, status)
+    setup = Setup(design, content.mesh)
+    if next(softening_parts(design), None) is not None:
+        # The mesh file does not say what the voxels remember, and so not their stress.
+        return Still(setup, positions, status, fields=(FIELDS[DISPLACEMENT].name,))
+    return Still(setup, positions, status)
 
 
 def _solved(design: Design, cancelled: threading.Event) -> Still:

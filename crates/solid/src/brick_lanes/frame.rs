@@ -67,7 +67,7 @@ pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
         material.model(),
         Model::NeoHookean { .. } | Model::Yeoh { .. } | Model::Gent { .. }
     );
-    simple && material.fibers().is_empty()
+    simple && material.fibers().is_empty() && material.mullins().is_none()
 }
 
 /// A number of each voxel of a group.

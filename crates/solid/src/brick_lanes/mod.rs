@@ -1,7 +1,7 @@
 //! Several voxels at once, one in each lane of the processor: forces, stiffness and carried strains.
 //!
 //! The formulas are those of [`crate::brick`], which stays the measure and answers for what is rare: materials
-//! without a form in invariants, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out, pressed flat or blown up tenfold. Groups are those of the
+//! without a form in invariants, softening, fibers, voxels at clamps ([`crate::clamped`]), voxels that are inside out, pressed flat or blown up tenfold. Groups are those of the
 //! list of voxels, whatever the number of threads. As in [`crate::lanes`] everything is inlined by force into the one
 //! function that the processor was chosen for.
 

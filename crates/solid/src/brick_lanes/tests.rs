@@ -86,6 +86,7 @@ fn brick(first: u32, material: u32, cut: bool, warping: Warping) -> Brick {
         fraction: if cut { 0.6 } else { 1.0 },
         filling: if cut { filling } else { Filling::FULL },
         warping,
+        peak: 0.0,
     }
 }
 

@@ -105,8 +105,8 @@ impl Element {
     fn upright_stress(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let pieces = match self {
             Self::Brick(index) => {
-                let brick = &body.bricks()[*index as usize];
-                return brick.cauchy_stress(body.material_of(brick), positions);
+                let brick = body.brick_term().at(*index as usize);
+                return brick.cauchy_stress(body.material_of(&brick), positions);
             }
             Self::Lattice(pieces) => pieces,
         };
@@ -139,8 +139,8 @@ impl Element {
     pub fn energy_density(&self, body: &Body, positions: &[Vec3]) -> f64 {
         let pieces = match self {
             Self::Brick(index) => {
-                let brick = &body.bricks()[*index as usize];
-                return brick.energy(body.material_of(brick), positions) / brick.volume();
+                let brick = body.brick_term().at(*index as usize);
+                return brick.energy(body.material_of(&brick), positions) / brick.volume();
             }
             Self::Lattice(pieces) => pieces,
         };

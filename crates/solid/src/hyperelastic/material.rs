@@ -1,4 +1,4 @@
-use super::{Fiber, Winding};
+use super::{Fiber, Mullins, Winding};
 use crate::ProblemError;
 use crate::matrix::Mat3;
 use crate::vector::{Vec3, norm};
@@ -66,6 +66,7 @@ pub struct HyperelasticMaterial {
     windings: Vec<Winding>,
     prony: Vec<(f64, f64)>,
     swelling: f64,
+    mullins: Option<Mullins>,
 }
 
 impl HyperelasticMaterial {
@@ -100,6 +101,7 @@ impl HyperelasticMaterial {
             windings: Vec::new(),
             prony: Vec::new(),
             swelling: 1.0,
+            mullins: None,
         })
     }
 
@@ -190,6 +192,20 @@ impl HyperelasticMaterial {
             return Err(ProblemError::NotPositive { what, value: left });
         }
         Ok(Self { prony, ..self })
+    }
+
+    /// The same material, softer where it was stretched more before; fibers are not.
+    #[must_use]
+    pub fn with_mullins(self, mullins: Mullins) -> Self {
+        Self {
+            mullins: Some(mullins),
+            ..self
+        }
+    }
+
+    /// How it softens, if it does.
+    pub fn mullins(&self) -> Option<&Mullins> {
+        self.mullins.as_ref()
     }
 
     /// The branches that relax as they were given: share of the instantaneous modulus and time in s.

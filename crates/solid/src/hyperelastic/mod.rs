@@ -12,12 +12,14 @@
 
 pub(crate) mod fiber;
 mod material;
+mod mullins;
 pub mod principal;
 pub mod symmetric;
 mod winding;
 
 pub use fiber::Fiber;
 pub use material::{HyperelasticMaterial, Model};
+pub use mullins::Mullins;
 pub use symmetric::{Response, Sym};
 pub use winding::Winding;
 pub(crate) use winding::Wound;

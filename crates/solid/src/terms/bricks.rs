@@ -1,3 +1,4 @@
+use super::peaks::Peaks;
 use super::{Strain, Term};
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::batches::{groups_in_order, in_order};
@@ -17,9 +18,75 @@ pub struct Bricks {
     pub bricks: Vec<Brick>,
     /// What the numbers of their materials stand for.
     pub materials: Vec<HyperelasticMaterial>,
+    /// What they remember.
+    peaks: Peaks,
 }
 
 impl Bricks {
+    /// Voxels as they begin.
+    pub(crate) fn new(bricks: Vec<Brick>, materials: Vec<HyperelasticMaterial>) -> Self {
+        let mut all = Self {
+            bricks,
+            materials,
+            peaks: Peaks::default(),
+        };
+        let soften = |brick: &Brick| all.material_of(brick).mullins().is_some();
+        if all.bricks.iter().any(soften) {
+            all.peaks = Peaks::new(all.bricks.iter().map(|brick| brick.peak));
+        }
+        all
+    }
+
+    /// A voxel with what it remembers.
+    pub fn at(&self, index: usize) -> Brick {
+        let brick = self.bricks[index];
+        Brick {
+            peak: self.peaks.get(index).unwrap_or(brick.peak),
+            ..brick
+        }
+    }
+
+    /// Whether any voxel softens.
+    pub fn soften(&self) -> bool {
+        self.peaks.are_kept()
+    }
+
+    /// The largest isochoric energy (J/m³) of each voxel, if any softens.
+    pub fn peaks(&self) -> Option<Vec<f64>> {
+        self.peaks.all()
+    }
+
+    /// Sets them; does nothing where nothing softens.
+    pub fn set_peaks(&self, peaks: &[f64]) {
+        for (index, &peak) in peaks.iter().enumerate() {
+            self.peaks.set(index, peak);
+        }
+    }
+
+    /// Forgets what came after the beginning.
+    pub(crate) fn start(&self) {
+        for (index, brick) in self.bricks.iter().enumerate() {
+            self.peaks.set(index, brick.peak);
+        }
+    }
+
+    /// Takes `positions` as a state that has been.
+    pub(crate) fn accept(&self, positions: &[Vec3]) {
+        if !self.soften() {
+            return;
+        }
+        self.each(
+            FORCE_BATCH,
+            |_, brick| brick.virgin_energy(self.material_of(brick), positions),
+            |index, brick, energy| self.peaks.set(index, brick.peak.max(energy)),
+        );
+    }
+
+    /// Remembers on its own from now on.
+    pub(crate) fn own_memory(&mut self) {
+        self.peaks = self.peaks.own();
+    }
+
     /// The material of a voxel.
     pub fn material_of(&self, brick: &Brick) -> &HyperelasticMaterial {
         &self.materials[brick.material as usize]
@@ -73,7 +140,8 @@ impl Bricks {
             let within = Within::elastic(material);
             brick.respond(material, positions, &within).pressure
         };
-        self.bricks.iter().map(pressure).collect()
+        let bricks = (0..self.bricks.len()).map(|index| self.at(index));
+        bricks.map(|brick| pressure(&brick)).collect()
     }
 
     /// The strains at `positions` with other pressures in Pa, one for each voxel.
@@ -92,6 +160,15 @@ impl Bricks {
         })
     }
 
+    /// The voxels from `first` on with what they remember, in `copies` if they do.
+    fn now<'a>(&'a self, first: usize, count: usize, copies: &'a mut Vec<Brick>) -> &'a [Brick] {
+        if !self.soften() {
+            return &self.bricks[first..first + count];
+        }
+        copies.extend((first..first + count).map(|index| self.at(index)));
+        copies
+    }
+
     /// The voxels from `first` on, with what is carried of them.
     fn together<'a>(
         &'a self,
@@ -99,10 +176,11 @@ impl Bricks {
         count: usize,
         positions: &'a [Vec3],
         carried: Option<&'a [Carried]>,
+        copies: &'a mut Vec<Brick>,
     ) -> Together<'a> {
         let range = first..first + count;
         Together {
-            bricks: &self.bricks[range.clone()],
+            bricks: self.now(first, count, copies),
             materials: &self.materials,
             positions,
             carried: carried.map(|states| &states[range]),
@@ -116,7 +194,8 @@ impl Bricks {
             TOGETHER,
             &[[0.0; 3]; 8],
             |first, out| {
-                self.together(first, out.len(), positions, carried)
+                let mut copies = Vec::new();
+                self.together(first, out.len(), positions, carried, &mut copies)
                     .forces(out);
             },
             |first, all| {
@@ -147,7 +226,7 @@ impl Bricks {
                 let last = out.len() - 1;
                 let own: [usize; TOGETHER] =
                     std::array::from_fn(|place| order[first + place.min(last)] as usize);
-                let bricks = own.map(|index| self.bricks[index]);
+                let bricks = own.map(|index| self.at(index));
                 let states = carried.map(|states| own.map(|index| states[index]));
                 let together = Together {
                     bricks: &bricks[..=last],
@@ -185,7 +264,8 @@ impl Bricks {
             TOGETHER,
             &Carried::NOTHING,
             |first, out| {
-                self.together(first, out.len(), positions, before)
+                let mut copies = Vec::new();
+                self.together(first, out.len(), positions, before, &mut copies)
                     .carry(moves, out);
             },
             |_, all| states.extend_from_slice(all),
@@ -200,12 +280,11 @@ impl Bricks {
         work: impl Fn(usize, &Brick) -> U + Sync,
         mut take: impl FnMut(usize, &Brick, U),
     ) {
-        let bricks = &self.bricks;
         in_order(
-            bricks.len(),
+            self.bricks.len(),
             batch,
-            |i| work(i, &bricks[i]),
-            |i, result| take(i, &bricks[i], result),
+            |i| work(i, &self.at(i)),
+            |i, result| take(i, &self.at(i), result),
         );
     }
 }
@@ -220,8 +299,9 @@ impl Term for Bricks {
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
-        let energy = |brick: &Brick| brick.energy(self.material_of(brick), positions);
-        self.bricks.iter().map(energy).sum()
+        let energy = |brick: Brick| brick.energy(self.material_of(&brick), positions);
+        let bricks = (0..self.bricks.len()).map(|index| self.at(index));
+        bricks.map(energy).sum()
     }
 
     fn add_forces(&self, positions: &[Vec3], forces: &mut [Vec3]) {

@@ -10,6 +10,7 @@
 mod bricks;
 mod edges;
 mod membranes;
+mod peaks;
 mod springs;
 mod tets;
 

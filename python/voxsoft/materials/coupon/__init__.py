@@ -9,7 +9,9 @@ Examples
 """
 
 from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, Toe, ToeCorrection
+from voxsoft.materials.coupon.cycles import Cycles, SofteningFit, fit_softening
 from voxsoft.materials.coupon.fit import DEFAULT_MAX_STRAIN, fit_coupons
+from voxsoft.materials.coupon.interval import Interval
 from voxsoft.materials.coupon.modulus_test import (
     BendingTest,
     FrequencyTest,
@@ -17,8 +19,9 @@ from voxsoft.materials.coupon.modulus_test import (
     MeasuredModulus,
     read_modulus_tests,
 )
-from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
-from voxsoft.materials.coupon.table import read_curve
+from voxsoft.materials.coupon.result import CouponFit, ModelFit
+from voxsoft.materials.coupon.table import read_curve, read_cycles
+from voxsoft.materials.coupon.untested import UntestedMode
 
 __all__ = [
     "DEFAULT_MAX_STRAIN",
@@ -26,14 +29,19 @@ __all__ = [
     "BendingTest",
     "CouponFit",
     "Curve",
+    "Cycles",
     "FrequencyTest",
     "Interval",
     "KnownModulus",
     "MeasuredModulus",
     "ModelFit",
+    "SofteningFit",
     "Toe",
     "ToeCorrection",
+    "UntestedMode",
     "fit_coupons",
+    "fit_softening",
     "read_curve",
+    "read_cycles",
     "read_modulus_tests",
 ]

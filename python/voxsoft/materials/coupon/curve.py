@@ -121,7 +121,7 @@ class Curve:
             raise MeasurementError(
                 f"{self.name}, point {at + 1}",
                 "the strain falls: a cycle",
-                "keep the loading branch of one cycle, the first or one after conditioning",
+                "keep the loading branch of one cycle, or give all as a cyclic test (--cyclic)",
             )
         self._check_sign()
 

@@ -96,12 +96,15 @@ class Family:
         How many moduli it has.
     shapes
         How many exponents or limits it has.
+    lowest
+        The smallest exponent that is searched.
     """
 
     name: str
     model: str
     linear: int
     shapes: int = 0
+    lowest: float = -LARGEST_EXPONENT
 
     @property
     def size(self) -> int:
@@ -176,7 +179,7 @@ class Family:
             return Gent(shear=moduli[0], jm=shapes[0], **rest)
         return Ogden(mu=moduli, alpha=shapes, **rest)
 
-    def solve(self, data: Data, near: Floats | None = None) -> Floats:
+    def solve(self, data: Data, near: Floats | None = None, *, redundant: bool = False) -> Floats:
         """Find the constants of least squares.
 
         Parameters
@@ -185,6 +188,8 @@ class Family:
             What to fit.
         near
             Constants to start from; default: many starts.
+        redundant
+            Whether terms that add nothing are let pass. Default false.
 
         Returns
         -------
@@ -206,7 +211,8 @@ class Family:
                 f"the best initial shear modulus is {self.shear(constants) / 1e3:.3g} kPa, "
                 "not above zero",
             )
-        self._check_terms(constants, data)
+        if not redundant:
+            self._check_terms(constants, data)
         return constants
 
     def _moduli(self, data: Data, shapes: Floats) -> Floats:
@@ -233,7 +239,7 @@ class Family:
         else:
             starts = self._starts(data)
         size = np.linalg.norm(data.target)
-        low, high = -LARGEST_EXPONENT, LARGEST_EXPONENT
+        low, high = self.lowest, LARGEST_EXPONENT
 
         def residual(exponents: Floats) -> Floats:
             found: Floats = self._misfit(data, _off_zero(exponents)) / size
@@ -259,6 +265,7 @@ class Family:
     def _starts(self, data: Data) -> list[Floats]:
         """Exponents to start from: the best of a grid of combinations, and their neighbors."""
         grid = np.array([-10.0, -6.0, -3.5, -1.5, 1.0, 2.0, 3.0, 5.0, 9.0])
+        grid = grid[grid > self.lowest]
         ranked = sorted(
             itertools.combinations(grid, self.shapes),
             key=lambda a: float(np.sum(self._misfit(data, np.array(a)) ** 2)),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -11,9 +11,12 @@ from scipy.special import stdtrit
 
 from voxsoft.errors import MaterialError, MeasurementError
 from voxsoft.materials.coupon.curve import TOE_CORRECTIONS, Curve, ToeCorrection
+from voxsoft.materials.coupon.cycles import Cycles
 from voxsoft.materials.coupon.families import FAMILIES, Anchor, Block, Data, Family, NoFit
+from voxsoft.materials.coupon.interval import Interval, noise_of
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
-from voxsoft.materials.coupon.result import CouponFit, Interval, ModelFit
+from voxsoft.materials.coupon.result import CouponFit, ModelFit
+from voxsoft.materials.coupon.untested import UntestedMode, untested_modes
 from voxsoft.materials.hyperelastic import NEARLY_INCOMPRESSIBLE, Floats, Hyperelastic
 from voxsoft.materials.lattice import SILICONE_DENSITY
 from voxsoft.materials.stability import stable_range, stable_ranges
@@ -33,6 +36,7 @@ def fit_coupons(
     curves: Sequence[Curve],
     observed: Sequence[MeasuredModulus] = (),
     *,
+    cycles: Sequence[Cycles] = (),
     toe: ToeCorrection = "strain",
     max_strain: float = DEFAULT_MAX_STRAIN,
     poisson: float = NEARLY_INCOMPRESSIBLE,
@@ -44,9 +48,13 @@ def fit_coupons(
     Parameters
     ----------
     curves
-        At least one; tests of several kinds may be mixed, and several specimens of one kind.
+        At least one, or one of `cycles`; tests of several kinds may be mixed, and several specimens
+        of one kind.
     observed
         Young's moduli from other tests.
+    cycles
+        Tests with load and unload. Their first loadings join the curves, and
+        :meth:`CouponFit.softening` fits what they lose.
     toe
         What to do about stress that is not zero at zero strain, see :meth:`Curve.corrected`.
     max_strain
@@ -86,6 +94,7 @@ def fit_coupons(
     (True, True)
     """
     density = si_value(density, "density", "density", positive=True)
+    curves = [*curves, *(each.first_loading() for each in cycles)]
     if not curves:
         raise MeasurementError("curves", "none came", "give at least one stress-strain curve")
     if toe not in TOE_CORRECTIONS:
@@ -126,7 +135,26 @@ def fit_coupons(
         max_strain,
         tuple(ranked),
         rejected,
+        _untested(used, families, solved, whole, ranked),
+        tuple(each.corrected(each.first_loading().toe(), toe, max_strain) for each in cycles),
     )
+
+
+def _untested(
+    curves: Sequence[Curve],
+    families: Sequence[Family],
+    solved: Mapping[Family, Floats],
+    whole: Data,
+    ranked: Sequence[ModelFit],
+) -> tuple[UntestedMode, ...]:
+    """Compare the models that are not unstable over the curves in the modes that no curve has."""
+    unstable = {fit.name for fit in ranked if not fit.stable_in_fit}
+    kept = [family for family in families if family.name not in unstable]
+    best = min(
+        (_noise(family, constants, curves) for family, constants in solved.items()),
+        key=lambda noise: noise[0],
+    )
+    return untested_modes(curves, kept, whole, best[1])
 
 
 def _data(
@@ -177,14 +205,9 @@ def _residuals(family: Family, constants: Floats, curves: Sequence[Curve]) -> li
 def _noise(family: Family, constants: Floats, curves: Sequence[Curve]) -> tuple[float, float]:
     """Scale of the residuals in Pa, and the share of the points that count as independent."""
     residuals = _residuals(family, constants, curves)
-    total = sum(float(r @ r) for r in residuals)
-    points = sum(len(r) for r in residuals)
     # Rounding of the numbers in the file: no measured stress is known to more than six digits.
     floor = 1e-6 * max(float(np.abs(curve.stress).max()) for curve in curves)
-    scale = max(np.sqrt(total / max(points - family.size, 1)), floor)
-    lagged = sum(float(r[1:] @ r[:-1]) for r in residuals)
-    correlation = min(max(lagged / total if total > 0.0 else 0.0, 0.0), 0.99)
-    return float(scale), (1.0 - correlation) / (1.0 + correlation)
+    return noise_of(residuals, family.size, floor)
 
 
 def _model_fit(

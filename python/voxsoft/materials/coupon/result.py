@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -11,7 +12,10 @@ import numpy as np
 from voxsoft.errors import MaterialError
 from voxsoft.materials.card import Card
 from voxsoft.materials.coupon.curve import Curve, Toe, ToeCorrection
+from voxsoft.materials.coupon.cycles import Cycles, SofteningFit, fit_softening
+from voxsoft.materials.coupon.interval import Interval
 from voxsoft.materials.coupon.modulus_test import MeasuredModulus
+from voxsoft.materials.coupon.untested import UntestedMode
 from voxsoft.materials.hyperelastic import Hyperelastic
 from voxsoft.materials.stability import StableRange
 from voxsoft.materials.tested import StretchRange
@@ -28,20 +32,6 @@ _LARGE_TOE: Final = 0.03
 _SMALL_TOE: Final = 1e-3
 # No rubber is softer or stiffer than this, in Pa.
 _RUBBER: Final = (1e2, 1e8)
-
-
-@dataclass(frozen=True)
-class Interval:
-    """A constant with its 95 % confidence interval, all in SI units."""
-
-    value: float
-    low: float
-    high: float
-
-    @property
-    def half_width(self) -> float:
-        """Half the length of the interval."""
-        return 0.5 * (self.high - self.low)
 
 
 @dataclass(frozen=True)
@@ -115,6 +105,10 @@ class CouponFit:
         The fits, best prediction first.
     rejected
         Models that could not be fitted, and why.
+    cycles
+        Cyclic tests, toe corrected; their first loadings are among the curves.
+    untested
+        The stress in each mode that no curve has, by all models that fit alike.
     """
 
     measured: tuple[Curve, ...]
@@ -125,6 +119,8 @@ class CouponFit:
     max_strain: float
     models: tuple[ModelFit, ...]
     rejected: Mapping[str, str]
+    untested: tuple[UntestedMode, ...] = ()
+    cycles: tuple[Cycles, ...] = ()
 
     @property
     def recommended(self) -> ModelFit:
@@ -160,6 +156,28 @@ class CouponFit:
             raise MaterialError("model", f'"{name}" is not known', closest(name, by_name))
         return by_name[name]
 
+    def softening(self, model: str | None = None) -> SofteningFit | None:
+        """Fit the softening of the cyclic tests, if there are any, beside a model.
+
+        Raises
+        ------
+        MaterialError
+            No such model, or one that could not be fitted.
+        MeasurementError
+            The cycles show no softening.
+        """
+        if not self.cycles:
+            return None
+        fit = self.of(model)
+        if fit.name not in self._softenings:
+            self._softenings[fit.name] = fit_softening(fit.material, self.cycles)
+        return self._softenings[fit.name]
+
+    @cached_property
+    def _softenings(self) -> dict[str, SofteningFit]:
+        """Those that were asked for, by the name of the model."""
+        return {}
+
     @property
     def warnings(self) -> list[str]:
         """What to be careful about in the data, in sentences."""
@@ -171,6 +189,7 @@ class CouponFit:
                 "Only uniaxial curves: mooney-rivlin and ogden are guesses in the other modes; "
                 "neo-hookean, gent and yeoh are safer there"
             )
+        found += [mode.sentence for mode in self.untested if mode.sentence]
         young = self.recommended.young.value
         if not _RUBBER[0] < young < _RUBBER[1]:
             found.append(
@@ -208,28 +227,34 @@ class CouponFit:
         fit = self.of(model)
         if not fit.stable_in_fit:
             raise self._unstable(fit)
+        soft = self.softening(model)
+        changes: dict[str, Any] = {"tested_stretch": self._tested()}
+        if soft is not None:
+            changes["mullins"] = soft.mullins
         breaks = [c.elongation_at_break for c in self.measured if c.elongation_at_break]
         modes = ", ".join(dict.fromkeys(curve.mode for curve in self.curves))
         names = ", ".join(curve.name for curve in self.curves)
         return Card(
             name=name,
             title=title,
-            material=fit.material.model_copy(update={"tested_stretch": self._tested()}),
+            material=fit.material.model_copy(update=changes),
             source=source or f"Fitted to {modes} curves: {names}.",
             caution=". ".join(
                 [
                     f"Fitted to strains between {self._span(0):.2f} and {self._span(1):.2f}",
                     *fit.warnings,
                     *self.warnings,
+                    *(() if soft is None else soft.warnings),
                 ]
             )
             + ".",
             elongation_at_break=min(breaks) if breaks else None,
-            calibration=self._notes(fit),
+            calibration=self._notes(fit, soft),
         )
 
-    def summary(self) -> dict[str, Any]:
-        """Everything as plain data in SI units."""
+    def summary(self, model: str | None = None) -> dict[str, Any]:
+        """Everything as plain data in SI units, with the softening beside a model."""
+        soft = self.softening(model)
         return {
             "recommended": self.recommended.name,
             "toe": self.correction,
@@ -249,7 +274,19 @@ class CouponFit:
             ],
             "observed": [seen._asdict() for seen in self.observed],
             "models": [_summary_of(fit) for fit in self.models],
+            "softening": None
+            if soft is None
+            else {
+                "cycles": [each.name for each in self.cycles],
+                "constants": {
+                    name: {"value": i.value, "low": i.low, "high": i.high}
+                    for name, i in soft.constants.items()
+                },
+                "rmse": soft.rmse,
+                "warnings": list(soft.warnings),
+            },
             "rejected": dict(self.rejected),
+            "untested": [mode._asdict() for mode in self.untested],
             "warnings": self.recommended.warnings + self.warnings,
         }
 
@@ -274,7 +311,7 @@ class CouponFit:
         pressed = round(1.0 + low, 4) if low < -_LARGE_TOE else None
         return StretchRange(largest=max(round(1.0 + high, 4), 1.0), smallest=pressed)
 
-    def _notes(self, fit: ModelFit) -> dict[str, Any]:
+    def _notes(self, fit: ModelFit, soft: SofteningFit | None) -> dict[str, Any]:
         notes: dict[str, Any] = {
             "method": "least squares of engineering stress, incompressible",
             "model": fit.name,
@@ -297,6 +334,13 @@ class CouponFit:
             ]
         for name, interval in fit.constants.items():
             notes[f"{name}_interval"] = _between(interval, _kind_of(name))
+        if soft is not None:
+            notes["cycles"] = [each.name for each in self.cycles]
+            notes["softening_rmse"] = _kpa(soft.rmse)
+            for name, interval in soft.constants.items():
+                notes[f"{name}_interval"] = _between(
+                    interval, "modulus" if name == "m" else "number"
+                )
         notes["interval_method"] = (
             "linearized least squares, residual scale widened for residuals that follow one "
             "another; it holds for this model and these specimens"

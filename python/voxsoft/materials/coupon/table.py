@@ -12,6 +12,7 @@ import numpy as np
 
 from voxsoft.errors import MeasurementError, UnitError
 from voxsoft.materials.coupon.curve import Curve
+from voxsoft.materials.coupon.cycles import Cycles
 from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
 from voxsoft.units import format_quantity, parse, to_si
@@ -95,6 +96,47 @@ def read_curve(
     ...
     voxsoft.errors.MeasurementError: curve: no column of strain and no column of stress among ...
     """
+    strain, stress = _columns(text, name, area, length)
+    broken = _break(strain, stress)
+    whole = slice(None) if broken is None else slice(0, broken + 1)
+    return Curve(
+        strain[whole],
+        stress[whole],
+        mode,
+        name,
+        None if broken is None else float(strain[broken]),
+    )
+
+
+def read_cycles(
+    text: str,
+    *,
+    name: str = "cycles",
+    mode: Mode = "uniaxial",
+    area: float | str | None = None,
+    length: float | str | None = None,
+) -> Cycles:
+    r"""Read a test with load and unload from a table, as :func:`read_curve` reads one without.
+
+    Raises
+    ------
+    MeasurementError
+        As there; or a strain that never falls.
+
+    Examples
+    --------
+    >>> way = [0, 2, 4, 6, 8, 10, 8, 6, 4, 2, 0]
+    >>> text = "strain (%),stress_kPa" + "".join(f"\n{x},{x}" for x in way)
+    >>> read_cycles(text).strain[5:7].tolist()
+    [0.1, 0.08]
+    """
+    return Cycles(*_columns(text, name, area, length), mode, name)
+
+
+def _columns(
+    text: str, name: str, area: float | str | None, length: float | str | None
+) -> tuple[Floats, Floats]:
+    """Strain and stress in Pa, as they stand in a table."""
     length = None if length is None else to_si(length, "length", "length")
     area = None if area is None else to_si(area, "area", "area")
     separator, rows = _rows(text, name)
@@ -107,15 +149,7 @@ def read_curve(
     numbers = _numbers(rows, start + 1, columns, name, decimal_comma=separator != ",")
     strain = _strain(numbers[:, 0], columns[0], length, name)
     stress = _stress(numbers[:, 1], columns[1], area, name)
-    broken = _break(strain, stress)
-    whole = slice(None) if broken is None else slice(0, broken + 1)
-    return Curve(
-        strain[whole],
-        stress[whole],
-        mode,
-        name,
-        None if broken is None else float(strain[broken]),
-    )
+    return strain, stress
 
 
 def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:

@@ -1,0 +1,58 @@
+"""Designs of rubber that softens where it was stretched more before, and who knows of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from voxsoft.design import Design
+from voxsoft.errors import DesignError, ErrorDetail
+from voxsoft.materials import Hyperelastic
+
+
+def softening_parts(design: Design) -> Iterator[int]:
+    """Indices of the parts whose material softens."""
+    for index, part in enumerate(design.parts):
+        material = design.material_of(part)
+        if isinstance(material, Hyperelastic) and material.mullins is not None:
+            yield index
+
+
+def refuse_softening(design: Design, who: str) -> None:
+    """Raise where a material softens and someone does not know of it.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    for index in softening_parts(design):
+        raise DesignError(
+            f"parts[{index}].material.mullins",
+            f"is not known to {who}",
+            'find equilibria, along a path with "voxsoft run --over", or leave mullins out',
+        )
+
+
+def unknown_with_softening(design: Design) -> Iterator[ErrorDetail]:
+    """Find what a design cannot have beside a material that softens."""
+    if next(softening_parts(design), None) is None:
+        return
+    for name, what in (
+        ("symmetry", "solves a part of the body"),
+        ("activations", "changes what a part is at rest"),
+    ):
+        if getattr(design, name):
+            problem = f"{what}, and what softening voxels remember is not known then"
+            yield ErrorDetail(name, problem, "leave it out, or leave mullins out of the materials")
+
+
+def check_softening(design: Design) -> None:
+    """Raise where a design has something that softening is not known with.
+
+    Raises
+    ------
+    DesignError
+        Naming each.
+    """
+    if found := list(unknown_with_softening(design)):
+        raise DesignError.listing(found)
