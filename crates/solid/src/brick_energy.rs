@@ -330,8 +330,8 @@ impl Rotated {
             + self
                 .warped_mean(thinning, None, |at| stress_only(material, at))
                 .value;
-        for fiber in material.fibers() {
-            value += fiber::energy(fiber, &self.stretch);
+        for fiber in material.fibers_now() {
+            value += fiber::energy(&fiber, &self.stretch);
         }
         for axes in AXES {
             let [first, second] = self.variation(axes, thinning).bending;
@@ -348,9 +348,9 @@ impl Rotated {
         let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
         let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
-        for fiber in material.fibers() {
-            energy += fiber::energy(fiber, &self.stretch);
-            fiber::add_stress(fiber, &self.stretch, &mut deviatoric.stress);
+        for fiber in material.fibers_now() {
+            energy += fiber::energy(&fiber, &self.stretch);
+            fiber::add_stress(&fiber, &self.stretch, &mut deviatoric.stress);
         }
         for (n, i, j) in AXES {
             let p = &self.hourglass;
@@ -385,8 +385,8 @@ impl Rotated {
         let thinning = material.thinning();
         let mean = self.warped_mean(thinning, None, |at| stress_only(material, at));
         let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
-        for fiber in material.fibers() {
-            fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
+        for fiber in material.fibers_now() {
+            fiber::add_stress(&fiber, &self.stretch, &mut gradient.stress);
         }
         for (n, i, j) in AXES {
             let [first, second] = self.variation((n, i, j), thinning).bending;
@@ -425,8 +425,8 @@ impl Rotated {
             }
         }
         let mut center = [[0.0; 6]; 6];
-        for fiber in material.fibers() {
-            fiber::add_tangent(fiber, &self.stretch, &mut center);
+        for fiber in material.fibers_now() {
+            fiber::add_tangent(&fiber, &self.stretch, &mut center);
         }
         for k in 0..6 {
             for l in 0..6 {
