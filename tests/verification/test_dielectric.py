@@ -77,7 +77,7 @@ def test_a_free_sheet_becomes_as_thin_as_its_material_says(part):
 
 
 @pytest.mark.parametrize("part", [0.1, 0.3, 0.44])
-def test_incompressible_sheets_balance_maxwells_stress(part):
+def test_an_incompressible_sheet_balances_maxwells_stress(part):
     # μ (λ² − λ⁻⁴) = ε E₀² λ⁴, that is ε E₀²/μ = λ⁻² − λ⁻⁸ below its largest value at λ⁶ = 4.
     poisson = 0.4999
     shear = YOUNG / (2 * (1 + poisson))
@@ -258,7 +258,7 @@ def test_a_field_that_breaks_through_is_warned_of():
         ({"breakdown": 0}, "breakdown"),
     ],
 )
-def test_bad_sheets_are_refused(changes, words):
+def test_a_bad_sheet_is_refused(changes, words):
     good = {"part": "film", "value": "1 MV/m", "permittivity": 2.8, "normal": (0, 0, 1)}
     with pytest.raises(DesignError, match=words):
         Dielectric(**{**good, **changes})
@@ -273,4 +273,4 @@ def test_what_no_sheet_can_be_is_refused():
         vs.simulate(film(1e6, parts=lattice))
     clamps = [clamp for clamp in film(1e6).clamps if clamp.axes != "y"]
     with pytest.raises(DesignError, match="planes of symmetry"):
-        vs.simulate(film(1e6, clamps=clamps, symmetry=[{"plane": "y"}]))
+        vs.simulate(film(1e6, clamps=clamps, symmetry=[{"plane": "y", "at": WIDE / 2}]))

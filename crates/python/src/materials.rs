@@ -156,9 +156,9 @@ impl PyMaterial {
         of_fibers: Vec<Factor>,
     ) -> PyResult<Self> {
         let growth = |factors: Vec<Factor>| {
-            let each = factors.into_iter().map(|(times, stretches, power)| {
-                Ok((History::new(times, stretches)?, power))
-            });
+            let each = factors
+                .into_iter()
+                .map(|(times, stretches, power)| Ok((History::new(times, stretches)?, power)));
             Growth::new(each.collect::<Result<_, ProblemError>>()?)
         };
         let of_material = growth(of_material).map_err(to_python)?;

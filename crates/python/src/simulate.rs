@@ -92,7 +92,7 @@ pub struct PyProblemParts {
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
     tendons: Vec<(TendonPart, History)>,
-    sheets: Vec<Load>,
+    dielectrics: Vec<Load>,
     fluid: Option<Fluid>,
 }
 
@@ -258,7 +258,7 @@ impl PyProblemParts {
         };
         let history = self::history(history).map_err(to_python)?;
         let kind = kind.into();
-        self.sheets.push(Load { kind, history });
+        self.dielectrics.push(Load { kind, history });
         Ok(())
     }
 
@@ -566,7 +566,7 @@ impl PyProblem {
             attachments: Vec::new(),
             touch: None,
             tendons: Vec::new(),
-            sheets: Vec::new(),
+            dielectrics: Vec::new(),
             fluid: self.problem.fluid().cloned(),
         };
         let mut mesh = self.mesh.clone();
@@ -769,7 +769,7 @@ impl PyProblem {
             let missing = || PyValueError::new_err("tendon: there is no such object");
             loads.push(load.ok_or_else(missing)?);
         }
-        loads.extend(parts.sheets.iter().cloned());
+        loads.extend(parts.dielectrics.iter().cloned());
         let touch = parts.touch.clone();
         let fluid = parts.fluid.as_ref().map(Fluid::anew);
         gate::run_owned(py, move |_| {

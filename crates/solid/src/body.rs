@@ -199,7 +199,8 @@ impl Body {
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
                     for vertex in vertices {
-                        masses[vertex as usize] += material.density() * (fraction * side.powi(3)) / 8.0;
+                        masses[vertex as usize] +=
+                            material.density() * (fraction * side.powi(3)) / 8.0;
                     }
                     bricks.push(brick);
                 }

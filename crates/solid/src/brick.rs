@@ -250,7 +250,8 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> f64 {
-        self.rotated(material, positions).smallest_volume(material.thinning())
+        self.rotated(material, positions)
+            .smallest_volume(material.thinning())
     }
 
     /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of

@@ -193,7 +193,10 @@ pub fn shortest_edge(problem: &Problem) -> f64 {
     let body = problem.body();
     let rest = body.rest();
     let lengths = body.edges().iter().map(|edge| edge.length);
-    let sides = body.bricks().iter().map(|b| b.free_side(body.material_of(b)));
+    let sides = body
+        .bricks()
+        .iter()
+        .map(|b| b.free_side(body.material_of(b)));
     let triangles = body.membranes().iter().flat_map(|membrane| {
         let [a, b, c] = membrane.vertices().map(|v| rest[v as usize]);
         [norm(sub(a, b)), norm(sub(b, c)), norm(sub(c, a))]

@@ -712,7 +712,8 @@ fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
         .zip(moves)
         .map(|(x, m)| add(*x, *m))
         .collect();
-    let turn = |brick: &Brick| norm(axial(&brick.deformation(body.material_of(brick), &moved))) / 2.0;
+    let turn =
+        |brick: &Brick| norm(axial(&brick.deformation(body.material_of(brick), &moved))) / 2.0;
     body.bricks().iter().map(turn).fold(0.0, f64::max)
 }
 

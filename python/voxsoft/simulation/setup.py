@@ -42,7 +42,7 @@ from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_parts import SectorParts
-from voxsoft.simulation.sheets import Sheet, sheets_of
+from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (
@@ -284,7 +284,7 @@ class Setup:
             _say_where(parts, f"tendons[{index}]")
             core = tendon.core(objects=touching)
             parts.tendon(json.dumps(core, allow_nan=False), tendon.history)
-        for sheet in self.sheets:
+        for sheet in self.dielectrics:
             assert isinstance(parts, _core.ProblemParts)  # there are none with planes of symmetry
             sheet.give_to(parts)
 
@@ -345,9 +345,9 @@ class Setup:
         return resolve_tendons(self)
 
     @cached_property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The dielectric sheets of the design on the mesh; errors as for :func:`sheets_of`."""
-        return sheets_of(self.design, self.mesh)
+    def dielectrics(self) -> tuple[ResolvedDielectric, ...]:
+        """The dielectric sheets of the design on the mesh; errors as for :func:`dielectrics_of`."""
+        return dielectrics_of(self.design, self.mesh)
 
     def place(self, probe: Probe, where: str) -> Place:
         """What a point or region is on the mesh; `where` is the place an error names."""

@@ -24,7 +24,7 @@ from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
 from voxsoft.simulation.separation import separations
-from voxsoft.simulation.sheets import broken_down
+from voxsoft.simulation.dielectrics import broken_down
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness

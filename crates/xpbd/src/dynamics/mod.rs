@@ -228,7 +228,9 @@ fn run(
                 Some(end) if state.time >= end * (1.0 - 1e-12) => {
                     break (Status::EndTime, residual, None);
                 }
-                None if state.time >= steady && at_rest(problem, &state, residual, settings.tolerance) => {
+                None if state.time >= steady
+                    && at_rest(problem, &state, residual, settings.tolerance) =>
+                {
                     break (Status::AtRest, residual, None);
                 }
                 None if state.time >= settings.max_time => {

@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Sheet:
+class ResolvedDielectric:
     """A dielectric sheet on a mesh.
 
     Attributes
@@ -64,7 +64,7 @@ class Sheet:
         return float(abs(self.activation.factor * self.activation.value) * thinning.max())
 
 
-def sheets_of(design: Design, mesh: Mesh) -> tuple[Sheet, ...]:
+def dielectrics_of(design: Design, mesh: Mesh) -> tuple[ResolvedDielectric, ...]:
     """Return the dielectric sheets of a design on its mesh.
 
     Parameters
@@ -88,7 +88,7 @@ def sheets_of(design: Design, mesh: Mesh) -> tuple[Sheet, ...]:
     >>> film = Dielectric(part="beam", value="10 MV/m", permittivity=2.8, normal=(0, 0, 1))
     >>> beam = beam.replace(activations=[film])
     >>> mesh = vs.mesh_of(beam)
-    >>> [sheet] = sheets_of(beam, mesh)
+    >>> [sheet] = dielectrics_of(beam, mesh)
     >>> round(sheet.true_field(mesh.vertices) / 1e6, 9)
     10.0
     """
@@ -99,7 +99,7 @@ def sheets_of(design: Design, mesh: Mesh) -> tuple[Sheet, ...]:
     )
 
 
-def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> Sheet:
+def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> ResolvedDielectric:
     where = f"activations[{number}]"
     if design.symmetry:
         what = "is dielectric, which is not known across planes of symmetry"
@@ -124,7 +124,7 @@ def _sheet(design: Design, mesh: Mesh, number: int, activation: Dielectric) -> S
     if not corners:
         what = f'"{activation.part}" has no voxels'
         raise DesignError(f"{where}.part", what, "make it thicker, or the voxels smaller")
-    return Sheet(
+    return ResolvedDielectric(
         activation,
         np.concatenate(corners).astype(np.uint32),
         np.concatenate(gradients),
@@ -137,7 +137,7 @@ def broken_down(design: Design, mesh: Mesh, positions: Floats) -> Iterator[Diagn
     if not any(isinstance(activation, Dielectric) for activation in design.activations):
         return
     numbers = [i for i, each in enumerate(design.activations) if isinstance(each, Dielectric)]
-    for number, sheet in zip(numbers, sheets_of(design, mesh), strict=True):
+    for number, sheet in zip(numbers, dielectrics_of(design, mesh), strict=True):
         strength, field = sheet.activation.breakdown, sheet.true_field(positions)
         # Also where it is not a number: what is pressed flat has broken down.
         if strength is not None and not field <= strength:
