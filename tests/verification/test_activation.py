@@ -478,3 +478,16 @@ def test_a_path_of_values_has_no_history():
     timed = wire("360 K", history=vs.History(time=("0 s", "1 s"), factor=(0, 1)))
     with pytest.raises(DesignError, match=r"activations\[0\].history: would be gone through"):
         vs.follow(free_wire(timed), "activations[0].value=300..360 K/3")
+
+
+def test_the_derivative_by_a_temperature_where_there_is_one():
+    warming = free_wire(wire("345 K"))
+    target = {"way": Objective(maximize="displacement", probe="corner", axis="x")}
+    result = vs.simulate(warming, tolerance=1e-12)
+    slope = gradient(result, target, ["activations.0.value"])["way"]["activations.0.value"]
+    # -4 % over 10 K, on 10 mm.
+    assert slope == pytest.approx(-0.04 / 10 * 10 * mm, rel=1e-6)
+    # Warmed to 345 K it stays when it is cooled a little.
+    turned = vs.follow(warming, "activations[0].value", [345.0, 345.0], tolerance=1e-12)
+    with pytest.raises(DesignError, match="has another slope up than down"):
+        gradient(turned.results[-1], target, ["activations.0.value"])

@@ -98,6 +98,10 @@ def test_there_is_no_equilibrium_beyond_pull_in():
     assert "no equilibrium" in beyond.message
     # The factor is that of the field; the limit of what gives way by μ/K is off by about as much.
     assert beyond.load_factor < 1 / 1.05 + 1e-3
+    far = vs.simulate(film(3.0 * field(limit, shear), poisson))
+    assert far.status == "not-at-rest"
+    # Load steps are halved to 1/512, and what is kept is the last equilibrium before the limit.
+    assert 1 / 3 - 1 / 256 < far.load_factor < 1 / 3 + 1e-3
     near = vs.simulate(film(0.98 * field(limit, shear), poisson))
     assert near.status == "ok"
 

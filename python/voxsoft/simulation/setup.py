@@ -33,6 +33,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
@@ -42,7 +43,6 @@ from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_parts import SectorParts
-from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (

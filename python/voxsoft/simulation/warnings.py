@@ -21,10 +21,10 @@ from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.collapse import collapsed_voxels
 from voxsoft.simulation.crossed_surfaces import crossed_surfaces
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.dielectrics import broken_down
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
 from voxsoft.simulation.separation import separations
-from voxsoft.simulation.dielectrics import broken_down
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
