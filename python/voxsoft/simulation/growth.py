@@ -75,6 +75,23 @@ def grows_over_time(design: Design) -> bool:
     return any(activation.growth is not None for activation in timed)
 
 
+def refuse_growth_over_time(design: Design, who: str) -> None:
+    """Raise where an activation has a history and someone keeps parts as they are.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    for index, activation in enumerate(design.activations):
+        if activation.history is not None and activation.growth is not None:
+            raise DesignError(
+                f"activations[{index}].history",
+                f"is not followed by {who}",
+                "leave it out, or run the design over time",
+            )
+
+
 def at_time(design: Design, time: float) -> Design:
     """Return the design whose activations stay as they are at a time in s."""
 

@@ -14,6 +14,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.fluids import has_supplies
+from voxsoft.simulation.growth import grows_over_time
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
 from voxsoft.studio.message import Triple
@@ -26,6 +27,8 @@ SEVERAL: Final = "Live motion does not know several bodies yet: press Solve."
 BONDED: Final = "Live motion does not know bonds yet: press Solve."
 #: The same for volumes of gas and liquid.
 SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
+#: The same for parts that grow by a history.
+GROWING: Final = "Live motion does not know histories of activations yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -53,6 +56,8 @@ def not_live(setup: Setup) -> str:
     """Why time does not run for a body, in a sentence; empty where it does."""
     if has_supplies(setup.design):
         return SUPPLIED
+    if grows_over_time(setup.design):
+        return GROWING
     if not has_contact(setup.design):
         return ""
     if setup.design.bodies:
