@@ -42,7 +42,7 @@ class Dielectric(Activation):
     >>> sheet.value
     60000000.0
     >>> round(sheet.pressure)
-    44626
+    44625
     """
 
     kind: Literal["dielectric"] = "dielectric"

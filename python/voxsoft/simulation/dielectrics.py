@@ -85,8 +85,9 @@ def dielectrics_of(design: Design, mesh: Mesh) -> tuple[ResolvedDielectric, ...]
     >>> import voxsoft as vs
     >>> from voxsoft.design import Dielectric, families
     >>> beam = families.beam()
-    >>> film = Dielectric(part="beam", value="10 MV/m", permittivity=2.8, normal=(0, 0, 1))
-    >>> beam = beam.replace(activations=[film])
+    >>> part = beam.parts[0].replace(name="film")
+    >>> film = Dielectric(part="film", value="10 MV/m", permittivity=2.8, normal=(0, 0, 1))
+    >>> beam = beam.replace(parts=[part], activations=[film])
     >>> mesh = vs.mesh_of(beam)
     >>> [sheet] = dielectrics_of(beam, mesh)
     >>> round(sheet.true_field(mesh.vertices) / 1e6, 9)
