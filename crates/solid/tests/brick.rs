@@ -253,7 +253,8 @@ fn bends_as_a_plate_and_as_a_beam() {
                     ]
                 })
                 .collect();
-            let expected = 0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume(&material);
+            let expected =
+                0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume(&material);
             let ratio = brick.energy(&material, &bent) / expected;
             // Terms of third order in the strain are 1e-4 of it.
             assert!((ratio - 1.0).abs() < 1e-3, "{poisson} {across}: {ratio}");
