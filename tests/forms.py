@@ -13,7 +13,7 @@ import numpy as np
 import pint
 from pydantic import StringConstraints, WithJsonSchema
 
-from voxsoft.design import Design, Parameter, Region
+from voxsoft.design import Design, Dielectric, Parameter, Region, ShapeMemory
 from voxsoft.design.activation import FiberStrain, Strain, Swelling, Thermal
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp, Rotation
@@ -132,9 +132,15 @@ INNER = {
     "probes": {"top": {"point": [0, 0, 0]}},
 }
 SPECIAL[History, "expression"] = ("1 - exp(-t)", "sin(2*pi*t)^2")
-SPECIAL |= {(model, "part"): ("plain",) for model in (FiberStrain, Strain, Swelling, Thermal)}
+ACTIVATIONS = (Dielectric, FiberStrain, ShapeMemory, Strain, Swelling, Thermal)
+SPECIAL |= {(model, "part"): ("plain",) for model in ACTIVATIONS}
 # Of whole kelvins the forms make coefficients that leave nothing of a part.
 SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
+# Of one temperature, or of two in any order, there is no way up and down.
+SPECIAL[Dielectric, "permittivity"] = (2.8, 5)
+SPECIAL[ShapeMemory, "heating"] = (("340 K", "350 K"), [340.0, 350])
+SPECIAL[ShapeMemory, "cooling"] = (("330 K", "320 K"), [340.0, 300])
+SPECIAL[ShapeMemory, "transformed"] = (0.25, 1)
 SPECIAL[Body, "design"] = (INNER, Design.from_document(INNER))
 SPECIAL[Body, "set"] = ({"r": "12 mm"}, {"r": 0.1 / 3}, {"r": "= p_length"}, {"many": 3, "r": 0.02})
 #: Names of bodies that there are: test_roundtrip_of_places_of_bodies has these.

@@ -221,6 +221,11 @@ class Material:
         """The same with these wound fibers in place of any others; a lattice has none."""
 
     def with_swelling(self, stretch: float) -> Material: ...
+    def with_growth(
+        self,
+        of_material: Sequence[tuple[Sequence[float], Sequence[float], float]],
+        of_fibers: Sequence[tuple[Sequence[float], Sequence[float], float]],
+    ) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
         """The same with these branches: share of the instantaneous modulus, time in s."""
 
@@ -275,6 +280,14 @@ class ProblemParts:
         self,
         images: tuple[NDArray[np.uint32], NDArray[np.float64]],
         triangles: NDArray[np.uint32],
+        pressure: float,
+        history: _History = None,
+    ) -> None: ...
+    def dielectric(
+        self,
+        corners: NDArray[np.uint32],
+        gradients: NDArray[np.float64],
+        volumes: NDArray[np.float64],
         pressure: float,
         history: _History = None,
     ) -> None: ...

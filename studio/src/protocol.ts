@@ -74,6 +74,8 @@ export const KINDS = {
   "viscosity": {"si": "Pa*s", "written": "Pa*s", "called": "a viscosity", "dimension": [-1, 1, -1, 0, 0, 0]},
   "energy": {"si": "J", "written": "J", "called": "an energy", "dimension": [2, 1, -2, 0, 0, 0]},
   "magnetic field": {"si": "T", "written": "mT", "called": "a magnetic field", "dimension": [0, 1, -2, 0, -1, 0]},
+  "voltage": {"si": "V", "written": "kV", "called": "a voltage", "dimension": [2, 1, -3, 0, -1, 0]},
+  "electric field": {"si": "V/m", "written": "MV/m", "called": "an electric field", "dimension": [1, 1, -3, 0, -1, 0]},
   "temperature": {"si": "K", "written": "K", "called": "a temperature", "dimension": [0, 0, 0, 0, 0, 1]},
   "thermal expansion": {"si": "1/K", "written": "1/K", "called": "a thermal expansion", "dimension": [0, 0, 0, 0, 0, -1]},
   "number": {"si": "1", "written": "", "called": "a plain number", "dimension": [0, 0, 0, 0, 0, 0]},
@@ -109,6 +111,9 @@ export const COMMON_UNITS = {
   "Hz": [1.0, [0, 0, -1, 0, 0, 0]],
   "mT": [0.001, [0, 1, -2, 0, -1, 0]],
   "T": [1.0, [0, 1, -2, 0, -1, 0]],
+  "V": [1.0, [2, 1, -3, 0, -1, 0]],
+  "kV": [1000.0, [2, 1, -3, 0, -1, 0]],
+  "MV": [1000000.0, [2, 1, -3, 0, -1, 0]],
   "K": [1.0, [0, 0, 0, 0, 0, 1]],
 } as const;
 

@@ -2,8 +2,12 @@
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Fiber, HyperelasticMaterial, LatticeMaterial, Material, Model, Mullins, ProblemError, Winding,
+    Fiber, Growth, History, HyperelasticMaterial, LatticeMaterial, Material, Model, Mullins,
+    ProblemError, Winding,
 };
+
+/// Times, stretches, and the power of them that counts.
+type Factor = (Vec<f64>, Vec<f64>, f64);
 
 use crate::errors::{exception, to_python};
 
@@ -159,6 +163,25 @@ impl PyMaterial {
     /// The same material, free of stress when it is so many times as long along every axis.
     fn with_swelling(&self, py: Python<'_>, stretch: f64) -> PyResult<Self> {
         made(self.rubber(py, "activations")?.with_swelling(stretch))
+    }
+
+    /// The same material that grows over time, and its fibers: times in s, stretches and a power for each factor.
+    fn with_growth(
+        &self,
+        py: Python<'_>,
+        of_material: Vec<Factor>,
+        of_fibers: Vec<Factor>,
+    ) -> PyResult<Self> {
+        let growth = |factors: Vec<Factor>| {
+            let each = factors
+                .into_iter()
+                .map(|(times, stretches, power)| Ok((History::new(times, stretches)?, power)));
+            Growth::new(each.collect::<Result<_, ProblemError>>()?)
+        };
+        let of_material = growth(of_material).map_err(to_python)?;
+        let of_fibers = growth(of_fibers).map_err(to_python)?;
+        let rubber = self.rubber(py, "activations")?;
+        made(Ok(rubber.with_growth(of_material, of_fibers)))
     }
 
     /// Young's modulus in Pa at small strain, of voxels with edges of so many m.

@@ -11,9 +11,9 @@ use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Brick, Clamp, Contact, Filling, Floor, Fluid, Gravity, History, Hydrostatic,
-    Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh, Mirrored,
-    Motion, PointForces, Pressure, Problem, ProblemError, State, Term, elastic,
+    Attachment, Body, Brick, Clamp, Contact, Dielectric, Element, Filling, Floor, Fluid, Gravity,
+    History, Hydrostatic, Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes,
+    Mesh, Mirrored, Motion, PointForces, Pressure, Problem, ProblemError, State, Term, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -92,6 +92,7 @@ pub struct PyProblemParts {
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
     tendons: Vec<(TendonPart, History)>,
+    dielectrics: Vec<Load>,
     fluid: Option<Fluid>,
 }
 
@@ -220,7 +221,48 @@ impl PyProblemParts {
         Ok(())
     }
 
-    /// A tendon, as JSON; tendons come after all other loads.
+    /// A dielectric sheet between compliant electrodes: the corners of its voxels, how the deformation along two directions in
+    /// it and across it depends on each (1/m, a row for each corner of each voxel), their volumes (m³), and half of the permittivity
+    /// times the square of the field as drawn (Pa). Sheets come after tendons.
+    #[pyo3(signature = (corners, gradients, volumes, pressure, history=None))]
+    fn dielectric(
+        &mut self,
+        corners: PyReadonlyArray2<'_, u32>,
+        gradients: PyReadonlyArray2<'_, f64>,
+        volumes: PyReadonlyArray1<'_, f64>,
+        pressure: f64,
+        history: HistoryArgument,
+    ) -> PyResult<()> {
+        let corners: Vec<[u32; 8]> = rows("corners", &corners)?;
+        let gradients: Vec<Vec3> = rows("gradients", &gradients)?;
+        let volumes = volumes.as_array();
+        let (gradients, rest) = gradients.as_chunks::<8>();
+        if gradients.len() != corners.len() || volumes.len() != corners.len() || !rest.is_empty() {
+            let message = format!(
+                "dielectric: {} voxels, gradients of {} and {} volumes",
+                corners.len(),
+                gradients.len(),
+                volumes.len()
+            );
+            return Err(PyValueError::new_err(message));
+        }
+        let each = corners.into_iter().zip(gradients).zip(volumes);
+        let elements = each.map(|((vertices, gradients), &volume)| Element {
+            vertices,
+            gradients: *gradients,
+            volume,
+        });
+        let kind = Dielectric {
+            elements: elements.collect(),
+            pressure,
+        };
+        let history = self::history(history).map_err(to_python)?;
+        let kind = kind.into();
+        self.dielectrics.push(Load { kind, history });
+        Ok(())
+    }
+
+    /// A tendon, as JSON; tendons come after all other loads but dielectric sheets.
     #[pyo3(signature = (tendon, history=None))]
     fn tendon(&mut self, tendon: &str, history: HistoryArgument) -> PyResult<()> {
         let part = serde_json::from_str(tendon)
@@ -524,6 +566,7 @@ impl PyProblem {
             attachments: Vec::new(),
             touch: None,
             tendons: Vec::new(),
+            dielectrics: Vec::new(),
             fluid: self.problem.fluid().cloned(),
         };
         let mut mesh = self.mesh.clone();
@@ -727,6 +770,7 @@ impl PyProblem {
             })
         })?;
         let time = answer.state.time;
+        self.problem.body().begin(time);
         self.answer(py, answer, watch, &|load| load.history.at(time))
     }
 }
@@ -747,6 +791,7 @@ impl PyProblem {
             let missing = || PyValueError::new_err("tendon: there is no such object");
             loads.push(load.ok_or_else(missing)?);
         }
+        loads.extend(parts.dielectrics.iter().cloned());
         let touch = parts.touch.clone();
         let fluid = parts.fluid.as_ref().map(Fluid::anew);
         gate::run_owned(py, move |_| {

@@ -10,7 +10,7 @@ use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
 use voxsoft_player::Placed;
 use voxsoft_scene::Touching as Played;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, Mesh, Motion, Problem, ProblemError, Rigid, Springs};
+use voxsoft_solid::{Body, Brick, Clamp, Mesh, Motion, Problem, ProblemError, Rigid, Springs};
 
 /// What moves a rigid object.
 #[derive(Debug, Clone)]
@@ -220,7 +220,8 @@ impl TouchParts {
 
 /// The energy at a strain of one over the volume, twice: a mean of Young's moduli, Pa.
 fn mean_modulus(body: &Body) -> f64 {
-    let bricks: f64 = body.bricks().iter().map(|brick| brick.volume()).sum();
+    let volume = |brick: &Brick| brick.volume(body.material_of(brick));
+    let bricks: f64 = body.bricks().iter().map(volume).sum();
     let tets: f64 = body.tets().iter().map(|tet| tet.volume).sum();
     2.0 * body.unit_strain_energy() / (bricks + tets)
 }

@@ -55,6 +55,7 @@ pub fn transient(
     let seen: Mutex<Seen> = Mutex::default();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| {
+            inner.body().begin(now.time);
             if let Some(touch) = touch.as_ref().filter(|_| now.record) {
                 let mut seen = seen.lock().expect("no holder of the lock panics");
                 // Before the first step there are no forces yet that keep what touches apart.
@@ -76,6 +77,7 @@ pub fn transient(
     let seen = seen.into_inner().expect("no holder of the lock panics");
     let history = seen.into_python(py, &problem)?;
     let time = solution.state.time;
+    problem.problem.body().begin(time);
     let answer = Answer {
         state: solution.state,
         status: solution.status,

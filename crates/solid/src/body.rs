@@ -22,8 +22,8 @@ use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
-    Brick, Filling, HyperelasticMaterial, LatticeMaterial, Material, Membrane, ProblemError,
-    Warping, cube, free_faces,
+    Brick, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
+    ProblemError, Warping, cube, free_faces,
 };
 
 /// The six edges of a tetrahedron and, for each, the two vertices opposite to it.
@@ -200,10 +200,9 @@ impl Body {
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
                     for vertex in vertices {
-                        masses[vertex as usize] += material.density() * brick.volume() / 8.0;
+                        masses[vertex as usize] +=
+                            material.density() * (fraction * side.powi(3)) / 8.0;
                     }
-                    // Swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ times as large.
-                    brick.side *= material.swelling();
                     bricks.push(brick);
                 }
                 owned.push((first_new..found.len()).collect());
@@ -228,8 +227,9 @@ impl Body {
                 .chain(wound.materials)
                 .collect()
         };
-        let young = |brick: &Brick| hyperelastic[brick.material as usize].young();
-        let brick_energy = bricks.iter().map(|b| young(b) * b.volume()).sum::<f64>();
+        let stuff = |brick: &Brick| &hyperelastic[brick.material as usize];
+        let stiffness = |brick: &Brick| stuff(brick).young() * brick.volume(stuff(brick));
+        let brick_energy = bricks.iter().map(stiffness).sum::<f64>();
         let edge_energy = edges
             .iter()
             .map(|e| e.stiffness * e.length.powi(2))
@@ -237,7 +237,7 @@ impl Body {
         let mut strain_forces = edge_forces(&edges, masses.len());
         for brick in &bricks {
             for vertex in brick.vertices {
-                strain_forces[vertex as usize] += young(brick) * brick.volume() / brick.side;
+                strain_forces[vertex as usize] += stiffness(brick) / brick.free_side(stuff(brick));
             }
         }
         let mut membranes = Membranes(mesh.membranes.clone());
@@ -293,6 +293,22 @@ impl Body {
     /// Remembers on its own, whatever copies of this body do.
     pub(crate) fn own_memory(&mut self) {
         self.bricks.own_memory();
+    }
+
+    /// Makes the free stretch of all materials that of a time in s.
+    pub fn begin(&self, time: f64) {
+        let growths = self.growths();
+        growths.for_each(|growth| growth.begin(time));
+    }
+
+    /// The time in s after which no material changes by itself.
+    pub fn growth_end(&self) -> f64 {
+        self.growths().map(Growth::end).fold(0.0, f64::max)
+    }
+
+    fn growths(&self) -> impl Iterator<Item = &Growth> {
+        let materials = self.bricks.materials.iter();
+        materials.flat_map(HyperelasticMaterial::growths)
     }
 
     /// Positions at rest in m.

@@ -73,7 +73,7 @@ pub struct Brick {
     pub vertices: [u32; CORNERS],
     /// Its material, an index into the list of the body.
     pub material: u32,
-    /// Side in m.
+    /// Side in m, as drawn.
     pub side: f64,
     /// The part of the cube that is filled with material.
     pub fraction: f64,
@@ -180,15 +180,23 @@ fn add_outer(matrix: &mut Mat3, a: Vec3, b: Vec3) {
 }
 
 impl Brick {
-    /// Rest volume of the material in m³.
-    pub fn volume(&self) -> f64 {
-        self.fraction * self.side.powi(3)
+    /// The side in m that it has free of stress now: swollen by λ it stores λ³ W(F/λ), which is the energy of a cube λ times
+    /// as large.
+    #[inline(always)]
+    pub fn free_side(&self, material: &HyperelasticMaterial) -> f64 {
+        self.side * material.swelling()
+    }
+
+    /// The volume of its material in m³, free of stress.
+    #[inline(always)]
+    pub fn volume(&self, material: &HyperelasticMaterial) -> f64 {
+        self.fraction * self.free_side(material).powi(3)
     }
 
     /// The columns of the mean gradient over the material, and the hourglass modes.
-    fn modes(&self, positions: &[Vec3]) -> Modes {
+    fn modes(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Modes {
         let x = self.vertices.map(|v| positions[v as usize]);
-        let factor = 1.0 / (4.0 * self.side);
+        let factor = 1.0 / (4.0 * self.free_side(material));
         // A Walsh–Hadamard transform: sums and differences along z, y, x.
         let (mut s, mut d) = ([[0.0; 3]; 4], [[0.0; 3]; 4]);
         for k in 0..4 {
@@ -212,9 +220,9 @@ impl Brick {
         modes
     }
 
-    fn rotated(&self, positions: &[Vec3]) -> Rotated {
+    fn rotated(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Rotated {
         Rotated::of(
-            &self.modes(positions),
+            &self.modes(material, positions),
             self.filling,
             self.warping,
             self.peak,
@@ -223,23 +231,23 @@ impl Brick {
 
     /// The elastic energy in J.
     pub fn energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
-        self.volume() * self.rotated(positions).energy(material)
+        self.volume(material) * self.rotated(material, positions).energy(material)
     }
 
     /// The isochoric energy (J/m³) that it would have, had it not been stretched before.
     pub fn virgin_energy(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> f64 {
-        self.rotated(positions).virgin(material).value
+        self.rotated(material, positions).virgin(material).value
     }
 
     /// The mean deformation gradient over the material.
-    pub fn deformation(&self, positions: &[Vec3]) -> Mat3 {
-        let modes = self.modes(positions);
+    pub fn deformation(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
+        let modes = self.modes(material, positions);
         std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]))
     }
 
     /// How the mean deformation gradient depends on each corner: `F₀ = Σ x ⊗ g`, `g` in 1/m.
-    pub(crate) fn gradients(&self) -> [(u32, Vec3); CORNERS] {
-        let factor = 1.0 / (4.0 * self.side);
+    pub(crate) fn gradients(&self, material: &HyperelasticMaterial) -> [(u32, Vec3); CORNERS] {
+        let factor = 1.0 / (4.0 * self.free_side(material));
         std::array::from_fn(|corner| {
             let mut modes: Modes = SIGNS.map(|signs| [signs[corner], 0.0, 0.0]);
             self.filling.average(&mut modes);
@@ -254,14 +262,15 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> f64 {
-        self.rotated(positions).smallest_volume(material.thinning())
+        self.rotated(material, positions)
+            .smallest_volume(material.thinning())
     }
 
     /// The Cauchy stress in Pa of the mean deformation, `R (T − [y]×) S Rᵀ / J` in the words of
     /// [`Brick::forces`]; bending modes have no part in it, but for how much softer they have made it.
     pub fn cauchy_stress(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> Mat3 {
-        let mut modes = self.modes(positions);
-        let softness = self.rotated(positions).softness(material);
+        let mut modes = self.modes(material, positions);
+        let softness = self.rotated(material, positions).softness(material);
         modes[3..].fill([0.0; 3]);
         let state = Rotated::of(&modes, Filling::FULL, self.warping, self.peak);
         let mut mean = state.virgin(material);
@@ -285,7 +294,7 @@ impl Brick {
     /// `R (T − [y]×)`, `G y = axial(N − Nᵀ)`, and that by `pₘ` is `R sₘ`; in a cut voxel the `pₘ` have a part in `F₀`
     /// as well.
     pub fn forces(&self, material: &HyperelasticMaterial, positions: &[Vec3]) -> [Vec3; CORNERS] {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let stress = state.gradient(material);
         self.spread_stress(&state, &stress, material)
     }
@@ -297,12 +306,12 @@ impl Brick {
         positions: &[Vec3],
         within: &Within,
     ) -> BrickResponse {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let parts = state.response(material, within.pressure);
         let work = within.stress.along(&state.stretch, &state.hourglass);
         BrickResponse {
-            elastic: self.volume() * parts.elastic,
-            potential: self.volume()
+            elastic: self.volume(material) * parts.elastic,
+            potential: self.volume(material)
                 * ((1.0 + within.share) * parts.deviatoric_energy + parts.other_energy + work),
             pressure: parts.pressure,
             forces: self.spread_stress(&state, &within.stress_of(&parts), material),
@@ -315,7 +324,7 @@ impl Brick {
         material: &HyperelasticMaterial,
         positions: &[Vec3],
     ) -> BrickStress {
-        self.rotated(positions).deviatoric(material)
+        self.rotated(material, positions).deviatoric(material)
     }
 
     /// Adds forces on the corners to those on all vertices.
@@ -334,7 +343,7 @@ impl Brick {
         positions: &[Vec3],
         viscous: impl FnOnce(&BrickStress) -> BrickStress,
     ) -> [Vec3; CORNERS] {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let deviatoric = state.deviatoric(material);
         let stress = state
             .gradient(material)
@@ -350,7 +359,7 @@ impl Brick {
         carried: &Carried,
         positions: &[Vec3],
     ) -> [Vec3; CORNERS] {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let other = state.with_strain(&carried.strain);
         let (now, then) = (state.strain().row(), carried.strain.row());
         let change = times(
@@ -387,7 +396,7 @@ impl Brick {
                 axpy(&mut modes[to], part, slope);
             });
         }
-        let factor = self.volume() / (4.0 * self.side);
+        let factor = self.volume(material) / (4.0 * self.free_side(material));
         std::array::from_fn(|corner| {
             let mut force = [0.0; 3];
             for k in 0..7 {
@@ -426,7 +435,7 @@ impl Brick {
         within: &Within,
         tangent: Tangent,
     ) -> BrickMatrix {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let other = strain.map_or_else(
             || state.with_strain(&state.strain()),
             |s| state.with_strain(s),
@@ -501,7 +510,7 @@ impl Brick {
                 }
             }
         }
-        self.expand(&rotated, &state.rotation, material.young() / 9.0)
+        self.expand(material, &rotated, &state.rotation)
     }
 
     /// Strain and pressure after a step `moves` from `positions`, to first order from what was carried `before` (by default
@@ -513,8 +522,8 @@ impl Brick {
         positions: &[Vec3],
         moves: &[Vec3],
     ) -> Carried {
-        let state = self.rotated(positions);
-        let strain = self.predict_strain(&state, moves);
+        let state = self.rotated(material, positions);
+        let strain = self.predict_strain(material, &state, moves);
         let from = before.map_or_else(|| state.strain(), |carried| carried.strain);
         let volume = |strain: &BrickStrain| state.with_strain(strain).volume_slope(material);
         let ((start, slope), (end, _)) = (volume(&from), volume(&strain));
@@ -536,7 +545,7 @@ impl Brick {
         positions: &[Vec3],
         pressure: f64,
     ) -> Carried {
-        let state = self.rotated(positions);
+        let state = self.rotated(material, positions);
         let own = Pressure::of(material);
         let there = state.response(material, own).pressure;
         Carried {
@@ -549,9 +558,14 @@ impl Brick {
     }
 
     /// The strain of a state, and how it changes along `moves` to first order.
-    fn predict_strain(&self, state: &Rotated, moves: &[Vec3]) -> BrickStrain {
+    fn predict_strain(
+        &self,
+        material: &HyperelasticMaterial,
+        state: &Rotated,
+        moves: &[Vec3],
+    ) -> BrickStrain {
         let stretch = to_matrix(&state.stretch);
-        let direction = self.modes(moves);
+        let direction = self.modes(material, moves);
         let b: Mat3 = std::array::from_fn(|i| {
             std::array::from_fn(|k| apply_transposed(&state.rotation, direction[k])[i])
         });
@@ -570,7 +584,13 @@ impl Brick {
     }
 
     /// Turns the blocks back and spreads modes over corners.
-    fn expand(&self, rotated: &[[f64; 18]; 18], rotation: &Mat3, bilinear: f64) -> BrickMatrix {
+    fn expand(
+        &self,
+        material: &HyperelasticMaterial,
+        rotated: &[[f64; 18]; 18],
+        rotation: &Mat3,
+    ) -> BrickMatrix {
+        let bilinear = material.young() / 9.0;
         let back = transpose(rotation);
         let mut blocks = [[[[0.0; 3]; 3]; 7]; 7];
         for a in 0..6 {
@@ -601,7 +621,7 @@ impl Brick {
                 }
             }
         }
-        let factor = self.volume() / (16.0 * self.side * self.side);
+        let factor = self.volume(material) / (16.0 * self.free_side(material).powi(2));
         let mut matrix = [[0.0; 24]; 24];
         for corner in 0..CORNERS {
             for other in 0..CORNERS {

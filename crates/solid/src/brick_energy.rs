@@ -372,8 +372,8 @@ impl Rotated {
         let mut value = 0.5 * material.bulk() * change * change
             + material.young() / 18.0 * self.bilinear.iter().map(|x| x * x).sum::<f64>()
             + self.isochoric(material).value;
-        for fiber in material.fibers() {
-            value += fiber::energy(fiber, &self.stretch);
+        for fiber in material.fibers_now() {
+            value += fiber::energy(&fiber, &self.stretch);
         }
         for axes in AXES {
             let [first, second] = self.variation(axes, thinning).bending;
@@ -390,9 +390,9 @@ impl Rotated {
         let mean = self.isochoric(material);
         let mut deviatoric = BrickStress::ZERO.plus(&mean.gradient);
         let mut energy = mean.value;
-        for fiber in material.fibers() {
-            energy += fiber::energy(fiber, &self.stretch);
-            fiber::add_stress(fiber, &self.stretch, &mut deviatoric.stress);
+        for fiber in material.fibers_now() {
+            energy += fiber::energy(&fiber, &self.stretch);
+            fiber::add_stress(&fiber, &self.stretch, &mut deviatoric.stress);
         }
         for (n, i, j) in AXES {
             let p = &self.hourglass;
@@ -435,8 +435,8 @@ impl Rotated {
     fn deviatoric_of(&self, material: &HyperelasticMaterial, mean: &Shaped) -> BrickStress {
         let thinning = material.thinning();
         let mut gradient = BrickStress::ZERO.plus(&mean.gradient);
-        for fiber in material.fibers() {
-            fiber::add_stress(fiber, &self.stretch, &mut gradient.stress);
+        for fiber in material.fibers_now() {
+            fiber::add_stress(&fiber, &self.stretch, &mut gradient.stress);
         }
         for (n, i, j) in AXES {
             let [first, second] = self.variation((n, i, j), thinning).bending;
@@ -475,8 +475,8 @@ impl Rotated {
             }
         }
         let mut center = [[0.0; 6]; 6];
-        for fiber in material.fibers() {
-            fiber::add_tangent(fiber, &self.stretch, &mut center);
+        for fiber in material.fibers_now() {
+            fiber::add_tangent(&fiber, &self.stretch, &mut center);
         }
         for k in 0..6 {
             for l in 0..6 {

@@ -175,16 +175,17 @@ pub fn still_state(
     })
 }
 
-/// When the loads and the motions of a problem stop to vary, in s.
+/// When the loads, the motions and the materials of a problem stop to vary, in s.
 pub fn loads_end(problem: &Problem) -> f64 {
     let loads = problem.loads().iter().map(|load| &load.history);
     let clamps = problem.clamps().iter();
     let motions = clamps.filter_map(|clamp| Some(&clamp.motion.as_ref()?.history));
     let of_fluid = problem.fluid().map_or(0.0, Fluid::end);
+    let of_growth = problem.body().growth_end();
     loads
         .chain(motions)
         .map(History::end)
-        .fold(of_fluid, f64::max)
+        .fold(of_fluid.max(of_growth), f64::max)
 }
 
 /// The shortest side of anything in the body, in m: what a step may safely be measured by.
@@ -192,7 +193,10 @@ pub fn shortest_edge(problem: &Problem) -> f64 {
     let body = problem.body();
     let rest = body.rest();
     let lengths = body.edges().iter().map(|edge| edge.length);
-    let sides = body.bricks().iter().map(|brick| brick.side);
+    let sides = body
+        .bricks()
+        .iter()
+        .map(|b| b.free_side(body.material_of(b)));
     let triangles = body.membranes().iter().flat_map(|membrane| {
         let [a, b, c] = membrane.vertices().map(|v| rest[v as usize]);
         [norm(sub(a, b)), norm(sub(b, c)), norm(sub(c, a))]

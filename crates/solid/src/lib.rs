@@ -56,6 +56,7 @@ pub mod fields;
 mod floor;
 pub mod fluid;
 mod free_faces;
+mod growth;
 pub mod hands;
 mod history;
 pub mod hyperelastic;
@@ -85,13 +86,14 @@ pub use contact::{Contact, Moment, RecordedContact};
 pub use error::ProblemError;
 pub use floor::Floor;
 pub use fluid::Fluid;
+pub use growth::Growth;
 pub use hands::{Grab, Hands};
 pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};
 pub use lattice::{LatticeConstants, LatticeMaterial};
 pub use loads::{
-    Drive, ExternalForce, Gravity, Hydrostatic, Load, LoadKind, Place, PointForces, Pressure,
-    Tendon, TendonState, Vertices, enclosed_volume,
+    Dielectric, Drive, Element, ExternalForce, Gravity, Hydrostatic, Load, LoadKind, Place,
+    PointForces, Pressure, Tendon, TendonState, Vertices, enclosed_volume,
 };
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};

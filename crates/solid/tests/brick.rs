@@ -139,7 +139,7 @@ proptest! {
             products: [mean(&|p| p[1] * p[2]), mean(&|p| p[2] * p[0]), mean(&|p| p[0] * p[1])],
             ..cut()
         };
-        let found = Brick { filling, ..cube().0 }.deformation(&positions);
+        let found = Brick { filling, ..cube().0 }.deformation(&materials()[0], &positions);
         // The slopes of the trilinear functions of the corners, ∂N/∂X = ±(1 ± η)(1 ± ζ)/(4h).
         for column in 0..3 {
             for row in 0..3 {
@@ -192,7 +192,7 @@ fn six_motions_cost_nothing_and_no_more() {
         assert!(values[5].abs() < 1e-13, "{values:?}");
         // The softest true mode: 1/20 of E h would be a near mechanism.
         assert!(
-            values[6] > 0.01 * material.young() * brick.volume() / SIDE.powi(2),
+            values[6] > 0.01 * material.young() * brick.volume(&material) / SIDE.powi(2),
             "{values:?}"
         );
     }
@@ -254,7 +254,8 @@ fn bends_as_a_plate_and_as_a_beam() {
                     ]
                 })
                 .collect();
-            let expected = 0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume();
+            let expected =
+                0.5 * modulus * (curvature * SIDE).powi(2) / 12.0 * brick.volume(&material);
             let ratio = brick.energy(&material, &bent) / expected;
             // Terms of third order in the strain are 1e-4 of it.
             assert!((ratio - 1.0).abs() < 1e-3, "{poisson} {across}: {ratio}");

@@ -645,11 +645,12 @@ impl<'a> Equilibrium<'a> {
 
     /// No voxel is inside out or nearly so.
     pub fn is_sound(&self, positions: &[Vec3]) -> bool {
-        self.problem
-            .body()
-            .bricks()
-            .iter()
-            .all(|brick| voxsoft_solid::matrix::determinant(&brick.deformation(positions)) > 0.1)
+        let body = self.problem.body();
+        let ratio = |brick: &Brick| {
+            let deformation = brick.deformation(body.material_of(brick), positions);
+            voxsoft_solid::matrix::determinant(&deformation)
+        };
+        body.bricks().iter().all(|brick| ratio(brick) > 0.1)
             && positions.iter().flatten().all(|x| x.is_finite())
     }
 
@@ -711,7 +712,8 @@ fn largest_turn(body: &Body, positions: &[Vec3], moves: &[Vec3]) -> f64 {
         .zip(moves)
         .map(|(x, m)| add(*x, *m))
         .collect();
-    let turn = |brick: &Brick| norm(axial(&brick.deformation(&moved))) / 2.0;
+    let turn =
+        |brick: &Brick| norm(axial(&brick.deformation(body.material_of(brick), &moved))) / 2.0;
     body.bricks().iter().map(turn).fold(0.0, f64::max)
 }
 

@@ -326,9 +326,10 @@ fn a_free_body_takes_all_of_the_momentum_it_is_given() {
 /// The least volume ratio among all voxels.
 fn flattest(run: &Implicit) -> f64 {
     let positions = &run.state().positions;
-    let bricks = run.problem().body().bricks().iter();
+    let body = run.problem().body();
+    let bricks = body.bricks().iter();
     bricks
-        .map(|brick| determinant(&brick.deformation(positions)))
+        .map(|brick| determinant(&brick.deformation(body.material_of(brick), positions)))
         .fold(f64::INFINITY, f64::min)
 }
 

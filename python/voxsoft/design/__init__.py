@@ -6,6 +6,7 @@ from voxsoft.design.body import Body
 from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.contact import Contact, ContactPair
+from voxsoft.design.dielectric import Dielectric
 from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
@@ -17,6 +18,7 @@ from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
+from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.design.solver import Solver
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import (
@@ -42,6 +44,7 @@ __all__ = [
     "Contact",
     "ContactPair",
     "Design",
+    "Dielectric",
     "FiberStrain",
     "Floor",
     "FlowSupply",
@@ -65,6 +68,7 @@ __all__ = [
     "Pump",
     "Region",
     "Rotation",
+    "ShapeMemory",
     "Solver",
     "Spring",
     "Strain",

@@ -1,54 +1,64 @@
-"""What makes a part longer or shorter by itself: swelling, heat, shape memory."""
+"""What makes a part longer or shorter by itself: swelling, heat, muscles."""
 
 from __future__ import annotations
 
 from abc import abstractmethod
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Discriminator, field_validator, model_validator
+from pydantic import Discriminator, model_validator
 
-from voxsoft.design.operands import Name
+from voxsoft.design.dielectric import Dielectric
+from voxsoft.design.growth import Activation, Growth
+from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.errors import DesignError
-from voxsoft.records import Record
 from voxsoft.units import Dimensionless, PositiveTemperature, ThermalExpansion
 
 
-class Activation(Record):
-    """A part that is longer or shorter by itself; a kind says what its value means."""
+class _OfItsValue(Activation):
+    """An activation whose size follows the factor of its history at once."""
 
-    part: Name
+    #: 1 where the value is a change of length, 1/3 where it is one of volume.
+    power: ClassVar[float] = 1.0
 
-    #: Whether the fibers of the part alone are longer, and not what is around them.
-    of_fibers: ClassVar[bool] = False
+    @abstractmethod
+    def base(self, factor: float) -> float:
+        """How many times as long, or as large, the part is at a factor of its history."""
 
     @property
-    @abstractmethod
-    def stretch(self) -> float:
-        """How many times as long the part is when it is free of stress."""
+    def growth(self) -> Growth:
+        """How many times as long the part is over time when it is free of stress."""
+        if self.history is None:
+            return Growth((0.0,), (self.base(1.0),), self.power)
+        bases = tuple(self.base(factor) for factor in self.history.factors)
+        return Growth(self.history.times, bases, self.power)
 
-    @abstractmethod
-    def share(self, part: float) -> Self:
-        """A part of it."""
 
-
-class _Growth(Activation):
+class _Growing(_OfItsValue):
     """An activation whose value is a change of size."""
 
     value: Dimensionless
 
-    @field_validator("value")
-    @classmethod
-    def _leaves_something(cls, value: float) -> float:
-        if value <= -1.0:
-            raise DesignError("", f"is {value:g}: nothing would be left", "give more than -1")
-        return value
+    @model_validator(mode="after")
+    def _leaves_something(self) -> Self:
+        if self.value <= -1.0:
+            what = f"is {self.value:g}: nothing would be left"
+            raise DesignError("value", what, "give more than -1")
+        for factor in self.history.factors if self.history else ():
+            if self.base(factor) <= 0.0:
+                what = f"has the factor {factor:g}: nothing would be left of {self.value:g} of it"
+                raise DesignError("history", what, "give factors that leave more than -1")
+        return self
+
+    def base(self, factor: float) -> float:
+        """How many times as long, or as large, the part is at a factor of its history."""
+        return 1.0 + factor * self.value
 
     def share(self, part: float) -> Self:
-        """A part of it."""
-        return self.replace(value=part * self.value)
+        """A part of what it comes to in the end, without a history."""
+        return self.replace(value=part * self.factor * self.value, history=None)
 
 
-class Strain(_Growth):
+class Strain(_Growing):
     """A part that is so much longer along every axis when it is free of stress.
 
     Parameters
@@ -57,6 +67,8 @@ class Strain(_Growth):
         The name of the part.
     value
         The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks.
+    history
+        How it changes over time: a factor on the value. Default: it is there from the beginning.
 
     Examples
     --------
@@ -66,13 +78,8 @@ class Strain(_Growth):
 
     kind: Literal["strain"] = "strain"
 
-    @property
-    def stretch(self) -> float:
-        """How many times as long the part is when it is free of stress."""
-        return 1.0 + self.value
 
-
-class Swelling(_Growth):
+class Swelling(_Growing):
     """A part whose volume is so much larger when it is free of stress.
 
     Parameters
@@ -82,6 +89,8 @@ class Swelling(_Growth):
     value
         The change of its volume, above −1: ``"20 %"`` of a gel that takes up a fifth of its volume
         of water. The mass stays that of the dry part.
+    history
+        How it changes over time: a factor on the value. Default: it is there from the beginning.
 
     Examples
     --------
@@ -90,14 +99,10 @@ class Swelling(_Growth):
     """
 
     kind: Literal["swelling"] = "swelling"
-
-    @property
-    def stretch(self) -> float:
-        """How many times as long the part is when it is free of stress."""
-        return float((1.0 + self.value) ** (1.0 / 3.0))
+    power: ClassVar[float] = 1.0 / 3.0
 
 
-class Thermal(Activation):
+class Thermal(_OfItsValue):
     """A part that is so warm, and grows with its temperature.
 
     Parameters
@@ -110,6 +115,9 @@ class Thermal(Activation):
         The coefficient of linear expansion; 3e-4 1/K of silicone rubber.
     reference
         The temperature at which it has the size of the design; default 293.15 K, which is 20 °C.
+    history
+        How the temperature changes over time: 0 is the reference, 1 the value. Default: it is the
+        value from the beginning.
 
     Examples
     --------
@@ -124,22 +132,31 @@ class Thermal(Activation):
 
     @model_validator(mode="after")
     def _leaves_something(self) -> Self:
-        if self.stretch <= 0.0:
-            what = f"{self.expansion:g} 1/K over {self.value - self.reference:g} K leaves nothing"
-            raise DesignError("expansion", what, "give the coefficient of linear expansion in 1/K")
+        for factor in (1.0, *(self.history.factors if self.history else ())):
+            if self._temperature(factor) <= 0.0:
+                what = f"has the factor {factor:g}: that is {self._temperature(factor):g} K"
+                hint = "0 is the reference temperature, and 1 that of the value"
+                raise DesignError("history", what, hint)
+            if self.base(factor) <= 0.0:
+                way = factor * (self.value - self.reference)
+                what = f"{self.expansion:g} 1/K over {way:g} K leaves nothing"
+                hint = "give the coefficient of linear expansion in 1/K"
+                raise DesignError("expansion", what, hint)
         return self
 
-    @property
-    def stretch(self) -> float:
-        """How many times as long the part is when it is free of stress."""
-        return 1.0 + self.expansion * (self.value - self.reference)
+    def _temperature(self, factor: float) -> float:
+        return self.reference + factor * (self.value - self.reference)
+
+    def base(self, factor: float) -> float:
+        """How many times as long the part is at a factor of its history."""
+        return 1.0 + self.expansion * (self._temperature(factor) - self.reference)
 
     def share(self, part: float) -> Self:
-        """A part of the way from the reference."""
-        return self.replace(value=self.reference + part * (self.value - self.reference))
+        """A part of the way from the reference to its last temperature, without a history."""
+        return self.replace(value=self._temperature(part * self.factor), history=None)
 
 
-class FiberStrain(_Growth):
+class FiberStrain(_Growing):
     """A part whose fibers are so much longer along themselves when they are free of stress.
 
     What is around them is not, and holds against it: a negative strain is a muscle, a shape-memory
@@ -152,6 +169,8 @@ class FiberStrain(_Growth):
         The name of the part, which must have fibers.
     value
         The strain, above −1: ``"-20 %"`` is a fifth shorter.
+    history
+        How it changes over time: a factor on the value. Default: it is there from the beginning.
 
     Examples
     --------
@@ -160,12 +179,13 @@ class FiberStrain(_Growth):
     """
 
     kind: Literal["fiber-strain"] = "fiber-strain"
-    of_fibers: ClassVar[bool] = True
 
     @property
-    def stretch(self) -> float:
-        """How many times as long the fibers are when they are free of stress."""
-        return 1.0 + self.value
+    def of_fibers(self) -> bool:
+        """It is the fibers alone that are longer."""
+        return True
 
 
-AnyActivation = Annotated[Strain | Swelling | Thermal | FiberStrain, Discriminator("kind")]
+AnyActivation = Annotated[
+    Strain | Swelling | Thermal | FiberStrain | ShapeMemory | Dielectric, Discriminator("kind")
+]

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.activation import AnyActivation
 from voxsoft.design.attachment import Attachment
 from voxsoft.design.body import Body
 from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.design.isometry import SAME, Isometry, rotation_of
 from voxsoft.design.layer import Layer
-from voxsoft.design.mirrored import mirrored_part, mirrored_region
+from voxsoft.design.mirrored import mirrored_activation, mirrored_part, mirrored_region
 from voxsoft.design.part import Part
 from voxsoft.design.references import operand_names
 from voxsoft.design.region import Region
@@ -222,7 +223,7 @@ class _Included:
         self._extend(found, "springs", springs)
         tendons = [self._tendon(*each) for each in enumerate(self.inner.tendons)]
         self._extend(found, "tendons", tendons)
-        activations = [each.replace(part=self._name(each.part)) for each in self.inner.activations]
+        activations = [self._activation(each) for each in self.inner.activations]
         self._extend(found, "activations", activations)
         loads = [(i, load) for i, load in enumerate(self.inner.loads) if _is_of_a_place(load)]
         placed = [self._load(*each) for each in loads]
@@ -330,6 +331,11 @@ class _Included:
 
         placed = attachment.placed(lambda region: self._region(region, f"springs[{index}]"), point)
         return placed if placed.name is None else placed.replace(name=self._name(placed.name))
+
+    def _activation(self, activation: AnyActivation) -> AnyActivation:
+        if self.body.mirror is not None:
+            activation = mirrored_activation(activation, self.body.mirror)
+        return activation.replace(part=self._name(activation.part))
 
     def _tendon(self, index: int, tendon: Tendon) -> Tendon:
         where = f"tendons[{index}]"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any, Literal, TypeVar
 
+from voxsoft.design.activation import AnyActivation
+from voxsoft.design.dielectric import Dielectric
 from voxsoft.design.part import Part
 from voxsoft.design.region import Region
 from voxsoft.materials import Fiber
@@ -68,6 +70,13 @@ def mirrored_part(part: Part, axis: Axis) -> Part:
         remanence=remanence,
         name=part.name or named,
     )
+
+
+def mirrored_activation(activation: AnyActivation, axis: Axis) -> AnyActivation:
+    """The image of what acts in a part: a sheet with its normal."""
+    if isinstance(activation, Dielectric):
+        return activation.replace(normal=mirrored_point(activation.normal, axis))
+    return activation
 
 
 def mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:

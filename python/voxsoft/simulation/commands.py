@@ -40,7 +40,7 @@ class LoadCommands:
     Raises
     ------
     DesignError
-        A load with a history.
+        A load or an activation with a history.
 
     Examples
     --------
@@ -58,6 +58,11 @@ class LoadCommands:
             if reading.history is not None:
                 where = f"loads[{index}].history"
                 what = "is not used by a simulator, whose commands are the history"
+                raise DesignError(where, what, "leave it out, or use vs.simulate")
+        for index, activation in enumerate(design.activations):
+            if activation.history is not None:
+                where = f"activations[{index}].history"
+                what = "is not used by a simulator, which keeps activations as they are"
                 raise DesignError(where, what, "leave it out, or use vs.simulate")
         self._loads: tuple[AnyLoad, ...] = tuple(design.loads)
         self.names = _names(self._readings)

@@ -13,6 +13,8 @@ from voxsoft._memory import memory_limit
 from voxsoft.design.solver import Count, Damping, Tolerance
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.equilibrium import too_large_a_tangent
+from voxsoft.simulation.growth import grows_over_time
+from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Report, Watch
 from voxsoft.simulation.setup import Setup
 from voxsoft.units import NonNegativeTime, PositiveTime, format_quantity
@@ -51,7 +53,7 @@ class Dynamics(Method):
         implicit = (setup.touching, setup.fluids)
         if setup.tendons or any(each is not None for each in implicit):
             return self._by_implicit_steps(setup, watch, interval)
-        rate, ends = self.rate, self.ends()
+        problem, rate, ends = self._problem(setup), self.rate, self.ends()
         asked: dict[str, Any] = {
             "time_step": self._step(interval),
             "substeps": self.substeps,
@@ -59,7 +61,7 @@ class Dynamics(Method):
             "damping": rate,
             "retardation": self.retardation,
         }
-        answer = setup.problem.simulate(
+        answer = problem.simulate(
             **asked,
             end_time=ends.get("end_time"),
             max_time=ends.get("max_time", DEFAULT_MAX_TIME),
@@ -74,10 +76,10 @@ class Dynamics(Method):
 
     def _by_implicit_steps(self, setup: Setup, watch: Watch, interval: float) -> Answer:
         """The same by implicit steps, which end with contacts, tendons and pressures settled."""
-        rate, ends = self.rate, self.ends()
+        problem, rate, ends = self._problem(setup), self.rate, self.ends()
         step = self._step(interval)
         answer = _core.transient(
-            setup.problem,
+            problem,
             step=step,
             damping=rate,
             end_time=ends.get("end_time"),
@@ -97,6 +99,14 @@ class Dynamics(Method):
             )
         used = {"method": "implicit", "way": "dynamics", "time_step": step, **ends}
         return used | {"damping": "critical" if rate is None else rate}, Report.of(answer)
+
+    @staticmethod
+    def _problem(setup: Setup) -> _core.Problem:
+        """The problem that moves: one of its own where materials change, which it keeps changed."""
+        if not grows_over_time(setup.design):
+            return setup.problem
+        own = core_materials(setup.design, setup.materials, setup.origin, over_time=True)
+        return setup.problem.with_materials(own)
 
     def _step(self, interval: float) -> float:
         """The length of a step in s: probes are recorded after whole steps."""

@@ -66,7 +66,8 @@ class LoadControl(Statics):
     def solve(self, setup: Setup, watch: Watch) -> Answer:
         """Find the equilibrium under the final loads; what swells does so in steps if need be."""
         found = super().solve(setup, watch)
-        if found[1].status != Status.NOT_CONVERGED or not setup.design.activations:
+        grows = any(each.growth is not None for each in setup.design.activations)
+        if found[1].status != Status.NOT_CONVERGED or not grows:
             return found
         steps = found[1].steps
         for count in _SWELLING_STEPS:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from voxsoft.design import Design, Objective
 from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.errors import DesignError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
@@ -34,6 +35,10 @@ Floats = NDArray[np.float64]
 _MISPLACED: Final = 1e-6
 #: A tendon that slides all along has the tensions of one pulled at once, but for rounding.
 _STUCK: Final = 1e-9
+#: Of changes to both sides this part is left where a slope is smooth: steps of 5e-6 leave less.
+_KINK: Final = 1e-3
+#: The rounding of a few stretches.
+_ROUNDING: Final = 1e-14
 
 
 def gradient(
@@ -217,11 +222,27 @@ def _variation(base: _State, name: str) -> _Variation:
             f"cannot be varied by a little: {error}",
             "name a number that the design takes at any value, and no count",
         ) from None
+    _check_memory(base.setup.design, [state.setup.design for state in states], name)
     return _Variation(
         tuple(states),
         tuple(weight / step for _, weight in STENCIL),
         tuple(multiple * step for multiple, _ in STENCIL),
     )
+
+
+def _check_memory(design: Design, varied: Sequence[Design], name: str) -> None:
+    """Refuse a number that warms shape memory in one way and cools it in another."""
+    for index, activation in enumerate(design.activations):
+        if not isinstance(activation, ShapeMemory):
+            continue
+        changes = [each.activations[index].stretch - activation.stretch for each in varied]
+        # The stencil is symmetric: what is linear cancels but for rounding and what is quadratic.
+        if abs(sum(changes)) > _KINK * sum(map(abs, changes)) + _ROUNDING:
+            raise DesignError(
+                name,
+                f"has no derivative: activations[{index}] has another slope up than down there",
+                "take a state on a branch of its loop, or vary what does not warm it",
+            )
 
 
 def _state_with(base: _State, design: Design, name: str) -> _State:

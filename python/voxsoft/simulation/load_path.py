@@ -17,7 +17,11 @@ from typing import Any, Final
 import numpy as np
 
 from voxsoft.design import Design, Solver, require_design
+from voxsoft.design.activation import AnyActivation
+from voxsoft.design.dielectric import Dielectric
+from voxsoft.design.growth import Growth
 from voxsoft.design.history import History
+from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.design.target import Along
 from voxsoft.design.tendon import Tendon
 from voxsoft.errors import DesignError, SimulationError
@@ -201,11 +205,13 @@ def follow(
     if asked.key == TIME:
         _check_supplies(given)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
+    if asked.key != TIME:
+        designs = _remembering(designs)
     timed, instants = _joined(designs, asked, given)
     setup = Setup.of(timed, refine=solver.refine)
     part = SectorSetup.part_of(setup)
     solved = setup if part is None else part
-    swells = any(each.activations != given.activations for each in designs)
+    swells = any(_sizes(each) != _sizes(given) for each in designs)
     if swells:
         refuse_contact(given, "a path of activations")
     method = method_of(given, solver)
@@ -281,13 +287,46 @@ def _with_value(design: Design, over: Over, number: int) -> Design:
     return design.with_values(f"{over.key}={over.toml(value)}").assembled
 
 
+def _sizes(design: Design) -> list[Growth | None]:
+    """How large its activations make the parts of a design."""
+    return [activation.growth for activation in design.activations]
+
+
+def _remembering(designs: list[Design]) -> list[Design]:
+    """Designs whose shape memory goes on, each from where the one before has come to."""
+    found = designs[:1]
+    for design in designs[1:]:
+        found.append(design.replace(activations=_after(found[-1].activations, design.activations)))
+    return found
+
+
+def _after(
+    before: Sequence[AnyActivation], now: Sequence[AnyActivation]
+) -> tuple[AnyActivation, ...]:
+    """Activations that go on from where others have come to."""
+    found: list[AnyActivation] = []
+    for index, (old, new) in enumerate(zip(before, now, strict=True)):
+        if isinstance(old, ShapeMemory) and isinstance(new, ShapeMemory):
+            if new.history is not None:
+                raise DesignError(
+                    f"activations[{index}].history",
+                    "would be gone through at each value of the path",
+                    'leave it out, or follow "time"',
+                )
+            found.append(new.after(old))
+        else:
+            found.append(new)
+    return tuple(found)
+
+
 def _at_instant(design: Design, instant: float) -> Design:
     """The design whose loads and motions are those of an instant."""
 
     def history(own: History | None) -> History | None:
         return own if own is None else History(time=(0.0,), factor=(own.at(instant),))
 
-    return _with_histories(design, history, history)
+    activations = tuple(each.at(instant) for each in design.activations)
+    return _with_histories(design, history, history).replace(activations=activations)
 
 
 def _with_histories(
@@ -335,6 +374,14 @@ def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, l
             _one_of([each[index] for each in lists], instants, f"{name}[{index}]", over)
             for index in range(len(lists[0]))
         )
+    changes["activations"] = tuple(
+        _one_of(
+            [each.activations[index] for each in designs], instants, f"activations[{index}]", over
+        )
+        if isinstance(activation, Dielectric)
+        else activation
+        for index, activation in enumerate(first.activations)
+    )
     return first.replace(**changes), instants
 
 

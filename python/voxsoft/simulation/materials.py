@@ -10,7 +10,7 @@ from voxsoft.design import Design
 from voxsoft.design.assembly import voxel_size_of
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
-from voxsoft.records import closest
+from voxsoft.simulation.growth import PartGrowth, growths_of
 
 
 def solid_materials(design: Design) -> list[Material]:
@@ -59,7 +59,11 @@ def solid_materials(design: Design) -> list[Material]:
 
 
 def core_materials(
-    design: Design, materials: list[Material], origin: NDArray[np.float64]
+    design: Design,
+    materials: list[Material],
+    origin: NDArray[np.float64],
+    *,
+    over_time: bool = False,
 ) -> list[_core.Material]:
     """What the core takes for each part of a design: its material and its fibers.
 
@@ -71,59 +75,33 @@ def core_materials(
         One for each part, such as :func:`solid_materials` gives.
     origin
         Where the solver's origin is [m], (3,).
+    over_time
+        Whether activations follow their histories; default: they are as in the end.
+
+    Raises
+    ------
+    DesignError
+        An activation that its part cannot have.
     """
     found = []
-    stretches, of_fibers = _stretches(design)
+    growths = growths_of(design)
     poses = {body.name: body.pose for body in design.bodies}
     for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
         core = material.core
+        growth = growths.get(index, PartGrowth())
         if part.fibers:
-            free = of_fibers.get(index, 1.0)
+            free = 1.0 if over_time else growth.fiber_stretch
             straight = [fiber.core(free) for fiber in part.fibers if not fiber.is_wound]
             rotation, position = poses.get(part.body or "", (np.eye(3), np.zeros(3)))
             place = rotation, position - origin
             wound = [fiber.winding(*place, free) for fiber in part.fibers if fiber.is_wound]
             core = core.with_fibers(straight).with_windings(wound)
-        if index in stretches:
-            core = core.with_swelling(stretches[index])
+        if growth.of_part and not over_time:
+            core = core.with_swelling(growth.part_stretch)
+        if over_time and index in growths:
+            core = growth.over_time(core)
         found.append(core)
     return found
-
-
-def _stretches(design: Design) -> tuple[dict[int, float], dict[int, float]]:
-    """How many times as long parts and their fibers are by themselves, by the index of the part.
-
-    Several activations of one multiply.
-
-    Raises
-    ------
-    DesignError
-        There is no such part, it is a lattice or rigid, or has no fibers that could be longer.
-    """
-    of_parts: dict[int, float] = {}
-    of_fibers: dict[int, float] = {}
-    for number, activation in enumerate(design.activations):
-        where = f"activations[{number}].part"
-        named = [i for i, part in enumerate(design.parts) if activation.part == part.label]
-        if not named:
-            labels = [part.label for part in design.parts]
-            what = f'there is no part "{activation.part}"'
-            raise DesignError(where, what, closest(activation.part, labels))
-        for index in named:
-            material = design.material_of(design.parts[index])
-            if not isinstance(material, Hyperelastic):
-                raise DesignError(
-                    where,
-                    f'swells hyperelastic parts, and "{activation.part}" is "{material.model}"',
-                    "use the neo-Hookean material of the same Young's modulus",
-                )
-            if activation.of_fibers and not design.parts[index].fibers:
-                what = f'is for the fibers of a part, and "{activation.part}" has none'
-                hint = 'give the part fibers, or take kind = "strain"'
-                raise DesignError(where, what, hint)
-            found = of_fibers if activation.of_fibers else of_parts
-            found[index] = found.get(index, 1.0) * activation.stretch
-    return of_parts, of_fibers
 
 
 def _shear(material: Hyperelastic | Lattice | CompliantLattice, voxel_size: float) -> float:

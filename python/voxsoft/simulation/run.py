@@ -17,6 +17,7 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.fluids import refuse_supplies
+from voxsoft.simulation.growth import at_time
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
@@ -207,7 +208,7 @@ def result_of(setup: Setup, used: dict[str, Any], report: Report, seconds: float
         **_touch_history(setup, answer),
     )
     return Result(
-        design=setup.design,
+        design=at_time(setup.design, answer.time) if used["way"] == "dynamics" else setup.design,
         mesh=setup.mesh,
         places=setup.places,
         status=_STATUSES[report.status],

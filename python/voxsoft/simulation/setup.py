@@ -33,6 +33,7 @@ from voxsoft.materials import Material
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Place
 from voxsoft.simulation.chambers import check_chambers, with_chamber_names
+from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
@@ -283,6 +284,9 @@ class Setup:
             _say_where(parts, f"tendons[{index}]")
             core = tendon.core(objects=touching)
             parts.tendon(json.dumps(core, allow_nan=False), tendon.history)
+        for sheet in self.dielectrics:
+            assert isinstance(parts, _core.ProblemParts)  # there are none with planes of symmetry
+            sheet.give_to(parts)
 
     @cached_property
     def touching(self) -> Touching | None:
@@ -339,6 +343,11 @@ class Setup:
             One that leaves the body, crosses itself, or is too short to reach its ends.
         """
         return resolve_tendons(self)
+
+    @cached_property
+    def dielectrics(self) -> tuple[ResolvedDielectric, ...]:
+        """The dielectric sheets of the design on the mesh; errors as for :func:`dielectrics_of`."""
+        return dielectrics_of(self.design, self.mesh)
 
     def place(self, probe: Probe, where: str) -> Place:
         """What a point or region is on the mesh; `where` is the place an error names."""

@@ -21,6 +21,7 @@ from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.collapse import collapsed_voxels
 from voxsoft.simulation.crossed_surfaces import crossed_surfaces
 from voxsoft.simulation.diagnostic import Diagnostic
+from voxsoft.simulation.dielectrics import broken_down
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.overlaps import overlap_warnings
 from voxsoft.simulation.separation import separations
@@ -51,6 +52,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     overlap_warnings,
     crossed_surfaces,
     separations,
+    broken_down,
 )
 FIELD_CHECKS: Final[tuple[FieldCheck, ...]] = (collapsed_voxels, beyond_tests)
 

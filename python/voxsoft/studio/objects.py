@@ -15,6 +15,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.fluids import has_supplies
+from voxsoft.simulation.growth import grows_over_time
 from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
@@ -30,6 +31,8 @@ BONDED: Final = "Live motion does not know bonds yet: press Solve."
 SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
 #: The same for rubber that softens.
 SOFTENS: Final = "Live motion does not know softening yet: press Solve."
+#: The same for parts that grow by a history.
+GROWING: Final = "Live motion does not know histories of activations yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -59,6 +62,8 @@ def not_live(setup: Setup) -> str:
         return SUPPLIED
     if next(softening_parts(setup.design), None) is not None:
         return SOFTENS
+    if grows_over_time(setup.design):
+        return GROWING
     if not has_contact(setup.design):
         return ""
     if setup.design.bodies:

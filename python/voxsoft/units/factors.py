@@ -34,6 +34,9 @@ psi: Final = 6894.757293168361
 
 mT: Final = 1e-3
 T: Final = 1.0
+V: Final = 1.0
+kV: Final = 1e3
+MV: Final = 1e6
 K: Final = 1.0
 
 deg: Final = pi / 180.0

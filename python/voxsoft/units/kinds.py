@@ -91,6 +91,8 @@ _ALL: Final = (
     Kind("viscosity", Dimension(-1, 1, -1), ("Pa*s",)),
     Kind("energy", Dimension(2, 1, -2), ("J", "mJ")),
     Kind("magnetic field", Dimension(mass=1, time=-2, current=-1), ("mT", "T")),
+    Kind("voltage", Dimension(2, 1, -3, current=-1), ("kV", "V", "MV")),
+    Kind("electric field", Dimension(1, 1, -3, current=-1), ("MV/m", "V/m", "kV/mm")),
     Kind("temperature", Dimension(temperature=1), ("K",)),
     Kind("thermal expansion", Dimension(temperature=-1), ("1/K",)),
     Kind("number", Dimension(), ()),

@@ -46,6 +46,7 @@ COMMON_UNITS: Final[dict[str, Dimension]] = {
     **dict.fromkeys(("deg", "rad"), _ANGLE),
     "Hz": _RATE,
     **dict.fromkeys(("mT", "T"), KINDS["magnetic field"].dimension),
+    **dict.fromkeys(("V", "kV", "MV"), KINDS["voltage"].dimension),
     "K": KINDS["temperature"].dimension,
 }
 

@@ -121,8 +121,8 @@ impl<S: Simd> Constants<S> {
             ]
         });
         Self {
-            volume: gather(simd, bricks, Brick::volume),
-            side: gather(simd, bricks, |brick| brick.side),
+            volume: gather(simd, bricks, |brick| brick.volume(of_material(brick))),
+            side: gather(simd, bricks, |brick| brick.free_side(of_material(brick))),
             spread,
             shift,
             products,

@@ -23,9 +23,11 @@ impl Element {
     /// hyperelastic voxels, then those of lattices, then tetrahedra that are no part of a voxel.
     pub fn for_each(body: &Body, mut found: impl FnMut(&[u32], f64, &dyn Fn() -> Self)) {
         for (index, brick) in body.bricks().iter().enumerate() {
-            found(&brick.vertices, brick.volume(), &|| {
-                Self::Brick(index as u32)
-            });
+            found(
+                &brick.vertices,
+                brick.volume(body.material_of(brick)),
+                &|| Self::Brick(index as u32),
+            );
         }
         if body.tets().is_empty() {
             return;

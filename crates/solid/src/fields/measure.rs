@@ -57,7 +57,10 @@ impl Element {
     /// How the mean deformation gradient depends on each vertex: `F = Σ x ⊗ g`.
     pub fn gradients(&self, body: &Body) -> Vec<(u32, Vec3)> {
         let pieces = match self {
-            Self::Brick(index) => return body.bricks()[*index as usize].gradients().to_vec(),
+            Self::Brick(index) => {
+                let brick = &body.bricks()[*index as usize];
+                return brick.gradients(body.material_of(brick)).to_vec();
+            }
             Self::Lattice(pieces) => pieces,
         };
         // V F = Σ x ⊗ ∂V/∂X over the corners of a tetrahedron.
@@ -76,7 +79,8 @@ impl Element {
     pub fn deformation(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let mut sum = [[0.0; 3]; 3];
         if let Self::Brick(index) = self {
-            return body.bricks()[*index as usize].deformation(positions);
+            let brick = &body.bricks()[*index as usize];
+            return brick.deformation(body.material_of(brick), positions);
         }
         for (vertex, gradient) in self.gradients(body) {
             add_outer(&mut sum, 1.0, positions[vertex as usize], gradient);
@@ -140,7 +144,8 @@ impl Element {
         let pieces = match self {
             Self::Brick(index) => {
                 let brick = body.brick_term().at(*index as usize);
-                return brick.energy(body.material_of(&brick), positions) / brick.volume();
+                let material = body.material_of(&brick);
+                return brick.energy(material, positions) / brick.volume(material);
             }
             Self::Lattice(pieces) => pieces,
         };

@@ -1,7 +1,7 @@
 use super::{Fiber, Mullins, Winding};
-use crate::ProblemError;
 use crate::matrix::Mat3;
 use crate::vector::{Vec3, norm};
+use crate::{Growth, ProblemError};
 
 /// The isochoric part of a hyperelastic energy, constants in Pa unless they have no unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,6 +67,8 @@ pub struct HyperelasticMaterial {
     prony: Vec<(f64, f64)>,
     swelling: f64,
     mullins: Option<Mullins>,
+    growth: Growth,
+    fiber_growth: Growth,
 }
 
 impl HyperelasticMaterial {
@@ -102,6 +104,8 @@ impl HyperelasticMaterial {
             prony: Vec::new(),
             swelling: 1.0,
             mullins: None,
+            growth: Growth::none(),
+            fiber_growth: Growth::none(),
         })
     }
 
@@ -168,9 +172,35 @@ impl HyperelasticMaterial {
         })
     }
 
-    /// By how much it is longer free of stress than in the body at rest; 1 where it is not swollen.
+    /// The same material swollen over time, on top of [`HyperelasticMaterial::with_swelling`], and with fibers whose free
+    /// stretch changes, on top of their own.
+    #[must_use]
+    pub fn with_growth(self, of_material: Growth, of_fibers: Growth) -> Self {
+        Self {
+            growth: of_material,
+            fiber_growth: of_fibers,
+            ..self
+        }
+    }
+
+    /// By how much it is longer now, free of stress, than in the body at rest; 1 where it is not swollen.
+    #[inline(always)]
     pub fn swelling(&self) -> f64 {
-        self.swelling
+        self.swelling * self.growth.now()
+    }
+
+    /// How it and its fibers grow.
+    pub fn growths(&self) -> [&Growth; 2] {
+        [&self.growth, &self.fiber_growth]
+    }
+
+    /// Its fibers with the free stretch that they have now.
+    pub(crate) fn fibers_now(&self) -> impl Iterator<Item = Fiber> + '_ {
+        let growth = self.fiber_growth.now();
+        self.fibers.iter().map(move |fiber| Fiber {
+            free: fiber.free * growth,
+            ..*fiber
+        })
     }
 
     /// The same material with branches that relax: pairs of the share `g` of the instantaneous modulus

@@ -1,5 +1,6 @@
 //! External loads: each kind is a file here, a variant of [`LoadKind`], and nothing else in the core.
 
+mod dielectric;
 mod gravity;
 mod hydrostatic;
 mod point_forces;
@@ -14,6 +15,7 @@ use crate::assembly::Visitor;
 use crate::vector::Vec3;
 use crate::{History, Mirrored, ProblemError};
 
+pub use dielectric::{Dielectric, Element};
 pub use gravity::Gravity;
 pub use hydrostatic::Hydrostatic;
 pub use point_forces::PointForces;
@@ -127,6 +129,8 @@ pub enum LoadKind {
     MirroredPressure(Mirrored<Pressure>),
     /// The pull of a tendon.
     Tendon(Tendon),
+    /// The squeeze of a sheet by its electrodes.
+    Dielectric(Dielectric),
 }
 
 impl LoadKind {
@@ -158,6 +162,7 @@ impl std::ops::Deref for LoadKind {
             Self::Hydrostatic(weight) => weight,
             Self::MirroredPressure(pressure) => pressure,
             Self::Tendon(tendon) => tendon,
+            Self::Dielectric(sheet) => sheet,
         }
     }
 }
@@ -183,6 +188,12 @@ impl From<Mirrored<Pressure>> for LoadKind {
 impl From<Tendon> for LoadKind {
     fn from(tendon: Tendon) -> Self {
         Self::Tendon(tendon)
+    }
+}
+
+impl From<Dielectric> for LoadKind {
+    fn from(sheet: Dielectric) -> Self {
+        Self::Dielectric(sheet)
     }
 }
 

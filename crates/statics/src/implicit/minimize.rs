@@ -190,7 +190,7 @@ impl Search<'_> {
 /// The largest norm of the change of a voxel's deformation gradient: how far it is turned or strained.
 fn largest_change(problem: &Problem, moves: &[Vec3]) -> f64 {
     let size = |brick: &voxsoft_solid::Brick| {
-        let change = brick.deformation(moves);
+        let change = brick.deformation(problem.body().material_of(brick), moves);
         change
             .as_flattened()
             .iter()
@@ -216,7 +216,8 @@ impl Extremes {
             stretch: 0.0,
         };
         problem.body().bricks().iter().fold(start, |so_far, brick| {
-            let deformation = brick.deformation(positions);
+            let material = problem.body().material_of(brick);
+            let deformation = brick.deformation(material, positions);
             let squares = deformation.as_flattened().iter().map(|x| x * x);
             Self {
                 volume: so_far.volume.min(determinant(&deformation)),

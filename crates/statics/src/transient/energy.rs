@@ -3,7 +3,7 @@
 use voxsoft_solid::balance::{NEGLIGIBLE_STRAIN, balance_of_forces, is_still_with};
 use voxsoft_solid::hands::loads_end;
 use voxsoft_solid::vector::{Vec3, add, dot, scale, sub};
-use voxsoft_solid::{Problem, State, elastic};
+use voxsoft_solid::{Problem, State, Term, elastic};
 
 use super::Run;
 
@@ -79,6 +79,7 @@ impl Run<'_> {
             let brake = self.damping_rate * self.problem.body().masses()[vertex];
             work -= brake * dot(next.velocities[vertex], way);
         }
+        work += self.work_of_growth(next.time);
         let (kinetic, stored) = (
             found.kinetic - self.now.kinetic,
             found.elastic - self.now.elastic,
@@ -89,6 +90,26 @@ impl Run<'_> {
         let negligible = NEGLIGIBLE_STRAIN.powi(2) * self.problem.body().unit_strain_energy();
         let allowed = GAIN * turned_over + GAIN_OF_MOTION * moving + ROUNDING * stored_in_all;
         kinetic + stored - work > allowed + negligible
+    }
+
+    /// Makes materials those of a time in s.
+    pub(super) fn begin(&self, time: f64) {
+        self.problem.body().begin(time);
+        self.moving.body().begin(time);
+    }
+
+    /// What materials that grow from now to a time in s have done, in J: what the body stores more where it is.
+    fn work_of_growth(&self, time: f64) -> f64 {
+        let body = self.problem.body();
+        if body.growth_end() <= self.state.time {
+            return 0.0;
+        }
+        let stored = |time: f64| {
+            body.begin(time);
+            body.brick_term().energy(&self.state.positions)
+        };
+        let before = stored(self.state.time);
+        stored(time) - before
     }
 
     /// An estimate of the frequency (rad/s) that the present motion lives on: the change of all forces along the

@@ -110,6 +110,8 @@ impl Transient {
             contact.start(&start.positions);
         }
         problem.start_loads();
+        problem.body().begin(start.time);
+        moving.body().begin(start.time);
         if let Some(fluid) = problem.fluid() {
             fluid.start(&start.positions, Some(start.time));
         }
@@ -128,6 +130,7 @@ impl Transient {
                 inertia: Some(&inertia),
                 ..equilibrium
             },
+            moving: &moving,
             inertia: &inertia,
             now: Now::default(),
             before: None,
@@ -159,6 +162,8 @@ fn refused(state: State, error: FactorError) -> Solution {
 
 struct Run<'a> {
     problem: &'a Problem,
+    /// The same with inertia.
+    moving: &'a Problem,
     settings: &'a Transient,
     equilibrium: Equilibrium<'a>,
     inertia: &'a Inertia,

@@ -32,6 +32,7 @@ impl Run<'_> {
         self.inertia.set(start.rate * braked, free.collect());
         self.equilibrium.negligible = NEGLIGIBLE_CHANGE * self.momentum() / step;
         let time = self.state.time + step;
+        self.begin(time);
         if let Some(fluid) = self.problem.fluid() {
             fluid.begin(time, start.rate, start.weights);
         }

@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 
 use voxsoft_solid::balance::{Balance, is_still};
 use voxsoft_solid::breakdown::{Breakdown, travel_limit};
+use voxsoft_solid::hands::loads_end;
 use voxsoft_solid::strips::Strips;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Damping, Grab, Observer, Problem, Progress, Solution, Solver, State, Status};
@@ -169,6 +170,8 @@ fn run(
         problem, settings, ..
     } = subject;
     let limit = travel_limit(problem);
+    // What still changes is not at rest, though nothing pulls at it yet.
+    let steady = loads_end(problem);
     arrays.load(&state);
     let mut checkpoint = state.clone();
     let (mut steps, mut back_offs) = (0u64, 0u32);
@@ -183,6 +186,7 @@ fn run(
         let blown_up = broken.is_some() || excess.is_nan() || excess > BLOW_UP_EXCESS;
         let stuck = !blown_up
             && settings.end_time.is_none()
+            && state.time >= steady
             && window.stuck(
                 state.time,
                 arrays.damping_rate(),
@@ -224,7 +228,9 @@ fn run(
                 Some(end) if state.time >= end * (1.0 - 1e-12) => {
                     break (Status::EndTime, residual, None);
                 }
-                None if at_rest(problem, &state, residual, settings.tolerance) => {
+                None if state.time >= steady
+                    && at_rest(problem, &state, residual, settings.tolerance) =>
+                {
                     break (Status::AtRest, residual, None);
                 }
                 None if state.time >= settings.max_time => {

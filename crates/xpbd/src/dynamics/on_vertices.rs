@@ -77,6 +77,7 @@ impl OnVertices {
         std::mem::swap(&mut self.forces, &mut self.forces_before);
         self.forces.fill([0.0; 3]);
         let time = self.state.time + h;
+        body.begin(time);
         subject
             .problem
             .add_loads(&self.start, time, &mut self.forces);
@@ -251,6 +252,7 @@ impl Arrays for OnVertices {
 
     fn balance(&mut self, subject: Subject<'_>, state: &State) -> Balance {
         let (problem, positions) = (subject.problem, &state.positions);
+        problem.body().begin(state.time);
         let mut external = vec![[0.0; 3]; positions.len()];
         problem.add_loads(positions, state.time, &mut external);
         add_pulls(subject.grabs, positions, &mut external);
