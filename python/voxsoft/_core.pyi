@@ -343,6 +343,21 @@ class ProblemParts:
         center: Sequence[float],
         axes: Sequence[Sequence[float]],
         radii: Sequence[float],
+        share: float = 1.0,
+        held: Sequence[bool] = ...,
+    ) -> None: ...
+    def image_object(
+        self,
+        points: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        of: int,
+        signs: Sequence[float],
+    ) -> None: ...
+    def whole(
+        self,
+        images: tuple[NDArray[np.uint32], NDArray[np.float64]],
+        voxels: NDArray[np.uint32],
+        planes: Sequence[tuple[int, NDArray[np.uint32]]],
     ) -> None: ...
     def bond(self, a: int, b: int, reach: float, strength: float) -> None: ...
     def friction(self, table: NDArray[np.float64]) -> None: ...

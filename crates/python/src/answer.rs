@@ -6,7 +6,7 @@ use voxsoft_solid::{LiveStatus, Look, Status};
 
 use crate::contact_field::PyContactField;
 use crate::tendon::PyTendon;
-use crate::touch::{PyContact, PyObjectPose, PyTouchHistory};
+use crate::touch_answer::{PyContact, PyObjectPose, PyTouchHistory};
 
 /// How a solution ended.
 #[pyclass(

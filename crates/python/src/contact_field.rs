@@ -21,7 +21,9 @@ pub struct PyContactField {
 
 impl Touching {
     pub(crate) fn field(&self, py: Python<'_>, positions: &[Vec3]) -> PyResult<Py<PyContactField>> {
-        let found = self.touch.field(positions, self.first);
+        let found = self
+            .touch
+            .field(&self.seen(positions), self.own(), self.flips());
         let field = PyContactField {
             pressure: PyArray1::from_vec(py, found.pressure).unbind(),
             friction: from_rows(py, &found.friction).unbind(),

@@ -12,7 +12,7 @@ use voxsoft_statics::Varied;
 use crate::equilibrium::to_python;
 use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
-use crate::touch::PyContact;
+use crate::touch_answer::PyContact;
 
 /// The next load path of a problem is recorded, for `sensitivities`.
 #[pyfunction]

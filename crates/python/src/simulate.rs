@@ -5,15 +5,16 @@ use std::sync::Arc;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use voxsoft_contact::touch::Flip;
 use voxsoft_contact::touch::rigid::Frame;
 use voxsoft_solid::balance::{balance_under, total_load_under};
 use voxsoft_solid::fluid::{Network, Walls};
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, sub};
 use voxsoft_solid::{
-    Attachment, Body, Brick, Clamp, Contact, Dielectric, Element, Filling, Floor, Fluid, Gravity,
-    History, Hydrostatic, Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes,
-    Mesh, Mirrored, Motion, PointForces, Pressure, Problem, ProblemError, State, Term, elastic,
+    Attachment, Body, Brick, Clamp, Dielectric, Element, Filling, Floor, Fluid, Gravity, History,
+    Hydrostatic, Images, Load, LoadKind, Material, Membrane, MembraneMaterial, Membranes, Mesh,
+    Mirrored, Motion, PointForces, Pressure, Problem, ProblemError, State, elastic,
 };
 use voxsoft_xpbd::{Answer, Damping, Dynamics, Relaxation, Trial, relax, simulate};
 
@@ -23,7 +24,7 @@ use crate::gate;
 use crate::materials::PyMaterial;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
-use crate::touch::{BodyPart, BondPart, ObjectPart, TouchParts, Touching, Way};
+use crate::touch::{BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Touching, Way, Whole};
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -75,7 +76,7 @@ pub struct PyProblem {
     pub(crate) mesh: Mesh,
     pub(crate) materials: Vec<Material>,
     pub(crate) problem: Arc<Problem>,
-    pub(crate) touching: Option<Touching>,
+    pub(crate) touching: Option<Arc<Touching>>,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -327,7 +328,13 @@ impl PyProblemParts {
     }
 
     /// A rigid object that moves freely: its mass in kg, center of mass in m, principal axes (unit vectors, row by
-    /// row), and the roots of its second moments of mass along them over its mass, in m.
+    /// row), and the roots of its second moments of mass along them over its mass, in m. Where planes of symmetry cut it, it
+    /// is `held` along the axes across them, and a `share` of its mass counts.
+    #[pyo3(signature = (points, triangles, mass, center, axes, radii, share=1.0, held=[false; 3]))]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "keyword arguments of one Python call"
+    )]
     fn free_object(
         &mut self,
         points: PyReadonlyArray2<'_, f64>,
@@ -336,9 +343,45 @@ impl PyProblemParts {
         center: Vec3,
         axes: [Vec3; 3],
         radii: Vec3,
+        share: f64,
+        held: [bool; 3],
     ) -> PyResult<()> {
         let frame = Frame::of_mass(center, axes, radii).map_err(to_python)?;
-        self.add_object(rows("points", &points)?, &triangles, frame, Way::Free(mass))
+        let way = Way::Free(Freedom { mass, share, held });
+        self.add_object(rows("points", &points)?, &triangles, frame, way)
+    }
+
+    /// The mirror image of the free object with the number `of`; `signs` are by what its vectors are multiplied.
+    fn image_object(
+        &mut self,
+        points: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        of: usize,
+        signs: Vec3,
+    ) -> PyResult<()> {
+        let points: Vec<Vec3> = rows("points", &points)?;
+        let frame = Frame::around(&points);
+        self.add_object(points, &triangles, frame, Way::Image(of, signs))
+    }
+
+    /// What touches is a whole of which the problem has a part: its vertices as images of those of the part, the corners of
+    /// its voxels by its own vertices, and for each plane the axis across it and the images of all vertices.
+    fn whole(
+        &mut self,
+        images: ImagesArgument<'_>,
+        voxels: PyReadonlyArray2<'_, u32>,
+        planes: Vec<(usize, PyReadonlyArray1<'_, u32>)>,
+    ) -> PyResult<()> {
+        let flip = |(axis, images): &(usize, PyReadonlyArray1<'_, u32>)| Flip {
+            axis: *axis,
+            images: images.as_array().to_vec(),
+        };
+        self.touch.get_or_insert_default().whole = Some(Whole {
+            images: self::images(&images)?,
+            voxels: rows("voxels", &voxels)?,
+            flips: planes.iter().map(flip).collect(),
+        });
+        Ok(())
     }
 
     /// The friction of the bodies and the objects after them with each other; NaN where they do not touch.
@@ -660,7 +703,7 @@ impl PyProblem {
         elastic::add_forces(self.problem.body(), &positions, &mut forces);
         if let Some(touching) = &self.touching {
             let mut others = vec![[0.0; 3]; positions.len()];
-            touching.touch.add_forces(&positions, &mut others);
+            touching.contact.add_forces(&positions, &mut others);
             for (force, other) in forces.iter_mut().zip(others) {
                 *force = sub(*force, other);
             }
@@ -809,13 +852,9 @@ impl PyProblem {
                 if let Some(springs) = parts.frame_springs(problem.body(), first) {
                     problem = problem.with_term(Arc::new(springs))?;
                 }
-                let touch = Arc::new(parts.contact(problem.body(), first)?);
-                problem = problem.with_contact(Arc::clone(&touch) as Arc<dyn Contact>)?;
-                touching = Some(Touching {
-                    parts,
-                    touch,
-                    first,
-                });
+                let made = parts.into_touching(problem.body(), first)?;
+                problem = problem.with_contact(Arc::clone(&made.contact))?;
+                touching = Some(Arc::new(made));
             }
             Ok(Self {
                 mesh,
@@ -829,7 +868,7 @@ impl PyProblem {
 
     /// That of the material, J: what multipliers of contact have of it is none.
     fn elastic_energy(&self, positions: &[Vec3]) -> f64 {
-        let of_contact = |touching: &Touching| touching.touch.energy(positions);
+        let of_contact = |touching: &Arc<Touching>| touching.contact.energy(positions);
         let all = elastic::energy(self.problem.body(), positions);
         all - self.touching.as_ref().map_or(0.0, of_contact)
     }
@@ -887,7 +926,7 @@ impl PyProblem {
         let (contacts, objects) = match &self.touching {
             Some(touching) => (
                 touching.contacts(py, positions)?,
-                touching.poses(py, positions, touching.first)?,
+                touching.poses(py, &touching.seen(positions)[touching.own()..])?,
             ),
             None => (Vec::new(), Vec::new()),
         };

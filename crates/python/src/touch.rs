@@ -1,4 +1,5 @@
 //! Contact of a body with itself and with rigid objects, as Python describes it and is told of it.
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -6,19 +7,49 @@ use pyo3::prelude::*;
 use voxsoft_contact::skin::Skin;
 use voxsoft_contact::touch::bonds::{Bond, Side, Solid};
 use voxsoft_contact::touch::rigid::Frame;
-use voxsoft_contact::touch::{Carried, Description, PairReport, Surface, Touch};
+use voxsoft_contact::touch::{Carried, Description, Flip, Surface, Touch};
 use voxsoft_player::Placed;
 use voxsoft_scene::Touching as Played;
+use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Brick, Clamp, Mesh, Motion, Problem, ProblemError, Rigid, Springs};
+use voxsoft_solid::{
+    Body, Brick, Clamp, Contact, Images, Mesh, MirroredContact, Motion, Problem, ProblemError,
+    Rigid, Springs,
+};
+
+use crate::touch_answer::{PyContact, PyObjectPose, to_python};
 
 /// What moves a rigid object.
 #[derive(Debug, Clone)]
 pub(crate) enum Way {
     /// It is held, or moved.
     Held(Option<Motion>),
-    /// It moves freely, with a mass in kg.
-    Free(f64),
+    /// It moves freely.
+    Free(Freedom),
+    /// It is the mirror image of a free object, by the number of that, and by what its vectors are multiplied.
+    Image(usize, Vec3),
+}
+
+/// How an object moves freely.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Freedom {
+    /// In kg.
+    pub mass: f64,
+    /// The part of it that is solved for: less than 1 where planes of symmetry cut it.
+    pub share: f64,
+    /// The axes across these planes, along which it stays.
+    pub held: [bool; 3],
+}
+
+/// A whole body with planes of symmetry, of which a part is solved for.
+#[derive(Debug, Clone)]
+pub(crate) struct Whole {
+    /// Of the vertices of the part.
+    pub images: Images,
+    /// The corners of its voxels, by its own vertices.
+    pub voxels: Vec<[u32; 8]>,
+    /// The images of all its vertices in each plane.
+    pub flips: Vec<Flip>,
 }
 
 /// A rigid object: its surface, what carries it, and how it is moved.
@@ -31,8 +62,19 @@ pub(crate) struct ObjectPart {
 }
 
 impl ObjectPart {
-    fn is_free(&self) -> bool {
-        matches!(self.way, Way::Free(_))
+    /// By what vectors are multiplied on the way from the vertices that are solved for.
+    fn signs(&self) -> Vec3 {
+        match self.way {
+            Way::Image(_, signs) => signs,
+            Way::Held(_) | Way::Free(_) => [1.0; 3],
+        }
+    }
+
+    fn freedom(&self) -> Option<Freedom> {
+        match self.way {
+            Way::Free(freedom) => Some(freedom),
+            Way::Held(_) | Way::Image(..) => None,
+        }
     }
 }
 
@@ -86,6 +128,8 @@ pub(crate) struct TouchParts {
     pub objects: Vec<ObjectPart>,
     pub friction: Vec<Vec<f64>>,
     pub bonds: Vec<BondPart>,
+    /// What touches, where a part of it is solved for.
+    pub whole: Option<Whole>,
 }
 
 /// Two surfaces that are bonded where they are near each other at rest.
@@ -99,23 +143,54 @@ pub(crate) struct BondPart {
 }
 
 impl TouchParts {
-    /// Adds four vertices for each object to a mesh, and the clamps that hold them, or their mass.
+    /// Adds four vertices for each object to a mesh that is no image, and the clamps that hold them, or their mass.
     pub(crate) fn add_frames(&self, mesh: &mut Mesh, clamps: &mut Vec<Clamp>) {
         for object in &self.objects {
             let first = mesh.vertices.len() as u32;
-            mesh.vertices.extend(object.frame.vertices());
+            let vertices = first..first + 4;
             match &object.way {
                 Way::Held(motion) => clamps.push(Clamp {
-                    vertices: (first..first + 4).collect(),
+                    vertices: vertices.collect(),
                     axes: [true; 3],
                     motion: motion.clone(),
                 }),
-                Way::Free(mass) => {
-                    let each = (first..first + 4).map(|vertex| (vertex, mass / 4.0));
+                Way::Free(Freedom { mass, share, held }) => {
+                    let each = vertices.clone().map(|v| (v, share * mass / 4.0));
                     mesh.point_masses.extend(each);
+                    if held.contains(&true) {
+                        clamps.push(Clamp {
+                            vertices: vertices.collect(),
+                            axes: *held,
+                            motion: None,
+                        });
+                    }
                 }
+                Way::Image(..) => continue,
             }
+            mesh.vertices.extend(object.frame.vertices());
         }
+    }
+
+    /// Where the vertices of an object are among those that are solved for, of which the first object has those from
+    /// `first` on. Those of an image are what it is an image of.
+    fn solved_at(&self, number: usize, first: usize) -> usize {
+        let number = match self.objects[number].way {
+            Way::Image(of, _) => of,
+            Way::Held(_) | Way::Free(_) => number,
+        };
+        let before = self.objects[..number].iter();
+        first + 4 * before.filter(|o| !matches!(o.way, Way::Image(..))).count()
+    }
+
+    /// The images of what is solved for that make the whole, objects included.
+    fn images(&self, first: usize) -> Option<Images> {
+        let mut images = self.whole.as_ref()?.images.clone();
+        for (number, object) in self.objects.iter().enumerate() {
+            let at = self.solved_at(number, first) as u32;
+            images.of.extend(at..at + 4);
+            images.signs.extend([object.signs(); 4]);
+        }
+        Some(images)
     }
 
     /// What keeps the vertices of free objects apart, those of the first object from `first` on.
@@ -125,10 +200,11 @@ impl TouchParts {
             .objects
             .iter()
             .enumerate()
-            .filter(|(_, object)| object.is_free());
-        let springs = free.flat_map(|(number, object)| {
+            .filter_map(|(number, object)| Some((number, object, object.freedom()?.share)));
+        let springs = free.flat_map(|(number, object, share)| {
             let stiffness = object.frame.stiffness(&object.points, young, self.voxel());
-            object.frame.springs((first + 4 * number) as u32, stiffness)
+            let at = self.solved_at(number, first) as u32;
+            object.frame.springs(at, share * stiffness)
         });
         let springs: Vec<_> = springs.collect();
         (!springs.is_empty()).then_some(Springs(springs))
@@ -140,34 +216,46 @@ impl TouchParts {
         sizes.fold(f64::INFINITY, f64::min)
     }
 
-    /// How many objects clamps hold.
+    /// How many clamps hold objects.
     pub(crate) fn held(&self) -> usize {
-        self.objects
-            .iter()
-            .filter(|object| !object.is_free())
-            .count()
+        let is_held = |object: &&ObjectPart| match object.way {
+            Way::Held(_) => true,
+            Way::Free(freedom) => freedom.held.contains(&true),
+            Way::Image(..) => false,
+        };
+        self.objects.iter().filter(is_held).count()
     }
 
-    /// The contact of a body whose objects have their vertices from `first` on.
-    pub(crate) fn contact(&self, body: &Body, first: usize) -> Result<Touch, ProblemError> {
+    /// The contact of a body whose objects have their vertices from `first` on; where a part is solved for, that of the whole,
+    /// whose objects come after its own vertices.
+    fn touch(&self, body: &Body, first: usize) -> Result<Touch, ProblemError> {
+        let images = self.images(first);
+        let rest: Cow<'_, [Vec3]> = match &images {
+            Some(images) => images.seen(body.rest()).into(),
+            None => body.rest().into(),
+        };
+        let (voxels, first) = match &self.whole {
+            Some(whole) => (whole.voxels.as_slice(), whole.images.of.len()),
+            None => (body.voxels(), first),
+        };
         let (mut surfaces, mut shares) = (Vec::new(), Vec::new());
         for part in &self.bodies {
-            let (surface, of_points) = part.surface(body.voxels());
+            let (surface, of_points) = part.surface(voxels);
             surfaces.push(surface);
             shares.extend(of_points);
         }
         for (number, object) in self.objects.iter().enumerate() {
             let at = first + 4 * number;
-            let carried = |point: &Vec3| object.frame.carry(*point, at as u32);
+            let carried = |point: &Vec3| self.carried(number, *point, at as u32);
             surfaces.push(Surface {
                 points: object.points.iter().map(carried).collect(),
                 triangles: object.triangles.clone(),
             });
         }
         let bonds = self.bonds.iter().map(|bond| {
-            let side = |surface: u32| self.side(surface, &surfaces, &shares, body, first);
+            let side = |surface: u32| self.side(surface, &surfaces, &shares, voxels, first);
             let [a, b] = bond.of.map(side);
-            Bond::new(a, b, bond.reach, bond.strength, body.rest())
+            Bond::new(a, b, bond.reach, bond.strength, &rest)
         });
         let bonds = bonds.collect::<Result<_, _>>()?;
         let description = Description {
@@ -177,9 +265,51 @@ impl TouchParts {
             voxel: self.voxel(),
             young: mean_modulus(body),
         };
-        let touch = Touch::new(description, body.rest())?;
-        Ok(touch.with_bodies(self.bodies.len() as u32, shares))
+        let touch = Touch::new(description, &rest)?;
+        let touch = touch.with_bodies(self.bodies.len() as u32, shares);
+        Ok(match &images {
+            Some(images) => touch.with_planes(across(images), &rest),
+            None => touch,
+        })
     }
+
+    /// The same, and where it is in a problem.
+    pub(crate) fn into_touching(self, body: &Body, first: usize) -> Result<Touching, ProblemError> {
+        let touch = Arc::new(self.touch(body, first)?);
+        let images = self.images(first);
+        let contact: Arc<dyn Contact> = match &images {
+            Some(images) => {
+                let own = Arc::clone(&touch);
+                Arc::new(MirroredContact::new(images.clone(), own))
+            }
+            None => Arc::clone(&touch) as Arc<dyn Contact>,
+        };
+        Ok(Touching {
+            parts: self,
+            touch,
+            contact,
+            images,
+            first,
+        })
+    }
+
+    /// A point of an object whose vertices are those from `at` on. Those of an image are images of what carries the
+    /// image of the point.
+    fn carried(&self, number: usize, point: Vec3, at: u32) -> Carried {
+        match self.objects[number].way {
+            Way::Image(of, signs) => self.objects[of].frame.carry(mirrored(point, signs), at),
+            Way::Held(_) | Way::Free(_) => self.objects[number].frame.carry(point, at),
+        }
+    }
+}
+
+/// The axes across planes of symmetry: along which some images have the other sign.
+fn across(images: &Images) -> [bool; 3] {
+    [0, 1, 2].map(|axis| images.signs.iter().any(|signs| signs[axis] < 0.0))
+}
+
+fn mirrored(vector: Vec3, signs: Vec3) -> Vec3 {
+    [0, 1, 2].map(|axis| signs[axis] * vector[axis])
 }
 
 impl TouchParts {
@@ -190,7 +320,7 @@ impl TouchParts {
         number: u32,
         surfaces: &'a [Surface],
         shares: &'a [Carried],
-        body: &'a Body,
+        voxels: &'a [[u32; 8]],
         first: usize,
     ) -> Side<'a> {
         let number = number as usize;
@@ -206,7 +336,7 @@ impl TouchParts {
                 let points = |surfaces: &[Surface]| surfaces.iter().map(|s| s.points.len()).sum();
                 let (start, end): (usize, usize) =
                     (points(&surfaces[..number]), points(&surfaces[..=number]));
-                (Solid::Voxels(body.voxels()), &shares[start..end])
+                (Solid::Voxels(voxels), &shares[start..end])
             }
         };
         Side {
@@ -230,82 +360,65 @@ fn frame_at(positions: &[Vec3], first: usize) -> [Vec3; 4] {
     std::array::from_fn(|i| positions[first + i])
 }
 
-/// What contact comes to where two surfaces touch.
-#[pyclass(frozen, get_all, name = "Contact", module = "voxsoft._core")]
-pub struct PyContact {
-    /// Bodies come first, then objects.
-    pub a: u32,
-    pub b: u32,
-    /// On the first, N.
-    pub force: Vec3,
-    /// The sum of the sizes of all forces, N.
-    pub pressed: f64,
-    /// The sum of all pressures, N.
-    pub pressure: f64,
-    /// The part of the force that is friction, N.
-    pub friction: Vec3,
-    /// The most that friction can be, N.
-    pub bound: f64,
-    /// In the unloaded body, m².
-    pub area: f64,
-    /// The part of it that is bonded, m².
-    pub bonded: f64,
-    /// The smallest, m.
-    pub gap: f64,
-    /// The part of the pressure under which the surfaces slip.
-    pub slipping: f64,
-}
-
-/// Where an object is.
-#[pyclass(frozen, get_all, name = "ObjectPose", module = "voxsoft._core")]
-pub struct PyObjectPose {
-    /// The middle of its box, m.
-    pub position: Vec3,
-    /// From its first pose, row by row.
-    pub rotation: [Vec3; 3],
-}
-
-/// Contact and objects over time, one entry for each record.
-#[pyclass(frozen, get_all, name = "TouchHistory", module = "voxsoft._core")]
-pub struct PyTouchHistory {
-    pub contacts: Vec<Vec<Py<PyContact>>>,
-    pub objects: Vec<Vec<Py<PyObjectPose>>>,
-    pub elastic: Vec<f64>,
-    pub kinetic: Vec<f64>,
-    pub loads: Vec<f64>,
-    pub momentum: Vec<[f64; 3]>,
-}
-
 /// Contact of a problem of Python, and where its objects begin among the vertices.
 pub(crate) struct Touching {
     pub parts: TouchParts,
+    /// What touches: all of it, also where a part is solved for.
     pub touch: Arc<Touch>,
+    /// What acts on the vertices that are solved for.
+    pub contact: Arc<dyn Contact>,
+    /// What makes the whole of these.
+    images: Option<Images>,
     pub first: usize,
 }
 
 impl Touching {
+    /// The vertices of the whole, those of objects last.
+    pub(crate) fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
+        match &self.images {
+            Some(images) => images.seen(positions).into(),
+            None => positions.into(),
+        }
+    }
+
+    /// How many of these are those of bodies.
+    pub(crate) fn own(&self) -> usize {
+        let whole = self.parts.whole.as_ref();
+        whole.map_or(self.first, |whole| whole.images.of.len())
+    }
+
+    /// The images of these in each plane of symmetry.
+    pub(crate) fn flips(&self) -> &[Flip] {
+        let whole = self.parts.whole.as_ref();
+        whole.map_or(&[], |whole| &whole.flips)
+    }
+
+    /// What touches; where a part is solved for, what counts of it.
     pub(crate) fn contacts(
         &self,
         py: Python<'_>,
         positions: &[Vec3],
     ) -> PyResult<Vec<Py<PyContact>>> {
-        to_python(py, self.touch.pairs(positions))
+        to_python(py, self.touch.pairs(&self.seen(positions)))
     }
 
-    /// Where the objects are, the vertices of the first one being those from `first` on.
-    pub(crate) fn poses(
-        &self,
-        py: Python<'_>,
-        positions: &[Vec3],
-        first: usize,
-    ) -> PyResult<Vec<Py<PyObjectPose>>> {
-        let objects = self.parts.objects.iter().enumerate();
-        let each = objects.map(|(number, object)| {
-            let now = frame_at(positions, first + 4 * number);
-            let (position, rotation) = object.frame.pose(&now);
+    /// Where the objects are, by the vertices of all of them.
+    pub(crate) fn poses(&self, py: Python<'_>, frames: &[Vec3]) -> PyResult<Vec<Py<PyObjectPose>>> {
+        let each = (0..self.parts.objects.len()).map(|number| {
+            let (position, rotation) = self.pose(number, frames);
             Py::new(py, PyObjectPose { position, rotation })
         });
         each.collect()
+    }
+
+    fn pose(&self, number: usize, frames: &[Vec3]) -> (Vec3, Mat3) {
+        let object = &self.parts.objects[number];
+        let Way::Image(of, signs) = object.way else {
+            return object.frame.pose(&frame_at(frames, 4 * number));
+        };
+        let (position, rotation) = self.pose(of, frames);
+        let turned = |i: usize| std::array::from_fn(|j| signs[i] * rotation[i][j] * signs[j]);
+        (mirrored(position, signs), std::array::from_fn(turned))
     }
 
     /// The same contact for live motion: what each surface is called, and the middle (m) of each object that is drawn.
@@ -315,7 +428,7 @@ impl Touching {
             std::array::from_fn(|i| first + i as u32)
         };
         let free = self.parts.objects.iter().enumerate();
-        let free = free.filter(|(_, object)| object.is_free());
+        let free = free.filter(|(_, object)| object.freedom().is_some());
         let place = |(number, middle): (usize, &Vec3)| Placed {
             vertices: corners(number),
             middle: *middle,
@@ -339,24 +452,4 @@ impl Touching {
         body.extend_from_slice(&all[count..]);
         body
     }
-}
-
-pub(crate) fn to_python(py: Python<'_>, pairs: Vec<PairReport>) -> PyResult<Vec<Py<PyContact>>> {
-    let each = pairs.into_iter().map(|pair| {
-        let contact = PyContact {
-            a: pair.of[0],
-            b: pair.of[1],
-            force: pair.force,
-            pressed: pair.pressed,
-            pressure: pair.pressure,
-            friction: pair.friction,
-            bound: pair.bound,
-            area: pair.area,
-            bonded: pair.bonded,
-            gap: pair.gap,
-            slipping: pair.slipping,
-        };
-        Py::new(py, contact)
-    });
-    each.collect()
 }

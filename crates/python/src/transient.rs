@@ -12,7 +12,7 @@ use voxsoft_xpbd::Answer;
 use crate::answer::PyAnswer;
 use crate::gate;
 use crate::simulate::PyProblem;
-use crate::touch::PyTouchHistory;
+use crate::touch_answer::PyTouchHistory;
 use crate::watch::{Watch, collect_sensors};
 
 /// Motion by implicit steps of `step` seconds, to `end_time` or to rest. Without a rate, `damping` is critical.
@@ -46,26 +46,23 @@ pub fn transient(
         memory,
     };
     let inner = Arc::clone(&problem.problem);
-    let touch = problem
-        .touching
-        .as_ref()
-        .map(|touching| Arc::clone(&touching.touch));
-    let first = problem.own();
+    let touching = problem.touching.as_ref().map(Arc::clone);
     let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(&inner);
     let seen: Mutex<Seen> = Mutex::default();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
         let mut see = |now: &Progress<'_>| {
             inner.body().begin(now.time);
-            if let Some(touch) = touch.as_ref().filter(|_| now.record) {
+            if let Some(touching) = touching.as_ref().filter(|_| now.record) {
+                let positions = touching.seen(now.positions);
                 let mut seen = seen.lock().expect("no holder of the lock panics");
                 // Before the first step there are no forces yet that keep what touches apart.
                 let started = now.steps > 0;
                 seen.pairs.push(if started {
-                    touch.pairs(now.positions)
+                    touching.touch.pairs(&positions)
                 } else {
                     Vec::new()
                 });
-                seen.frames.push(now.positions[first..].to_vec());
+                seen.frames.push(positions[touching.own()..].to_vec());
                 seen.motion.push(Motion::of(&inner, now));
             }
             watch.see(now, cancel)
@@ -142,11 +139,8 @@ impl Seen {
         let contacts = self
             .pairs
             .into_iter()
-            .map(|pairs| crate::touch::to_python(py, pairs));
-        let objects = self
-            .frames
-            .iter()
-            .map(|frames| touching.poses(py, frames, 0));
+            .map(|pairs| crate::touch_answer::to_python(py, pairs));
+        let objects = self.frames.iter().map(|frames| touching.poses(py, frames));
         let history = PyTouchHistory {
             contacts: contacts.collect::<PyResult<_>>()?,
             objects: objects.collect::<PyResult<_>>()?,

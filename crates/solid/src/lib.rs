@@ -67,6 +67,7 @@ mod material;
 pub mod matrix;
 mod membrane;
 mod mirrored;
+mod mirrored_contact;
 pub mod mixed;
 mod problem;
 mod rigid;
@@ -98,6 +99,7 @@ pub use loads::{
 pub use material::Material;
 pub use membrane::{Membrane, MembraneMaterial};
 pub use mirrored::{Images, Mirrored};
+pub use mirrored_contact::MirroredContact;
 pub use problem::Problem;
 pub use rigid::Rigid;
 pub use solver::{Observer, Progress, Solution, Solver, Status};

@@ -23,7 +23,7 @@ pub struct Images {
 }
 
 impl Images {
-    fn check(&self, vertices: usize) -> Result<(), ProblemError> {
+    pub(crate) fn check(&self, vertices: usize) -> Result<(), ProblemError> {
         check_indices("vertex with a mirror image", &self.of, vertices)?;
         check_indices(
             "number of signs of mirror images",
@@ -33,7 +33,7 @@ impl Images {
     }
 
     /// Vectors of the images.
-    fn seen(&self, vectors: &[Vec3]) -> Vec<Vec3> {
+    pub fn seen(&self, vectors: &[Vec3]) -> Vec<Vec3> {
         let pairs = self.of.iter().zip(&self.signs);
         pairs
             .map(|(&v, sign)| times(*sign, vectors[v as usize]))
@@ -41,23 +41,36 @@ impl Images {
     }
 
     /// Adds vectors on the images to those on the vertices.
-    fn add_to(&self, images: &[Vec3], vectors: &mut [Vec3]) {
+    pub(crate) fn add_to(&self, images: &[Vec3], vectors: &mut [Vec3]) {
         for ((&vertex, sign), vector) in self.of.iter().zip(&self.signs).zip(images) {
             axpy(&mut vectors[vertex as usize], 1.0, times(*sign, *vector));
         }
     }
 
-    /// Hands over an element of the images as one of the vertices.
-    fn visit(&self, corners: &[u32], matrix: &[f64], visit: Visitor<'_>) {
-        let size = 3 * corners.len();
+    /// Hands over an element of the images as one of the vertices, each of them once.
+    pub(crate) fn visit(&self, corners: &[u32], matrix: &[f64], visit: Visitor<'_>) {
+        let mut vertices: Vec<u32> = Vec::with_capacity(corners.len());
+        let places = corners.iter().map(|&corner| {
+            let vertex = self.of[corner as usize];
+            let found = vertices.iter().position(|v| *v == vertex);
+            found.unwrap_or_else(|| {
+                vertices.push(vertex);
+                vertices.len() - 1
+            })
+        });
+        let places: Vec<usize> = places.collect();
+        let (size, own) = (3 * corners.len(), 3 * vertices.len());
         let sign = |entry: usize| self.signs[corners[entry / 3] as usize][entry % 3];
-        let signed: Vec<f64> = (0..size * size)
-            .map(|at| sign(at / size) * matrix[at] * sign(at % size))
-            .collect();
-        visit(&self.vertices(corners), &signed);
+        let place = |entry: usize| 3 * places[entry / 3] + entry % 3;
+        let mut signed = vec![0.0; own * own];
+        for (at, value) in matrix.iter().enumerate() {
+            let (row, column) = (at / size, at % size);
+            signed[place(row) * own + place(column)] += sign(row) * value * sign(column);
+        }
+        visit(&vertices, &signed);
     }
 
-    fn vertices(&self, corners: &[u32]) -> Vec<u32> {
+    pub(crate) fn vertices(&self, corners: &[u32]) -> Vec<u32> {
         corners.iter().map(|&c| self.of[c as usize]).collect()
     }
 }

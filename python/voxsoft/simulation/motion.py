@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design import Clamp, Motion
-from voxsoft.simulation.setup import Setup
+
+if TYPE_CHECKING:
+    from voxsoft.simulation.setup import Setup
 
 
 def held_axes(setup: Setup) -> NDArray[np.bool_]:

@@ -23,6 +23,7 @@ from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
 from voxsoft.simulation.result import Recording, Result, Status
 from voxsoft.simulation.sector_setup import SectorSetup
+from voxsoft.simulation.sector_touching import refuse_control
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import refuse_contact
@@ -100,6 +101,7 @@ def simulate(
     solver = _settings(given.solver, settings)
     check_solver(given, solver, {"record_interval": record_interval, "frames": frames})
     method = method_of(given, solver)
+    refuse_control(given, getattr(method, "control", None))
     if isinstance(design, Setup):
         setup = design
         _check_refinement(setup, settings)

@@ -15,9 +15,11 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.joined import edge_directions
 from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
+from voxsoft.simulation.sector_bodies import BodyImages
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -49,6 +51,8 @@ class Sector:
         For each vertex of the whole, the vertex of the sector whose image it is, (n,).
     signs
         For each vertex of the whole, by what a vector is multiplied on the way there, (n, 3).
+    body_images
+        For each plane the number of the image of each body.
     """
 
     planes: tuple[Symmetry, ...]
@@ -57,9 +61,10 @@ class Sector:
     vertices: Ints = field(repr=False)
     source: Ints = field(repr=False)
     signs: Floats = field(repr=False)
+    body_images: tuple[list[int], ...] = field(repr=False)
 
     @classmethod
-    def of(cls, planes: Sequence[Symmetry], mesh: Mesh) -> Self:
+    def of(cls, planes: Sequence[Symmetry], mesh: Mesh, kinds: Ints | None = None) -> Self:
         """Find the sector of a mesh.
 
         Parameters
@@ -67,7 +72,10 @@ class Sector:
         planes
             One or more, across different axes.
         mesh
-            The whole body.
+            The whole body, or several bodies that are images of themselves or of each other.
+        kinds
+            For each part from 1 on, a number that parts of one material share; default: every part
+            is mirrored to itself.
 
         Raises
         ------
@@ -83,9 +91,11 @@ class Sector:
         (15, 4)
         """
         size = mesh.voxel_size
-        if size is None or mesh.bodies:
-            what = "is known for one body of voxels only"
-            raise DesignError("symmetry", what, "leave the plane out, or take one of the bodies")
+        if size is None:
+            what = "is known for bodies of voxels only"
+            raise DesignError("symmetry", what, "leave the plane out")
+        if mesh.bodies:
+            return cls._of_bodies(planes, mesh, kinds)
         lattice = _Lattice(mesh, planes, size)
         for index, plane in enumerate(planes):
             lattice.check_plane(plane, f"symmetry[{index}]")
@@ -98,7 +108,22 @@ class Sector:
         signs[:, axes] = np.where(keys[:, axes] < 0, -1.0, 1.0)
         kept = np.flatnonzero((keys[:, axes] >= 0).all(axis=1))
         source = _found_in(keys[kept], folded)
-        return cls(tuple(planes), mesh, images, kept, source, signs)
+        return cls(tuple(planes), mesh, images, kept, source, signs, ([0],) * len(planes))
+
+    @classmethod
+    def _of_bodies(cls, planes: Sequence[Symmetry], mesh: Mesh, kinds: Ints | None) -> Self:
+        """The sector of several bodies."""
+        parts = np.arange(int(mesh.tet_part.max())) if kinds is None else kinds
+        found = BodyImages(mesh, planes, parts)
+        source = np.arange(len(mesh.vertices))
+        signs = np.ones((len(source), 3))
+        for plane, image, here in zip(planes, found.vertices, found.kept.T, strict=True):
+            source = np.where(here, source, image[source])
+            signs[:, plane.axis] = np.where(here, 1.0, -1.0)
+        kept = np.flatnonzero(found.kept.all(axis=1))
+        numbers = np.full(len(source), -1)
+        numbers[kept] = np.arange(len(kept))
+        return cls(tuple(planes), mesh, found.vertices, kept, numbers[source], signs, found.bodies)
 
     @property
     def axes(self) -> list[int]:
@@ -146,6 +171,12 @@ class Sector:
         """The voxels of the whole that are in the sector."""
         corners = self.whole.tets.reshape(-1, 20)
         return np.flatnonzero((self.numbers[corners] >= 0).all(axis=1))
+
+    @cached_property
+    def directions(self) -> Floats | None:
+        """The directions of the edges of its voxels, (v, 9); None where all are along the axes."""
+        found = edge_directions(self.whole)
+        return None if found is None else found[self.voxels]
 
     @cached_property
     def mesh(self) -> Mesh:

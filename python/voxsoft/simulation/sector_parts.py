@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, NoReturn
+from dataclasses import dataclass, replace
+from typing import Any, Final, NoReturn, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
+from voxsoft.design.symmetry import Symmetry
 from voxsoft.errors import DesignError
+from voxsoft.geometry import rotation_matrix
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.touching import CoreHistory
 
@@ -18,7 +21,43 @@ Indices = NDArray[np.uint32]
 #: How far loads may be from symmetric, as a part of the largest: sums in different orders.
 _ROUNDING: Final = 1e-9
 
+#: Parts of a motion at which it is compared with its image: a turn is not linear in its angle.
+_PARTS: Final = (1.0, 0.5)
+#: The kind of a load and its history.
+_Key: TypeAlias = tuple[str, tuple[tuple[float, ...], ...] | None]
+
 _HINT: Final = "make it symmetric, or leave the plane of symmetry out"
+
+
+def _key(history: CoreHistory) -> tuple[tuple[float, ...], ...] | None:
+    return None if history is None else tuple(tuple(each) for each in history)
+
+
+@dataclass(frozen=True)
+class _Lone:
+    """The sum of loads of one kind and history that have no image alone, on vertices."""
+
+    where: str
+    what: str
+    values: Floats
+
+
+@dataclass(frozen=True)
+class _Clamp:
+    """A clamp of the whole."""
+
+    where: str
+    motion: dict[str, Any]
+
+    def displaced(self, points: Floats, part: float) -> Floats:
+        """By how much a part of its motion moves points, whatever its history."""
+        found = np.zeros_like(points)
+        if self.motion.get("angle"):
+            arm = points - np.asarray(self.motion["center"])
+            matrix = rotation_matrix(self.motion["axis"], part * self.motion["angle"])
+            found = arm @ matrix.T - arm
+        displacement = self.motion.get("displacement")
+        return found if displacement is None else found + part * np.asarray(displacement)
 
 
 class SectorParts:
@@ -44,7 +83,10 @@ class SectorParts:
         self.where = ""
         self._sector = sector
         self._spanning = spanning
-        self._held = np.zeros((len(sector.vertices), 3), dtype=bool)
+        #: The clamp that decides on each axis of each vertex of the whole, -1 where none does.
+        self._decides = np.full((len(sector.whole.vertices), 3), -1)
+        self._clamps: list[_Clamp] = []
+        self._lone: dict[_Key, _Lone] = {}
 
     def membrane(self, triangles: Indices, **sheet: float) -> None:
         """Take a layer."""
@@ -64,28 +106,71 @@ class SectorParts:
     def clamp(self, vertices: Indices, axes: list[bool], **motion: Any) -> None:  # noqa: ANN401 - as the core takes them
         """Take a clamp."""
         sector = self._sector
-        self._check_symmetric(np.ones((len(vertices), 1)), vertices[:, None], "what it holds")
-        displacement = np.asarray(motion.get("displacement") or np.zeros(3))
-        self._check_along_planes(displacement, "its displacement")
+        self._decides[np.ix_(vertices, np.flatnonzero(axes))] = len(self._clamps)
+        self._clamps.append(_Clamp(self.where, motion))
         if motion.get("angle"):
-            turn = np.asarray(motion["axis"])
-            for plane in sector.planes:
-                across = np.delete(turn, plane.axis)
-                if np.abs(across).max() > _ROUNDING:
-                    self._refuse(f"turns the plane of symmetry across {plane.plane}")
             motion = motion | {"center": (np.asarray(motion["center"]) - sector.origin).tolist()}
         mine = sector.numbers[vertices]
-        mine = mine[mine >= 0]
-        self._held[mine] |= axes
-        self.kept.clamp(mine.astype(np.uint32), axes, **motion)
+        self.kept.clamp(mine[mine >= 0].astype(np.uint32), axes, **motion)
 
     def hold_planes(self) -> None:
         """Hold what is on the planes along their normals, where no clamp does."""
+        held = self._decides[self._sector.vertices] >= 0
         for axis, on in zip(self._sector.axes, self._sector.on_planes.T, strict=True):
-            free = on[self._sector.vertices] & ~self._held[:, axis]
+            free = on[self._sector.vertices] & ~held[:, axis]
             if free.any():
                 found = np.flatnonzero(free).astype(np.uint32)
                 self.kept.clamp(found, [axis == each for each in range(3)])
+
+    def check(self) -> None:
+        """Check what is symmetric only together: clamps, and loads that are images of each other.
+
+        Raises
+        ------
+        DesignError
+            The first that has no image.
+        """
+        self._check_clamps()
+        for (_, history), lone in self._lone.items():
+            found = self._asymmetry(lone.values)
+            if found is not None:
+                self.where = lone.where
+                also = "" if history is None else " with its history"
+                self._refuse(f"is not symmetric: {lone.what} has no image across {found}{also}")
+
+    def _check_clamps(self) -> None:
+        """Raise unless the image of what is held is held, and goes where its image goes."""
+        whole, decides = self._sector.whole, self._decides
+        for plane, image in zip(self._sector.planes, self._sector.images, strict=True):
+            self._check_held((decides >= 0) != (decides[image] >= 0), "what it holds", plane, image)
+            histories = [clamp.motion.get("history") for clamp in self._clamps]
+            keys = [histories.index(each) for each in histories]
+            key = np.array([*keys, -1])
+            self._check_held(key[decides] != key[decides[image]], "its history", plane, image)
+            for part in _PARTS:
+                moved = np.zeros_like(whole.vertices)
+                for number, clamp in enumerate(self._clamps):
+                    rows = (decides == number).any(axis=1)
+                    away = clamp.displaced(whole.vertices[rows], part)
+                    moved[rows] = np.where(decides[rows] == number, away, moved[rows])
+                mirrored = moved[image]
+                mirrored[:, plane.axis] *= -1.0
+                off = np.abs(mirrored - moved)
+                allowed = _ROUNDING * max(float(np.abs(moved).max(initial=0.0)), 1e-300)
+                self._check_held(off > allowed, "its motion", plane, image)
+
+    def _check_held(
+        self, differs: NDArray[np.bool_], what: str, plane: Symmetry, image: NDArray[np.int64]
+    ) -> None:
+        if not differs.any():
+            return
+        vertex, axis = np.argwhere(differs)[0]
+        number = self._decides[vertex, axis]
+        if number < 0:
+            number = self._decides[image[vertex], axis]
+            vertex = image[vertex]
+        self.where = self._clamps[number].where
+        self._refuse(f"is not symmetric: {what} has no image across {self._at(vertex, plane)}")
 
     def gravity(self, acceleration: list[float], history: CoreHistory) -> None:
         """Take an acceleration of the whole body."""
@@ -103,7 +188,7 @@ class SectorParts:
         """Take a pressure on triangles, of a cavity if they are `closed` in the whole body."""
         sector = self._sector
         own, spanning = self._split(triangles)
-        self._check_symmetric(np.ones((len(own), 1)), own, "what it presses on")
+        self._add(("pressure", _key(history)), np.full((len(own), 1), value), own, "its pressure")
         within = None
         if voids is not None:
             tets, parts = voids
@@ -136,7 +221,7 @@ class SectorParts:
     def forces(self, vertices: Indices, forces: Floats, history: CoreHistory) -> None:
         """Take dead forces on vertices; those on planes are shared by the parts of the body."""
         sector = self._sector
-        self._check_symmetric(forces, vertices[:, None], "its force")
+        self._add(("force", _key(history)), forces, vertices[:, None], "its force")
         mine = forces * sector.shares[vertices, None]
         inside = sector.numbers[vertices] >= 0
         found = sector.numbers[vertices[inside]].astype(np.uint32)
@@ -160,21 +245,46 @@ class SectorParts:
             if abs(vector[plane.axis]) > _ROUNDING * max(float(np.abs(vector).max()), 1e-300):
                 self._refuse(f"is not symmetric: {what} points across {plane.plane}")
 
+    def _add(self, key: _Key, values: Floats, elements: NDArray[Any], what: str) -> None:
+        """Take values of a load on elements, which others of its kind may be the image of."""
+        whole = self._on_vertices(values, elements)
+        if self._asymmetry(whole) is None:
+            return
+        before = self._lone.get(key)
+        if before is None:
+            self._lone[key] = _Lone(self.where, what, whole)
+        else:
+            self._lone[key] = replace(before, values=before.values + whole)
+
     def _check_symmetric(self, values: Floats, elements: NDArray[Any], what: str) -> None:
-        """Raise unless values on elements, (e, 1) or vectors (e, 3), are their own images."""
+        """Raise unless values on elements, (e, 1), are their own images."""
+        found = self._asymmetry(self._on_vertices(values, elements))
+        if found is not None:
+            self._refuse(f"is not symmetric: {what} has no image across {found}")
+
+    def _on_vertices(self, values: Floats, elements: NDArray[Any]) -> Floats:
+        """Sums over the vertices of the whole of values on elements, (e, 1) or vectors (e, 3)."""
         whole = np.zeros((len(self._sector.whole.vertices), values.shape[1]))
         for corner in elements.T:
             np.add.at(whole, corner, values)
+        return whole
+
+    def _asymmetry(self, whole: Floats) -> str | None:
+        """The plane and place where values on vertices are not their own images; None if none."""
         size = max(float(np.abs(whole).max(initial=0.0)), 1e-300)
         for plane, image in zip(self._sector.planes, self._sector.images, strict=True):
             mirrored = whole[image]
-            if values.shape[1] == 3:
+            if whole.shape[1] == 3:
                 mirrored[:, plane.axis] *= -1.0
             off = np.abs(mirrored - whole).max(axis=1)
             if off.max(initial=0.0) > _ROUNDING * size:
-                x, y, z = 1e3 * self._sector.whole.vertices[int(off.argmax())]
-                at = f"at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
-                self._refuse(f"is not symmetric: {what} has no image across {plane.plane} {at}")
+                return self._at(int(off.argmax()), plane)
+        return None
+
+    def _at(self, vertex: int, plane: Symmetry) -> str:
+        """A plane, and a vertex of the whole that it is told of."""
+        x, y, z = 1e3 * self._sector.whole.vertices[vertex]
+        return f"{plane.plane} at ({x:.1f}, {y:.1f}, {z:.1f}) mm"
 
     def _refuse(self, what: str, hint: str = _HINT) -> NoReturn:
         raise DesignError(self.where, what, hint)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Final, Self
@@ -15,6 +16,7 @@ from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.result import Recording, Result
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.setup import Setup, core_problem
+from voxsoft.simulation.touching import Pose, Touching
 
 Floats = NDArray[np.float64]
 
@@ -56,9 +58,13 @@ class SectorSetup(Setup):
     def problem(self) -> _core.Problem:
         """The problem of the sector, held at its planes."""
         parts = self.whole.sector_parts
-        return core_problem(
-            self.mesh, core_materials(self.design, self.materials, self.origin), parts
-        )
+        materials = core_materials(self.design, self.materials, self.origin)
+        return core_problem(self.mesh, materials, parts, self.sector.directions)
+
+    @property
+    def touching(self) -> Touching | None:
+        """Contact of the whole: the problem of the sector has all of it."""
+        return self.whole.sector_touching
 
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:
@@ -90,7 +96,8 @@ class SectorSetup(Setup):
         sector, count = self.sector, self.sector.count
         reactions = self._reactions(result.reactions)
         positions = sector.places(result.positions)
-        load, load_moment = self._loads(result)
+        load, load_moment = self._totals(result.load, result.load_moment)
+        reaction, reaction_moment = self._totals(result.reaction, result.reaction_moment)
         recording = result.recording
         probes = {
             name: sum(
@@ -111,8 +118,8 @@ class SectorSetup(Setup):
             positions=positions,
             velocities=sector.unfolded(result.velocities),
             reactions=reactions,
-            reaction=_triple(reactions.sum(axis=0)),
-            reaction_moment=_triple(np.cross(positions, reactions).sum(axis=0)),
+            reaction=reaction,
+            reaction_moment=reaction_moment,
             load=load,
             load_moment=load_moment,
             elastic_energy=count * result.elastic_energy,
@@ -122,7 +129,20 @@ class SectorSetup(Setup):
                 times=recording.times,
                 probes=probes,
                 frames=sector.places(frames) if len(frames) else frames,
+                contacts=recording.contacts,
+                objects={
+                    name: (positions + self.origin, turns)
+                    for name, (positions, turns) in recording.objects.items()
+                },
+                elastic_energy=count * recording.elastic_energy,
+                kinetic_energy=count * recording.kinetic_energy,
+                load_potential=count * recording.load_potential,
+                momentum=sum(
+                    (sign * recording.momentum for sign, _ in sector.patterns()),
+                    start=np.zeros_like(recording.momentum),
+                ),
             ),
+            objects=self._poses(result.objects),
             # What breaks the symmetry is not seen in the sector.
             stable=None if result.stable else result.stable,
         )
@@ -136,9 +156,11 @@ class SectorSetup(Setup):
             found[on, axis] = 0.0
         return found
 
-    def _loads(self, result: Result) -> tuple[tuple[float, float, float], ...]:
-        """The sum of all loads and of their moments about the origin, over all parts."""
-        force, own = np.array(result.load), np.array(result.load_moment)
+    def _totals(
+        self, of: tuple[float, float, float], about: tuple[float, float, float]
+    ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+        """The sum of forces and of their moments about the origin over all parts, of one part's."""
+        force, own = np.array(of), np.array(about)
         total, moment = np.zeros(3), np.zeros(3)
         for sign, _ in self.sector.patterns():
             image = sign * force
@@ -146,6 +168,13 @@ class SectorSetup(Setup):
             # A mirror image turns the other way round.
             moment += np.prod(sign) * sign * own + np.cross(self.sector.origin, image)
         return _triple(total), _triple(moment)
+
+    def _poses(self, poses: Mapping[str, Pose]) -> dict[str, Pose]:
+        """Poses of objects, which the core knows all of, from the sector's frame."""
+        return {
+            name: replace(pose, position=_triple(np.array(pose.position) + self.origin))
+            for name, pose in poses.items()
+        }
 
 
 def _triple(vector: Floats) -> tuple[float, float, float]:

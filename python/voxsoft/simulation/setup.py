@@ -42,7 +42,9 @@ from voxsoft.simulation.materials import core_materials, solid_materials
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.sector import Sector
+from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
+from voxsoft.simulation.sector_touching import SectorTouching
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (
@@ -192,14 +194,21 @@ class Setup:
         if planes and has_supplies(self.design):
             what = "is not known together with supplies yet"
             raise DesignError("symmetry", what, "leave the planes out, or give pressure loads")
-        if planes and has_contact(self.design):
-            what = "is not known together with contact yet"
-            raise DesignError("symmetry", what, "leave contact and objects out, or the planes")
         if not planes:
             return None
-        found = Sector.of(planes, self.mesh)
+        if self.mesh.bodies:
+            self._refuse_with_bodies()
+        found = Sector.of(planes, self.mesh, kinds_of(self.design.parts))
         check_fiber_symmetry(self.design)
         return found
+
+    def _refuse_with_bodies(self) -> None:
+        """What of several bodies has no image that is known."""
+        fibers = any(part.fibers for part in self.design.parts)
+        for what, there in (("fibers", fibers), ("activations", bool(self.design.activations))):
+            if there:
+                message = f"is not known together with several bodies that have {what} yet"
+                raise DesignError("symmetry", message, f"leave the planes out, or the {what}")
 
     @cached_property
     def sector_parts(self) -> _core.ProblemParts:
@@ -214,11 +223,21 @@ class Setup:
         spanning = [np.zeros((0, 3), np.int32), *(layer.spanning for layer in self.layers)]
         parts = SectorParts(self.sector, np.concatenate(spanning))
         self._give_to(parts)
-        if self.design.floor is not None:
+        parts.check()
+        if self.sector_touching is not None:
+            self.sector_touching.give_to(parts.kept)
+        elif self.design.floor is not None:
             parts.where = "floor"
             parts.floor(self.design.floor.z)
         parts.hold_planes()
         return parts.kept
+
+    @cached_property
+    def sector_touching(self) -> SectorTouching | None:
+        """Contact of the part that is solved with all of the body, where the design has it."""
+        if self.sector is None or not has_contact(self.design):
+            return None
+        return SectorTouching(self.design, self.mesh, self.sector)
 
     @cached_property
     def problem(self) -> _core.Problem:
@@ -449,7 +468,10 @@ def _loose_piece(mesh: Mesh, held: NDArray[np.bool_]) -> NDArray[np.int32] | Non
 
 
 def core_problem(
-    mesh: Mesh, materials: list[_core.Material], parts: _core.ProblemParts
+    mesh: Mesh,
+    materials: list[_core.Material],
+    parts: _core.ProblemParts,
+    directions: NDArray[np.float64] | None = None,
 ) -> _core.Problem:
     """The problem of the Rust core.
 
@@ -461,10 +483,14 @@ def core_problem(
         One for each part, as :func:`~voxsoft.simulation.materials.core_materials` gives them.
     parts
         Membranes, clamps and loads.
+    directions
+        Of the edges of voxels, (v, 9); default: those of the bodies of the mesh.
     """
     if mesh.fractions is not None:
         parts.fractions(mesh.fractions, mesh.moments)
-    if (directions := edge_directions(mesh)) is not None:
+    if directions is None:
+        directions = edge_directions(mesh)
+    if directions is not None:
         parts.axes(directions)
     blocks = mesh.tet_voxel if mesh.tet_voxel is not None else np.arange(len(mesh.tets))
     return _core.Problem(

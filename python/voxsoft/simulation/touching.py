@@ -19,6 +19,7 @@ from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.apart import TOUCH, Surface, overlap_of, way_out
 from voxsoft.simulation.rigid import Solid, surface_of
+from voxsoft.simulation.sharing import Sharing
 from voxsoft.simulation.skin import skin_of, touches_with_skin
 from voxsoft.units import format_quantity
 
@@ -252,7 +253,12 @@ class Touching:
 
     @cached_property
     def surfaces(self) -> tuple[Surface, ...]:
-        """The surface of each object, apart from the body and what else it may touch.
+        """The surface of each object, apart from the body and what else it may touch."""
+        return self.separated
+
+    @cached_property
+    def separated(self) -> tuple[Surface, ...]:
+        """The surface of each object as it is traced.
 
         With ``separate = true`` those that were in something are moved out of it.
         """
@@ -370,30 +376,54 @@ class Touching:
         vertices = np.hstack([middle[:2] + reach * corners, level])
         return Surface(vertices, np.array([[0, 1, 2], [0, 2, 3]], dtype=np.uint32))
 
-    def give_to(self, parts: _core.ProblemParts) -> None:
-        """Add it to the parts of a problem."""
+    def give_to(
+        self,
+        parts: _core.ProblemParts,
+        origin: NDArray[np.float64] | None = None,
+        sharing: Sequence[Sharing] | None = None,
+    ) -> None:
+        """Add it to the parts of a problem.
+
+        Parameters
+        ----------
+        parts
+            Of the problem.
+        origin
+            Where that has its origin, (3,), m; default: where the design has it.
+        sharing
+            How each object is solved for; default: all by themselves.
+        """
+        shift = np.zeros(3) if origin is None else origin
         for body, skin in zip(self.mesh.each_body, self.skins, strict=True):
             triangles = (body.mesh.triangles + body.first_vertex).astype(np.uint32)
             size = body.mesh.voxel_size or self.design.voxel_size
             count = len(body.mesh.vertices)
             parts.touch(triangles, size, _SAMPLES, skin, body.first_vertex, count)
-        for each, surface, solid in zip(
-            self.design.objects, self.surfaces, self.solids, strict=True
+        shared = sharing or [Sharing()] * len(self.design.objects)
+        for each, surface, solid, own in zip(
+            self.design.objects, self.surfaces, self.solids, shared, strict=True
         ):
-            if solid is not None:
+            points, triangles = surface.vertices - shift, surface.triangles
+            if own.of is not None:
+                parts.image_object(points, triangles, own.of, own.signs)
+            elif solid is not None:
                 parts.free_object(
-                    surface.vertices,
-                    surface.triangles,
+                    points,
+                    triangles,
                     solid.mass,
-                    solid.center,
+                    (np.array(solid.center) - shift).tolist(),
                     solid.axes,
                     solid.radii,
+                    own.share,
+                    own.held,
                 )
             else:
                 motion = motion_arguments(each.way)
-                parts.object(surface.vertices, surface.triangles, **motion)
+                if "center" in motion:
+                    motion["center"] = (np.array(motion["center"]) - shift).tolist()
+                parts.object(points, triangles, **motion)
         if self.floor is not None:
-            parts.object(self.floor.vertices, self.floor.triangles)
+            parts.object(self.floor.vertices - shift, self.floor.triangles)
         parts.friction(self.friction)
         for bond in self.bonds:
             parts.bond(*bond.of, self.reach, bond.strength)

@@ -4,7 +4,7 @@
 //! surface that it stands for and that lies toward them: a vertex on the edge of a block stands for a part of its side
 //! too, which nothing presses. As points move bilinearly with their faces, an even pressure comes out even.
 
-use voxsoft_solid::vector::{Vec3, axpy, dot, scale};
+use voxsoft_solid::vector::{Vec3, add, axpy, dot, scale};
 
 use super::gap::{area, normal, unit};
 use super::{Carried, Spot, Touch};
@@ -25,10 +25,38 @@ pub struct ContactField {
     pub area: Vec<f64>,
 }
 
+/// The images of all vertices of bodies in a plane of symmetry.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Flip {
+    /// Across the plane.
+    pub axis: usize,
+    /// Of each vertex.
+    pub images: Vec<u32>,
+}
+
+impl Flip {
+    /// Adds to what vertices have what their images have.
+    fn add<T: Copy>(&self, of: &mut Vec<T>, sum: impl Fn(T, T) -> T) {
+        let images = self.images.iter().map(|&v| of[v as usize]);
+        *of = of
+            .iter()
+            .zip(images)
+            .map(|(own, image)| sum(*own, image))
+            .collect();
+    }
+
+    fn add_vectors(&self, of: &mut Vec<Vec3>) {
+        self.add(of, |own, mut image| {
+            image[self.axis] = -image[self.axis];
+            add(own, image)
+        });
+    }
+}
+
 impl Touch {
     /// What touches bodies at `positions`, with the multipliers of the last correction. Their vertices are the first
-    /// `count`.
-    pub fn field(&self, positions: &[Vec3], count: usize) -> ContactField {
+    /// `count`. With planes of symmetry, of all images.
+    pub fn field(&self, positions: &[Vec3], count: usize, flips: &[Flip]) -> ContactField {
         let state = self.read();
         let mut pressed = vec![0.0; count];
         let mut direction = vec![[0.0; 3]; count];
@@ -48,6 +76,11 @@ impl Touch {
                 axpy(&mut friction[vertex], sign * share, found.force);
             });
         });
+        for flip in flips {
+            flip.add(&mut pressed, |own, image| own + image);
+            flip.add_vectors(&mut direction);
+            flip.add_vectors(&mut friction);
+        }
         let points = self.points_at(positions);
         let area = self.areas(&points, &direction);
         let over = |area: f64| if area > 0.0 { 1.0 / area } else { 0.0 };
@@ -64,6 +97,9 @@ impl Touch {
             ) {
                 gap[*vertex as usize] = meeting.gap;
             }
+        }
+        for flip in flips {
+            flip.add(&mut gap, f64::min);
         }
         ContactField {
             pressure: pressed,
@@ -167,7 +203,7 @@ mod tests {
     #[test]
     fn an_even_pressure_is_even_and_sums_to_the_force() {
         let (touch, positions) = stacked();
-        let field = touch.field(&positions, 8);
+        let field = touch.field(&positions, 8, &[]);
         let pairs = touch.pairs(&positions);
         let force = pairs[0].force[2];
         assert!(force > 0.0, "{pairs:?}");

@@ -3,6 +3,7 @@
 use voxsoft_solid::matrix::Mat3;
 use voxsoft_solid::vector::{Vec3, axpy, dot, norm, scale, sub};
 
+use super::gap::unit;
 use super::state::{Memory, State};
 use super::{Spot, Touch};
 
@@ -28,7 +29,10 @@ impl Touch {
         let memory = &state.now[sample as usize];
         let point = self.place(sample, memory.along, points);
         let k = state.stick * self.penalty(sample);
-        Friction::new(memory, k, point, |triangle| self.corners(triangle, points))
+        let free = self.free_ways(sample, point, points);
+        Friction::new(memory, k, point, free, |triangle| {
+            self.corners(triangle, points)
+        })
     }
 }
 
@@ -43,16 +47,26 @@ impl Friction {
         }
     }
 
-    /// That of a sample at `point` with a penalty of slip `k` (N/m); `None` without a bound or an anchor.
+    /// That of a sample at `point` with a penalty of slip `k` (N/m), which moves along the axes that are `free`; `None` without
+    /// a bound or an anchor.
     pub(super) fn new(
         memory: &Memory,
         k: f64,
         point: Vec3,
+        free: [bool; 3],
         corners_of: impl FnOnce(u32) -> [Vec3; 3],
     ) -> Option<Self> {
         let anchor = memory.anchor.filter(|_| memory.bound > 0.0)?;
-        let n = memory.plane;
-        let along = |v: Vec3| sub(v, scale(dot(v, n), n));
+        let kept = |v: Vec3| [0, 1, 2].map(|axis| if free[axis] { v[axis] } else { 0.0 });
+        let n = if free == [true; 3] {
+            memory.plane
+        } else {
+            unit(kept(memory.plane))
+        };
+        let along = |v: Vec3| {
+            let v = kept(v);
+            sub(v, scale(dot(v, n), n))
+        };
         let mut slip = point;
         for (weight, corner) in anchor.1.iter().zip(corners_of(anchor.0)) {
             axpy(&mut slip, -weight, corner);
@@ -68,7 +82,7 @@ impl Friction {
         };
         let stiffness = std::array::from_fn(|i| {
             std::array::from_fn(|j| {
-                let plane = if i == j { 1.0 } else { 0.0 } - n[i] * n[j];
+                let plane = if i == j && free[i] { 1.0 } else { 0.0 } - n[i] * n[j];
                 if slips {
                     let across = plane - trial[i] * trial[j] / (size * size);
                     k * memory.bound / size * across

@@ -46,6 +46,9 @@ impl Touch {
         let all = 0..self.triangles.len() as u32;
         let normals: Vec<Vec3> = all.map(|t| normal(self.corners(t, accepted))).collect();
         let meets = |index: usize| {
+            if self.weight(index as u32) == 0.0 {
+                return Vec::new();
+            }
             let ends = self.samples[index].ends.map(|p| p as usize);
             let bounds = Bounds::of(ends.into_iter().flat_map(|p| [accepted[p], points[p]]));
             let mut found = Vec::new();

@@ -142,7 +142,7 @@ impl LiveTouch {
         }
         let point = self.point(sample, positions);
         let k = state.stick * self.touch.penalty(sample);
-        Friction::new(memory, k, point, |triangle| {
+        Friction::new(memory, k, point, [true; 3], |triangle| {
             self.corners(triangle, positions)
         })
     }

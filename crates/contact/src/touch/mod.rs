@@ -31,6 +31,7 @@ mod listing;
 pub mod live;
 mod mortar;
 mod path;
+mod planes;
 mod predicted;
 mod recording;
 mod report;
@@ -46,7 +47,7 @@ use voxsoft_solid::vector::{Vec3, axpy, dot, scale, sub};
 use voxsoft_solid::{Contact, ProblemError};
 
 use bonds::Bond;
-pub use field::ContactField;
+pub use field::{ContactField, Flip};
 use gap::normal;
 pub use report::PairReport;
 use state::{Facing, Memory, State};
@@ -118,6 +119,12 @@ pub struct Touch {
     shares: Vec<Carried>,
     /// Where they are in the unloaded design, m.
     rest_points: Vec<Vec3>,
+    /// The axes across planes of symmetry through the origin.
+    planes: [bool; 3],
+    /// With these, the part of each sample that counts: none of those on the negative sides, which are images.
+    weights: Vec<f64>,
+    /// With these, the point that each is an image of, itself where it counts.
+    twins: Vec<u32>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// The surface of each.
@@ -268,6 +275,9 @@ impl Touch {
             bodies: 1,
             shares: Vec::new(),
             rest_points,
+            planes: [false; 3],
+            weights: Vec::new(),
+            twins: Vec::new(),
             triangles,
             surface_of,
             around,
@@ -349,8 +359,9 @@ impl Touch {
 
     /// The area for which a sample has a penalty, m².
     fn stiff_area(&self, sample: u32) -> f64 {
+        let weight = self.weight(sample);
         let sample = &self.samples[sample as usize];
-        sample.area.max(self.least_area[sample.surface as usize])
+        weight * sample.area.max(self.least_area[sample.surface as usize])
     }
 
     /// The gap that a sample keeps, m.

@@ -56,7 +56,8 @@ impl PairReport {
 }
 
 impl Touch {
-    /// What touches at `positions`, with the multipliers of the last correction; ascending.
+    /// What touches at `positions`, with the multipliers of the last correction; ascending. With planes of symmetry what
+    /// counts of it, to which the caller adds the images.
     pub fn pairs(&self, positions: &[Vec3]) -> Vec<PairReport> {
         let state = self.read();
         let mut found: BTreeMap<[u32; 2], (PairReport, [f64; 2])> = BTreeMap::new();
@@ -93,6 +94,9 @@ impl Touch {
             report.gap = report.gap.min(meeting.gap);
             report.slipping += slipping;
         });
+        for (point, twin) in self.twins.iter().enumerate() {
+            pressed_samples[point] = pressed_samples[*twin as usize];
+        }
         self.each_between(&state, positions, &pressed_samples, |meeting, points| {
             if let Some((_, areas)) = found.get_mut(&self.surfaces_of(meeting)) {
                 areas[self.side(meeting)] += self.area_toward(meeting, points);
@@ -139,12 +143,13 @@ impl Touch {
     /// The area of a sample in the unloaded body, as far as it lies toward what it meets.
     fn area_toward(&self, meeting: &Meeting, points: &[Vec3]) -> f64 {
         let sample = &self.samples[meeting.sample as usize];
+        let area = self.weight(meeting.sample) * sample.area;
         let facing = |t: &&u32| {
             let own = normal(self.corners(**t, points));
             dot(own, meeting.normal) < -0.5
         };
         let part = sample.triangles.iter().filter(facing).count();
-        sample.area * part as f64 / sample.triangles.len() as f64
+        area * part as f64 / sample.triangles.len() as f64
     }
 
     /// Hands over every sample that is not pressed, and lies near what it meets and between some that are.
