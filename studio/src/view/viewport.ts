@@ -223,7 +223,9 @@ export class Viewport {
     chooseFace(null);
     this.painter.backdrop.ground.lay(box);
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
-    if (this.fitNext) this.rig.fit(box, true);
+    // A body that has grown out of a picture that no hand has placed is taken in whole.
+    const outgrown = !this.rig.steered && !this.rig.holds(box);
+    if (this.fitNext || outgrown) this.rig.fit(box, true);
     this.fitted = this.fitNext ? id : 0;
     this.fitNext = false;
   }

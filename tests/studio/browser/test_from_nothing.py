@@ -41,11 +41,7 @@ class Hand:
     def key(self, key):
         self.tab.page.locator(".viewport canvas").focus()
         self.tab.page.keyboard.press(key)
-        # The camera is where the key put it once it has been drawn.
-        self.tab.page.evaluate(
-            "() => new Promise((drawn) => "
-            "requestAnimationFrame(() => requestAnimationFrame(() => drawn(null))))"
-        )
+        drawn(self.tab)
         self.actions += 1
 
     def body(self, dx=0, dy=0):
@@ -74,11 +70,19 @@ MIDDLE_OF_FACE = """([axis, side]) => {
 }"""
 
 
+def drawn(tab):
+    """The camera is where a key or a new body put it once it has been drawn."""
+    tab.page.evaluate(
+        "() => new Promise((drawn) => "
+        "requestAnimationFrame(() => requestAnimationFrame(() => drawn(null))))"
+    )
+
+
 def renewed(tab, change):
     """Make a change, and wait until the body that comes of it is shown."""
     topology = tab.page.evaluate("voxsoft.topology")
     change()
-    tab.until(f"voxsoft.topology !== {topology} && voxsoft.triangles > 0")
+    tab.until(f"voxsoft.topology !== {topology} && voxsoft.vertexPosition(0) !== null")
 
 
 def first_shape(tab, hand, kind):
@@ -141,9 +145,10 @@ def test_a_bending_finger_with_a_layer_from_nothing(serving, tmp_path, open_tab)
         entry.get_by_role("button", expanded=False).first.click()
         hand.actions += 1
         for axis, size in (("x", "100 mm"), ("z", "30 mm")):
-            hand.number(entry.get_by_label(f"Size {axis}", exact=True), size)
+            field = entry.get_by_label(f"Size {axis}", exact=True)
+            renewed(tab, lambda field=field, size=size: hand.number(field, size))
         renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
-        hand.key("f")
+        drawn(tab)
         for axis, side, verb in ((0, 1, "clamp"), (2, 1, "layer")):
             hand.face(axis, side)
             hand.here(f"here-{verb}")
