@@ -6,7 +6,7 @@ pub enum Material {
     /// Springs on edges and a bulk stiffness in tetrahedra.
     Lattice(LatticeMaterial),
     /// An energy of the stretch, carried by voxels.
-    Hyperelastic(HyperelasticMaterial),
+    Hyperelastic(Box<HyperelasticMaterial>),
 }
 
 impl Material {
@@ -43,6 +43,6 @@ impl From<LatticeMaterial> for Material {
 
 impl From<HyperelasticMaterial> for Material {
     fn from(material: HyperelasticMaterial) -> Self {
-        Self::Hyperelastic(material)
+        Self::Hyperelastic(Box::new(material))
     }
 }
