@@ -97,41 +97,9 @@ def saved(tab, file):
     return vs.load(file)
 
 
-def test_a_chamber_from_nothing_to_rest_under_pressure(serving, tmp_path, open_tab):
-    server = serving(tmp_path)
-    try:
-        tab = open_tab(server.address, mode="design")
-        tab.page.wait_for_selector("[data-testid='design-form']")
-        hand = Hand(tab)
-        hand.press(test_id="templates")
-        hand.press(test_id="template-empty")
-        tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
-        first_shape(tab, hand, "box")
-        tab.shot("nothing-1-box")
-        renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
-        hand.body()
-        hand.here("here-clamp")
-        hand.key("1")
-        hand.key("x")
-        hand.body(60, 40)
-        tab.shot("nothing-2-wall")
-        hand.here("here-fill")
-        hand.key("r")
-        tab.until("voxsoft.state === 'at-rest'")
-        tab.shot("nothing-3-rest")
-        design = saved(tab, tmp_path / "robot.toml")
-        assert [load.kind for load in design.loads] == ["pressure"]
-        result = vs.simulate(design)
-        assert result.status == "ok"
-        assert result.cavity_volumes[0] > 1.01 * result.mesh.cavities[0].volume
-        assert tab.errors == []
-        # The aim of a first user: a dozen actions.
-        assert hand.actions <= 12
-    finally:
-        server.stop()
-
-
-def test_a_bending_finger_with_a_layer_from_nothing(serving, tmp_path, open_tab):
+@pytest.fixture
+def empty(serving, tmp_path, open_tab):
+    """An empty design in the mode Design, and the hand that opened it."""
     server = serving(tmp_path)
     try:
         tab = open_tab(server.address, mode="design", symbols=False)
@@ -140,35 +108,64 @@ def test_a_bending_finger_with_a_layer_from_nothing(serving, tmp_path, open_tab)
         hand.press(test_id="templates")
         hand.press(test_id="template-empty")
         tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
-        first_shape(tab, hand, "box")
-        entry = tab.find("shapes-box")
-        entry.get_by_role("button", expanded=False).first.click()
-        hand.actions += 1
-        for axis, size in (("x", "100 mm"), ("z", "30 mm")):
-            field = entry.get_by_label(f"Size {axis}", exact=True)
-            renewed(tab, lambda field=field, size=size: hand.number(field, size))
-        renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
-        drawn(tab)
-        for axis, side, verb in ((0, 1, "clamp"), (2, 1, "layer")):
-            hand.face(axis, side)
-            hand.here(f"here-{verb}")
-        hand.key("3")  # from the left, at the free end
-        hand.face(0, -1)
-        hand.here("here-probe")
-        hand.key("1")
-        hand.key("x")
-        hand.body(60, 20)
-        hand.here("here-fill")
-        hand.key("r")
-        tab.until("voxsoft.state === 'at-rest'")
-        tab.shot("finger-rest")
-        design = saved(tab, tmp_path / "robot.toml")
-        assert [layer.name for layer in design.layers] == ["fabric"]
-        bent = vs.simulate(design)
-        assert bent.status == "ok"
-        # The top cannot stretch: the free end rises.
-        assert bent.probes["probe"][2] > 1e-4
+        yield tab, hand
         assert tab.errors == []
-        assert hand.actions <= 25
     finally:
         server.stop()
+
+
+def test_a_chamber_from_nothing_to_rest_under_pressure(empty, tmp_path):
+    tab, hand = empty
+    first_shape(tab, hand, "box")
+    tab.shot("nothing-1-box")
+    renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
+    hand.body()
+    hand.here("here-clamp")
+    hand.key("1")
+    hand.key("x")
+    hand.body(60, 40)
+    tab.shot("nothing-2-wall")
+    hand.here("here-fill")
+    hand.key("r")
+    tab.until("voxsoft.state === 'at-rest'")
+    tab.shot("nothing-3-rest")
+    design = saved(tab, tmp_path / "robot.toml")
+    assert [load.kind for load in design.loads] == ["pressure"]
+    result = vs.simulate(design)
+    assert result.status == "ok"
+    assert result.cavity_volumes[0] > 1.01 * result.mesh.cavities[0].volume
+    # The aim of a first user: a dozen actions.
+    assert hand.actions <= 12
+
+
+def test_a_bending_finger_with_a_layer_from_nothing(empty, tmp_path):
+    tab, hand = empty
+    first_shape(tab, hand, "box")
+    entry = tab.find("shapes-box")
+    entry.get_by_role("button", expanded=False).first.click()
+    hand.actions += 1
+    for axis, size in (("x", "100 mm"), ("z", "30 mm")):
+        field = entry.get_by_label(f"Size {axis}", exact=True)
+        renewed(tab, lambda field=field, size=size: hand.number(field, size))
+    renewed(tab, lambda: hand.press(name="What to do with box", then="Hollow it out"))
+    drawn(tab)
+    for axis, side, verb in ((0, 1, "clamp"), (2, 1, "layer")):
+        hand.face(axis, side)
+        hand.here(f"here-{verb}")
+    hand.key("3")  # from the left, at the free end
+    hand.face(0, -1)
+    hand.here("here-probe")
+    hand.key("1")
+    hand.key("x")
+    hand.body(60, 20)
+    hand.here("here-fill")
+    hand.key("r")
+    tab.until("voxsoft.state === 'at-rest'")
+    tab.shot("finger-rest")
+    design = saved(tab, tmp_path / "robot.toml")
+    assert [layer.name for layer in design.layers] == ["fabric"]
+    bent = vs.simulate(design)
+    assert bent.status == "ok"
+    # The top cannot stretch: the free end rises.
+    assert bent.probes["probe"][2] > 1e-4
+    assert hand.actions <= 25
