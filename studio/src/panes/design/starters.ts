@@ -1,4 +1,5 @@
 // What a place of a design begins with when it is added.
+import type { KINDS } from "../../protocol";
 import { controlOf, resolve, type Schema } from "./schema";
 
 export interface Names {
@@ -6,7 +7,8 @@ export interface Names {
   readonly materials: readonly string[];
 }
 
-const FIRST: Readonly<Record<string, string | number>> = {
+/** Of each kind of quantity; a kind that is missing is an error of types. */
+const FIRST: Readonly<Record<keyof typeof KINDS, string | number>> = {
   length: "10 mm",
   pressure: "1 kPa",
   modulus: "100 kPa",
@@ -28,6 +30,12 @@ const FIRST: Readonly<Record<string, string | number>> = {
   "mass flow": "1 g/s",
   conductance: "0.1 L/s/bar",
   viscosity: "1e-3 Pa*s",
+  temperature: "300 K",
+  "thermal expansion": "3e-4 1/K",
+  "magnetic field": "10 mT",
+  voltage: "1 kV",
+  "electric field": "10 MV/m",
+  curvature: "1 1/m",
   number: 1,
 };
 
@@ -42,7 +50,7 @@ export function starter(root: Schema, given: Schema, names: Names): unknown {
       if (control.words.length > 0) return control.words[0];
       return typeof usual === "number" && control.kind === "number"
         ? usual
-        : (FIRST[control.kind] ?? 1);
+        : (FIRST[control.kind as keyof typeof KINDS] ?? 1);
     case "choice":
       return typeof usual === "string" ? usual : control.values[0];
     case "switch":

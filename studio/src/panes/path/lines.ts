@@ -28,6 +28,8 @@ const ACTIVATIONS: Readonly<Record<string, string>> = {
   strain: "number",
   swelling: "number",
   thermal: "temperature",
+  "shape-memory": "temperature",
+  dielectric: "electric field",
 };
 
 const DRIVES = ["tension", "shortening", "length"] as const;
