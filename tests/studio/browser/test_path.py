@@ -17,7 +17,7 @@ def gripper(serving, tmp_path):
     server.stop()
 
 
-def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab):
+def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab, tmp_path):
     tab = open_tab(gripper.address)
     tab.page.get_by_text("Path", exact=True).click()
     pane = tab.find("path-pane")
@@ -34,6 +34,12 @@ def test_a_field_is_followed_and_seen_again_after_a_reload(gripper, open_tab):
     assert numbers.input_value() == "lift"
     tab.find("plot-path").wait_for()
     tab.shot("path")
+    measured = tmp_path / "measured.csv"
+    measured.write_text("field_mT,lift_mm\n0,0\n6,1\n12,2\n")
+    tab.find("path-measured").set_input_files(measured)
+    tab.find("path-misfit").wait_for()
+    assert "root mean square of 3 points" in tab.find("path-misfit").inner_text()
+    tab.shot("path-measured")
     numbers.select_option("tip.x")
     tab.page.get_by_label("tip.x over loads[0].value[2]").wait_for()
     tab.page.reload()

@@ -1,18 +1,19 @@
 // Follow equilibria along a load, a tendon or a parameter, and see any number over it.
-import { useMemo, useState } from "react";
+import { useMemo, useRef, useState } from "react";
 import { Button, Empty, Select } from "../../controls/Choice";
-import { siUnit } from "../../controls/kinds";
+import { formatKind, siUnit } from "../../controls/kinds";
 import { NumberField } from "../../controls/NumberField";
 import { Plot } from "../../controls/Plot";
 import { factorOf, shownUnit, unitText } from "../../controls/units";
 import type { PathColumn, PathEvent } from "../../protocol";
 import { send } from "../../store/session";
-import { useStudio } from "../../store/studio";
+import { toast, useStudio } from "../../store/studio";
 import { useFormOfDocument } from "../design/useForm";
 import { JobCard } from "../jobs/JobCard";
 import { useJob } from "../study/current";
 import { useNewJob } from "../study/StudyPane";
 import { type Changeable, changeable, overText, unitOfValue } from "./lines";
+import { type Measured, misfit, readMeasured, together } from "./measured";
 import "../design/design.css";
 import "./path.css";
 
@@ -131,6 +132,20 @@ function Curve(props: { path: PathEvent }) {
   };
   const scaled = (values: readonly (number | null)[], kind: string) =>
     values.map((value) => (value ?? Number.NaN) / factorOf(shown(kind)));
+  const picker = useRef<HTMLInputElement>(null);
+  const [curves, setCurves] = useState<Readonly<Record<string, Measured>>>({});
+  const key = `${path.over} ${column.name}`;
+  const measured = curves[key];
+  const open = async (file: File) => {
+    const found = readMeasured(await file.text(), file.name, path.kind, column.kind);
+    if ("problem" in found) {
+      toast({ level: "error", what: `${file.name} is no measured curve`, hint: found.problem });
+    } else setCurves({ ...curves, [key]: found });
+  };
+  const y = column.values.map((value) => value ?? Number.NaN);
+  const data = measured ? together(path.values, y, measured) : [path.values, y];
+  const computed = { label: column.name, color: "--series-1", points: true };
+  const beside = { label: measured?.name ?? "", color: "--series-2", points: true, dashed: true };
   return (
     <div className="path-curve">
       <div className="plot-bar">
@@ -141,17 +156,51 @@ function Curve(props: { path: PathEvent }) {
           options={path.columns.map((one) => ({ value: one.name, label: one.name }))}
           onChange={request}
         />
+        <Button
+          title="Lay a measured curve over it: two columns of a CSV file, named with their units"
+          onClick={() => picker.current?.click()}
+        >
+          Measured…
+        </Button>
+        <input
+          ref={picker}
+          className="visually-hidden"
+          type="file"
+          tabIndex={-1}
+          accept=".csv,.txt"
+          aria-label="CSV file of a measured curve"
+          data-testid="path-measured"
+          onChange={(event) => {
+            const file = event.target.files?.[0];
+            event.target.value = "";
+            if (file) void open(file);
+          }}
+        />
       </div>
+      {measured && <Misfits measured={measured} path={path} column={column} />}
       <Plot
-        key={column.name}
+        key={`${column.name} ${measured?.name}`}
         label={`${column.name} over ${path.over}`}
         testId="plot-path"
         x={{ label: label(path.over, path.kind) }}
         y={{ label: label(column.name, column.kind) }}
-        series={[{ label: column.name, color: "--series-1", points: true }]}
-        data={[scaled(path.values, path.kind), scaled(column.values, column.kind)]}
+        series={measured ? [computed, beside] : [computed]}
+        data={data.map((values, i) => scaled(values, i === 0 ? path.kind : column.kind))}
       />
     </div>
+  );
+}
+
+function Misfits(props: { measured: Measured; path: PathEvent; column: PathColumn }) {
+  const { measured, path, column } = props;
+  const found = misfit(measured, path.values, column.values);
+  return (
+    <p className="muted path-misfit" data-testid="path-misfit">
+      {found
+        ? `Off by ${formatKind(found.rms, column.kind, 3)} (root mean square of ${found.count} points), ` +
+          `${formatKind(found.largest, column.kind, 3)} at most`
+        : "No point of it lies where the path is, or the path turns back."}
+    </p>
   );
 }
 

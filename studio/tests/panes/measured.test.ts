@@ -1,0 +1,43 @@
+import { describe, expect, it } from "vitest";
+import { type Measured, misfit, readMeasured, together } from "../../src/panes/path/measured";
+
+const read = (text: string) => readMeasured(text, "m.csv", "pressure", "angle");
+
+describe("a measured curve", () => {
+  it("is read in the units of its header", () => {
+    const found = read("# EPFL\npressure_kPa,angle (deg)\n20,90\n10,0\n") as Measured;
+    expect(found.x).toEqual([10_000, 20_000]);
+    expect(found.y[1]).toBeCloseTo(Math.PI / 2);
+  });
+  it("is in the units of the axes where it names none", () => {
+    const found = read("0;0\n1;180\n") as Measured;
+    expect(found.x).toEqual([0, 1000]);
+    expect(found.y[1]).toBeCloseTo(Math.PI);
+  });
+  it("says what it cannot be", () => {
+    expect(read("pressure_mm,angle_deg\n1,2\n3,4")).toMatchObject({
+      problem: expect.stringMatching(/pressure_mm/),
+    });
+    expect(read("1,2\n3,\n")).toMatchObject({ problem: expect.stringMatching(/row 2/) });
+    expect(read("")).toMatchObject({ problem: expect.stringMatching(/two rows/) });
+  });
+});
+
+describe("beside a path", () => {
+  const measured: Measured = { name: "m", x: [0, 1, 2, 9], y: [0, 1, 3, 0] };
+  it("tells how far it is off where both are", () => {
+    const found = misfit(measured, [0, 2], [0, 2]);
+    expect(found?.count).toBe(3);
+    expect(found?.largest).toBeCloseTo(1);
+    expect(found?.rms).toBeCloseTo(Math.sqrt(1 / 3));
+    // Down as well as up, but not around.
+    expect(misfit(measured, [2, 0], [2, 0])?.largest).toBeCloseTo(1);
+    expect(misfit(measured, [0, 2, 0], [0, 2, 1])).toBeNull();
+  });
+  it("shares one axis with it", () => {
+    const [x, y, m] = together([0, 2], [0, 2], { name: "m", x: [1], y: [5] });
+    expect(x).toEqual([0, 1, 2]);
+    expect(y).toEqual([0, Number.NaN, 2]);
+    expect(m).toEqual([Number.NaN, 5, Number.NaN]);
+  });
+});
