@@ -56,8 +56,8 @@ def test_solve_shows_the_motion_as_a_film(finger):
     left = result.recording.chambers["left"]
     assert len(left.pressure) == len(result.recording.frames) > 2
     assert (np.diff(left.pressure) > 0.0).all()
-    told = playback.go_to_rest(result)
-    (curves,) = [event for event in told if isinstance(event, events.Chambers)]
+    reported = playback.go_to_rest(result)
+    (curves,) = [event for event in reported if isinstance(event, events.Chambers)]
     assert curves.times == result.recording.times.tolist()
     named = {each.name: each for each in curves.chambers}
     assert named["left"].pressure == left.pressure.tolist()
