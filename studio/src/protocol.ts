@@ -827,6 +827,12 @@ export interface BodyOfSeveral {
   vertices: [number, number];
 }
 
+/** A plane of symmetry: the axis across it, 0 to 2, and where it is along that in m. */
+export interface BodyPlane {
+  axis: number;
+  at: number;
+}
+
 /**
  * A new body: its topology follows as a binary message with the same id.
  *
@@ -863,6 +869,7 @@ export interface BodyEvent {
   memory: number;
   smooth: boolean;
   bodies: BodyOfSeveral[];
+  planes: BodyPlane[];
 }
 
 /**

@@ -21,6 +21,7 @@ const BODY: BodyEvent = {
     attachments: [],
     objects: [],
     bodies: [],
+    planes: [],
     not_live: "",
     touches: false,
     parts: [],

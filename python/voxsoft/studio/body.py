@@ -207,6 +207,9 @@ class StudioBody:
             seconds=self.seconds,
             memory=float(self.voxel_count * BYTES_PER_VOXEL),
             bodies=_bodies(mesh, self.surface),
+            planes=[
+                events.BodyPlane(axis=plane.axis, at=plane.at) for plane in setup.design.symmetry
+            ],
         )
 
     def _probes(self) -> list[events.BodyProbe]:

@@ -214,6 +214,13 @@ class BodyClamp(Entry):
     points: list[Triple]
 
 
+class BodyPlane(Entry):
+    """A plane of symmetry: the axis across it, 0 to 2, and where it is along that in m."""
+
+    axis: int
+    at: float
+
+
 class BodyLoad(Entry):
     """A load with the range of its slider; value / factor is the number to show with `unit`.
 
@@ -334,6 +341,7 @@ class Body(Event):
     memory: float
     smooth: bool = False
     bodies: list[BodyOfSeveral] = field(default_factory=list)
+    planes: list[BodyPlane] = field(default_factory=list)
 
 
 class GrabState(Entry):

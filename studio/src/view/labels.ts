@@ -15,6 +15,7 @@ export interface Label {
     | "cavity"
     | "leak"
     | "overlap"
+    | "plane"
     | "extreme"
     | "spot"
     | "force"

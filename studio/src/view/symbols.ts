@@ -5,7 +5,10 @@ import {
   Color,
   ConeGeometry,
   CylinderGeometry,
+  DoubleSide,
   Group,
+  LineBasicMaterial,
+  LineLoop,
   Mesh,
   MeshBasicMaterial,
   Points,
@@ -14,7 +17,7 @@ import {
 } from "three";
 import { cavityName } from "../controls/cavities";
 import { formatNumber, formatQuantity, unitText } from "../controls/units";
-import type { BodyEvent, BodyLoad, StatEvent } from "../protocol";
+import type { BodyEvent, BodyLoad, BodyPlane, StatEvent } from "../protocol";
 import { showPane } from "../shell/actions";
 import { type BodyMesh, CAVITY_COLORS } from "./body";
 import type { Label } from "./labels";
@@ -22,6 +25,9 @@ import { LAYER_COLOR } from "./membranes";
 
 const CLAMP_COLOR = "#98a1ab";
 const LOAD_COLOR = "#e8704a";
+const PLANE_COLOR = "#b48ead";
+/** How far a plane of symmetry is drawn beyond the body, as a part of its size. */
+const BEYOND = 0.08;
 const PROBE_COLOR = "#56b4e9";
 
 /** The value of a load as text, at present. */
@@ -57,6 +63,29 @@ export function arrowTip(
   return pulls ? at.clone().addScaledVector(direction, length) : at;
 }
 
+/** The corners of a plane of symmetry around the body, in turn. */
+export function planeCorners(
+  plane: BodyPlane,
+  bounds: BodyEvent["bounds"],
+): [number, number, number][] {
+  const [low, high] = bounds;
+  const size = Math.hypot(...high.map((x, axis) => x - (low[axis] ?? 0)));
+  const [first, second] = [0, 1, 2].filter((axis) => axis !== plane.axis) as [number, number];
+  const ends = (axis: number) => [low[axis]! - BEYOND * size, high[axis]! + BEYOND * size];
+  return [
+    [0, 0],
+    [1, 0],
+    [1, 1],
+    [0, 1],
+  ].map(([i, j]) => {
+    const corner: [number, number, number] = [0, 0, 0];
+    corner[plane.axis] = plane.at;
+    corner[first] = ends(first)[i!]!;
+    corner[second] = ends(second)[j!]!;
+    return corner;
+  });
+}
+
 export class Symbols {
   readonly group = new Group();
   // Kept from body to body: their shaders would have to be compiled for each again.
@@ -69,6 +98,14 @@ export class Symbols {
     depthWrite: false,
   });
   private readonly loaded = new MeshBasicMaterial({ color: new Color(LOAD_COLOR) });
+  private readonly glass = new MeshBasicMaterial({
+    color: new Color(PLANE_COLOR),
+    transparent: true,
+    opacity: 0.14,
+    side: DoubleSide,
+    depthWrite: false,
+  });
+  private readonly rim = new LineBasicMaterial({ color: new Color(PLANE_COLOR) });
   private geometries: BufferGeometry[] = [];
 
   build(body: BodyEvent): void {
@@ -79,6 +116,7 @@ export class Symbols {
     const [low, high] = body.bounds;
     const middle = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
     for (const clamp of body.clamps) this.points(clamp.points.flat());
+    for (const plane of body.planes) this.plane(planeCorners(plane, body.bounds));
     for (const load of body.loads) {
       const direction = new Vector3(...load.direction);
       // A tendon is a line of its own, which says how it is pulled.
@@ -97,6 +135,19 @@ export class Symbols {
     points.renderOrder = 6;
     this.group.add(points);
     this.geometries.push(geometry);
+  }
+
+  private plane(corners: [number, number, number][]): void {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners.flat()), 3));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    // Four lines have no use for the two triangles' index.
+    const rim = new BufferGeometry().setAttribute("position", geometry.getAttribute("position"));
+    for (const drawing of [new Mesh(geometry, this.glass), new LineLoop(rim, this.rim)]) {
+      drawing.renderOrder = 6;
+      this.group.add(drawing);
+    }
+    this.geometries.push(geometry, rim);
   }
 
   private arrow(tip: Vector3, direction: Vector3, length: number): void {
@@ -140,6 +191,18 @@ export class Symbols {
         title: `${clamp.vertices} vertices are held`,
         color: CLAMP_COLOR,
         at: fixed(clamp.center),
+        onClick: () => showPane("design"),
+      });
+    }
+    for (const [i, plane] of body.planes.entries()) {
+      const name = "xyz"[plane.axis];
+      labels.push({
+        key: `plane-${i}`,
+        kind: "plane",
+        text: `symmetry ${name} = ${formatQuantity(plane.at, "m", 3)}`,
+        title: "What is on its other side is the mirror image, and is not solved for",
+        color: PLANE_COLOR,
+        at: fixed(planeCorners(plane, body.bounds)[2] as [number, number, number]),
         onClick: () => showPane("design"),
       });
     }

@@ -280,3 +280,17 @@ def test_the_view_follows_a_body_unless_a_hand_moved_it(
             tab.until(IN_PICTURE)
     finally:
         server.stop()
+
+
+def test_a_plane_of_symmetry_is_drawn_with_its_place(serving, tmp_path, open_tab, coarse):
+    half = coarse.replace("ecoflex-00-30-lattice", "ecoflex-00-30")
+    server = serving(tmp_path, text=half + '\n[[symmetry]]\nplane = "y"\nat = "5 mm"\n')
+    try:
+        tab = open_tab(server.address)
+        word = tab.page.locator(".view-label.plane")
+        word.wait_for()
+        assert word.inner_text() == "symmetry y = 5 mm"
+        tab.shot("symmetry")
+        assert tab.errors == []
+    finally:
+        server.stop()
