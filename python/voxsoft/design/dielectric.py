@@ -6,7 +6,7 @@ from typing import Final, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ConfigDict, field_validator, model_validator
+from pydantic import field_validator, model_validator
 
 from voxsoft.design.growth import Activation
 from voxsoft.errors import DesignError
@@ -44,12 +44,6 @@ class Dielectric(Activation):
     >>> round(sheet.pressure)
     44625
     """
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [{"part": "", "value": "10 MV/m", "permittivity": 2.8, "normal": [0, 0, 1]}]
-        }
-    )
 
     kind: Literal["dielectric"] = "dielectric"
     value: ElectricField

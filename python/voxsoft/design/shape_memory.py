@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import Annotated, Literal, NamedTuple, Self
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 
 from voxsoft.design.growth import Activation, Growth
 from voxsoft.design.history import History
@@ -63,20 +63,6 @@ class ShapeMemory(Activation):
     >>> round(wire.replace(value="322 K", transformed=0.5).stretch, 6)
     0.992
     """
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "examples": [
-                {
-                    "part": "",
-                    "value": "360 K",
-                    "strain": "-4 %",
-                    "heating": ["340 K", "350 K"],
-                    "cooling": ["330 K", "310 K"],
-                }
-            ]
-        }
-    )
 
     kind: Literal["shape-memory"] = "shape-memory"
     value: PositiveTemperature
