@@ -1,0 +1,122 @@
+//! Contact of tetrahedra, alone and as mirror images, held to the laws of terms.
+use super::*;
+use std::sync::Arc;
+use voxsoft_solid::conformance::{Law, check_term};
+use voxsoft_solid::{Contact, Images, MirroredContact};
+
+/// Two tetrahedra, the tip of the second in a face of the first, by no more than pressures that are believed take:
+/// beyond them how a pressure turns is not all in the stiffness.
+const PRESSED: [Vec3; 8] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.1, 0.0],
+    [0.0, 1.0, 0.05],
+    [0.1, 0.1, -1.0],
+    [0.31, 0.33, 0.01455],
+    [0.6, 0.1, 1.0],
+    [0.1, 0.2, 1.1],
+    [0.4, 0.7, 0.9],
+];
+/// Of negative volume, hence these faces.
+const FACES: [[u32; 3]; 4] = [[1, 3, 2], [0, 2, 3], [0, 3, 1], [0, 1, 2]];
+
+/// A tetrahedron and, of the same surface, its image where there is one.
+fn tetrahedron(first: u32, image: Option<u32>) -> Surface {
+    let of_image = image.map(|first| (first, FACES.map(|[a, b, c]| [a, c, b])));
+    let mut surface = Surface {
+        points: Vec::new(),
+        triangles: Vec::new(),
+    };
+    for (first, faces) in [(first, FACES)].into_iter().chain(of_image) {
+        let base = surface.points.len() as u32;
+        let points = (first..first + 4).map(Carried::vertex);
+        surface.points.extend(points);
+        let faces = faces.map(|face| face.map(|v| v + base));
+        surface.triangles.extend(faces);
+    }
+    surface
+}
+
+fn description(surfaces: Vec<Surface>) -> Description {
+    Description {
+        bonds: Vec::new(),
+        surfaces,
+        friction: vec![vec![f64::NAN, 0.0], vec![0.0, f64::NAN]],
+        voxel: 1.0,
+        young: 2.0,
+    }
+}
+
+fn pressed() -> (Touch, Vec<Vec3>) {
+    let surfaces = vec![tetrahedron(0, None), tetrahedron(4, None)];
+    let touch = Touch::new(description(surfaces), &PRESSED).unwrap();
+    (touch, PRESSED.to_vec())
+}
+
+/// The second tetrahedron lifted off the first.
+fn apart(positions: &[Vec3]) -> Vec<Vec3> {
+    let mut apart = positions.to_vec();
+    for x in &mut apart[4..] {
+        x[2] += 0.1;
+    }
+    apart
+}
+
+#[test]
+fn contact_keeps_the_laws_of_terms() {
+    let (touch, positions) = pressed();
+    let pairs = touch.pairs(&positions);
+    assert_eq!(pairs.len(), 1);
+    assert!(pairs[0].gap < 0.0 && pairs[0].gap > -0.0005, "{pairs:?}");
+    let apart = apart(&positions);
+    touch.follow(&positions);
+    check_term(&touch, &apart, &positions).unwrap();
+    touch.correct(&positions, 0.0, 1.0);
+    check_term(&touch, &apart, &positions).unwrap();
+}
+
+#[test]
+fn contact_of_mirror_images_keeps_them_too_and_half_of_all_is_all_of_half() {
+    // Half of a body beside the plane x = 0, and the whole of both halves.
+    let half = PRESSED.map(|[x, y, z]| [x + 0.5, y, z]).to_vec();
+    let sides = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]];
+    let images = Images {
+        of: (0..8).chain(0..8).collect(),
+        signs: sides.iter().flat_map(|side| [*side; 8]).collect(),
+    };
+    let whole = images.seen(&half);
+    let surfaces = vec![tetrahedron(0, Some(8)), tetrahedron(4, Some(12))];
+    let touch = Touch::new(description(surfaces), &whole).unwrap();
+    let touch = Arc::new(touch.with_planes([true, false, false], &whole));
+    let mirrored = MirroredContact::new(images, touch);
+    let surfaces = vec![tetrahedron(0, None), tetrahedron(4, None)];
+    let alone = Touch::new(description(surfaces), &half).unwrap();
+    let apart = apart(&half);
+    alone.follow(&half);
+    alone.correct(&half, 0.0, 1.0);
+    // Anchored for what the other half may do to it, which here is nothing: that it costs nothing to move it is the
+    // one law that it breaks, behind those of derivatives.
+    let keeps_derivatives = || {
+        let broken = check_term(&mirrored, &apart, &half).unwrap_err();
+        assert_eq!(broken.law, Law::RigidMotion);
+        assert!(broken.how.contains("anchored"), "{broken:?}");
+    };
+    mirrored.follow(&half);
+    keeps_derivatives();
+    mirrored.correct(&half, 0.0, 1.0);
+    keeps_derivatives();
+    let forces = |touch: &dyn Contact| {
+        let mut forces = vec![[0.0; 3]; half.len()];
+        touch.add_forces(&half, &mut forces);
+        forces
+    };
+    let largest = forces(&alone)
+        .iter()
+        .map(|f| f[2].abs())
+        .fold(0.0, f64::max);
+    assert!(largest > 0.0);
+    for (one, other) in forces(&mirrored).iter().zip(forces(&alone)) {
+        for axis in 0..3 {
+            assert!((one[axis] - other[axis]).abs() < 1e-12 * largest, "{one:?}");
+        }
+    }
+}
