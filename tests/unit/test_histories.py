@@ -28,6 +28,9 @@ def test_an_expression_is_followed_closely():
     assert charge.at(100.0) == pytest.approx(1.0)
     swing = vs.History(expression="sin(2*pi*t)^2 * min(1, t)", duration="1 s")
     assert swing.at(0.25) == pytest.approx(0.25, abs=2e-3)
+    # Shorter than the first pieces, and on none of their ends and middles.
+    click = vs.History(expression="max(0, 1 - abs(t - 0.3035)/0.001)", duration="1 s")
+    assert click.at(0.3035) > 0.8
     flat = vs.History(expression="0.5", duration="1 s", repeat=2)
     assert set(flat.factors) == {0.5}
 

@@ -1,5 +1,7 @@
 """Bending angles, curvature, softness and frequencies beside closed forms."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -145,6 +147,11 @@ def test_what_has_no_modes_is_refused(still):
     moving = {"method": "dynamics", "end_time": 0.01, "time_step": 5e-3}
     with pytest.raises(SimulationError, match="motion over time"):
         vs.modes(vs.simulate(bar(solver=moving)))
+    # The same design brought to rest by other settings is in equilibrium.
+    rested = replace(vs.simulate(bar()), design=bar(solver=moving))
+    assert vs.modes(rested, 1).frequencies[0] == pytest.approx(
+        still.metric("natural_frequency"), rel=1e-3
+    )
     # Buckled: Euler's load is 0.2 N.
     load = vs.Force(region=vs.Region(x=(LONG, LONG)), value=(-0.03, 0, 0))
     with pytest.raises(SimulationError, match="not stable"):

@@ -72,7 +72,8 @@ class History(Record):
     expression
         A function of ``t``, the time in seconds, in place of `time` and `factor`; the functions of
         :class:`voxsoft.shapes.Expression`. It is followed by straight pieces, an eight-hundredth
-        of its range off at most.
+        of its range off at most; what is steeper than 4,096 pieces can be, such as a step, is a
+        ramp of one piece.
     duration
         How long the expression goes on; then its last value stays.
     repeat
@@ -228,16 +229,18 @@ class History(Record):
 
 def _pieces_of(expression: str, duration: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Instants and values of an expression, near enough to each other to be joined by lines."""
+    # Looked at closely from the start: what is short must not hide between few instants.
+    times = np.linspace(0.0, duration, 2 * _MOST_PIECES + 1)
+    values = _values_of(expression, times)
     pieces = _PIECES
-    while True:
-        times = np.linspace(0.0, duration, pieces + 1)
-        values = _values_of(expression, times)
-        # Halfway between two instants a chord is farthest from a smooth curve.
-        middles = _values_of(expression, (times[1:] + times[:-1]) / 2.0)
-        off = np.abs(middles - (values[1:] + values[:-1]) / 2.0).max()
-        if off <= _NEAR * np.ptp(values) or pieces == _MOST_PIECES:
-            return tuple(times.tolist()), tuple(values.tolist())
+    while pieces < _MOST_PIECES:
+        each = 2 * _MOST_PIECES // pieces
+        chords = np.interp(times, times[::each], values[::each])
+        if np.abs(values - chords).max() <= _NEAR * np.ptp(values):
+            break
         pieces *= 2
+    each = 2 * _MOST_PIECES // pieces
+    return tuple(times[::each].tolist()), tuple(values[::each].tolist())
 
 
 def _values_of(expression: str, times: np.ndarray) -> np.ndarray:

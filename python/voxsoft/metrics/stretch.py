@@ -21,7 +21,9 @@ def _stretch_slope(state: SlopeState, target: Target) -> Floats:
 def _tested(state: State) -> Floats:
     """The strain up to which the material of each voxel was tested; NaN where it is not known."""
     ranges = tested_ranges(state.design)
-    of_parts = np.array([np.nan if each is None else each.largest - 1.0 for each in ranges])
+    # A material that was only pressed was pulled to no strain of which there could be a share.
+    limits = [0.0 if each is None else each.largest - 1.0 for each in ranges]
+    of_parts = np.array([limit if limit > 0.0 else np.nan for limit in limits])
     tested: Floats = of_parts[state.fields.parts]
     return tested
 
@@ -41,7 +43,7 @@ def _share_slope(state: SlopeState, target: Target) -> Floats:
 
 
 def _is_tested(state: State) -> bool:
-    return any(each is not None for each in tested_ranges(state.design))
+    return any(each is not None and each.largest > 1.0 for each in tested_ranges(state.design))
 
 
 def _volume_ratio(state: State, _: Target) -> float:

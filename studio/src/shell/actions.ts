@@ -1,6 +1,7 @@
 // Every action with a name: the palette lists them, keys start them, the help sheet shows them.
 
 import { nextPace } from "../engine/pace";
+import { EMPTY } from "../panes/design/empty";
 import { newestFilm, toggleFilm } from "../run/film";
 import {
   MODE_TITLES,
@@ -254,7 +255,7 @@ export function actions(): Action[] {
       run: () => dock?.show(pane.id),
     }),
   );
-  const templates = (useStudio.getState().hello?.templates ?? []).map(
+  const templates = [EMPTY, ...(useStudio.getState().hello?.templates ?? [])].map(
     (template): Action => ({
       id: `template-${template.name}`,
       title: `New from template: ${template.title}`,

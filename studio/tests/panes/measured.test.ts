@@ -13,6 +13,13 @@ describe("a measured curve", () => {
     const found = read("0;0\n1;180\n") as Measured;
     expect(found.x).toEqual([0, 1000]);
     expect(found.y[1]).toBeCloseTo(Math.PI);
+    expect(found.assumed).toBe(true);
+    expect(read("p_kPa,a_deg\n1,2\n3,4")).toMatchObject({ assumed: false });
+  });
+  it("may have commas for its decimals", () => {
+    const found = read('"pressure_kPa";"angle_deg"\n0;0\n1,5;-0,5\n') as Measured;
+    expect(found.x).toEqual([0, 1500]);
+    expect(found.y[1]).toBeCloseTo((-0.5 * Math.PI) / 180);
   });
   it("says what it cannot be", () => {
     expect(read("pressure_mm,angle_deg\n1,2\n3,4")).toMatchObject({
@@ -24,7 +31,7 @@ describe("a measured curve", () => {
 });
 
 describe("beside a path", () => {
-  const measured: Measured = { name: "m", x: [0, 1, 2, 9], y: [0, 1, 3, 0] };
+  const measured: Measured = { name: "m", x: [0, 1, 2, 9], y: [0, 1, 3, 0], assumed: false };
   it("tells how far it is off where both are", () => {
     const found = misfit(measured, [0, 2], [0, 2]);
     expect(found?.count).toBe(3);
@@ -35,7 +42,7 @@ describe("beside a path", () => {
     expect(misfit(measured, [0, 2, 0], [0, 2, 1])).toBeNull();
   });
   it("shares one axis with it", () => {
-    const [x, y, m] = together([0, 2], [0, 2], { name: "m", x: [1], y: [5] });
+    const [x, y, m] = together([0, 2], [0, 2], { name: "m", x: [1], y: [5], assumed: false });
     expect(x).toEqual([0, 1, 2]);
     expect(y).toEqual([0, Number.NaN, 2]);
     expect(m).toEqual([Number.NaN, 5, Number.NaN]);

@@ -200,6 +200,7 @@ function Misfits(props: { measured: Measured; path: PathEvent; column: PathColum
         ? `Off by ${formatKind(found.rms, column.kind, 3)} (root mean square of ${found.count} points), ` +
           `${formatKind(found.largest, column.kind, 3)} at most`
         : "No point of it lies where the path is, or the path turns back."}
+      {measured.assumed && ". It names no units: those of the axes were taken."}
     </p>
   );
 }

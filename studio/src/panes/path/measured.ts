@@ -7,6 +7,8 @@ export interface Measured {
   readonly name: string;
   readonly x: readonly number[];
   readonly y: readonly number[];
+  /** Its first line names no units, so that they were taken to be those of the axes. */
+  readonly assumed: boolean;
 }
 
 /** How far a computed curve is from a measured one, where both are. */
@@ -38,7 +40,14 @@ export function readMeasured(
   yKind: string,
 ): Measured | { readonly problem: string } {
   const lines = text.split(/\r?\n/).filter((line) => line.trim() && !line.startsWith("#"));
-  const cells = lines.map((line) => line.split(/[,;\t]/).map((cell) => cell.trim()));
+  // Where a semicolon or a tab parts the columns, a comma is that of decimals.
+  const apart = lines.some((line) => /[;\t]/.test(line));
+  const cells = lines.map((line) =>
+    line.split(apart ? /[;\t]/ : ",").map((cell) => {
+      const bare = cell.trim().replace(/^"(.*)"$/, "$1");
+      return apart ? bare.replace(/^([+-]?\d*),(\d+)/, "$1.$2") : bare;
+    }),
+  );
   const first = cells[0] ?? [];
   const headed = first.some((cell) => cell !== "" && Number.isNaN(Number(cell)));
   const factors = [xKind, yKind].map((kind, i) =>
@@ -55,7 +64,8 @@ export function readMeasured(
   }
   if (rows.length < 2) return { problem: "it has no two rows of numbers" };
   rows.sort((a, b) => a[0] - b[0]);
-  return { name, x: rows.map(([x]) => x), y: rows.map(([, y]) => y) };
+  const assumed = !headed || first.slice(0, 2).some((cell) => unitOf(cell) === null);
+  return { name, x: rows.map(([x]) => x), y: rows.map(([, y]) => y), assumed };
 }
 
 /** Compare on a path that rises or falls throughout; null for a loop, or where they do not meet. */
