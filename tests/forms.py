@@ -23,6 +23,7 @@ from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
 from voxsoft.design.object import Object
 from voxsoft.design.part import Part
+from voxsoft.design.profile import Profile
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
@@ -133,6 +134,10 @@ INNER = {
 }
 SPECIAL[History, "expression"] = ("1 - exp(-t)", "sin(2*pi*t)^2")
 ACTIVATIONS = (Dielectric, FiberStrain, ShapeMemory, Strain, Swelling, Thermal)
+SPECIAL[Profile, "axis"] = ("x", "z")
+SPECIAL[Profile, "at"] = (("0 mm", "5 mm"), [-1 / 3, 0.01])
+SPECIAL[Profile, "factor"] = ((0, 1), [1 / 3, 2])
+SPECIAL[Profile, "expression"] = ("z / 0.005", "x*y + 1")
 SPECIAL |= {(model, "part"): ("plain",) for model in ACTIVATIONS}
 # Of whole kelvins the forms make coefficients that leave nothing of a part.
 SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
@@ -158,6 +163,7 @@ NEEDS: dict[type, dict[str, Any]] = {
     Parameter: {"value": "5 mm"},
     Valve: {"conductance": "0.1 L/s/bar"},
     History: {"time": ("0 s",), "factor": (1,)},
+    Profile: {"axis": "z", "at": ("0 mm", "5 mm"), "factor": (0, 1)},
     Guide: {"point": (0, 0, 0)},
     Tendon: {"tension": "6 N"},
 }
@@ -183,6 +189,7 @@ BESIDE: dict[tuple[type, str], dict[str, Any]] = {
     (History, "sine"): {"time": (), "factor": ()},
     (History, "expression"): {"time": (), "factor": (), "duration": "3 s"},
     (History, "duration"): {"time": (), "factor": (), "expression": "1 - exp(-t)"},
+    (Profile, "expression"): {"axis": None, "at": (), "factor": ()},
     (Guide, "fixed"): {"point": None},
     **{(Tendon, name): {"tension": None} for name in ("length", "shortening")},
     (Tendon, "stiffness"): {"tension": None, "length": "50 mm"},

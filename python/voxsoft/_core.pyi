@@ -223,8 +223,12 @@ class Material:
     def with_swelling(self, stretch: float) -> Material: ...
     def with_growth(
         self,
-        of_material: Sequence[tuple[Sequence[float], Sequence[float], float]],
-        of_fibers: Sequence[tuple[Sequence[float], Sequence[float], float]],
+        of_material: Sequence[
+            tuple[Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
+        ],
+        of_fibers: Sequence[
+            tuple[Sequence[float], Sequence[float], float, NDArray[np.float64] | None]
+        ],
     ) -> Material: ...
     def with_prony(self, branches: Sequence[tuple[float, float]]) -> Material:
         """The same with these branches: share of the instantaneous modulus, time in s."""

@@ -1,15 +1,17 @@
 //! `_core.Material`, `_core.Fiber` and `_core.Winding`: what parts are made of, as frozen values.
+use numpy::PyReadonlyArray2;
 use pyo3::prelude::*;
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{
-    Fiber, Growth, History, HyperelasticMaterial, LatticeMaterial, Material, Model, Mullins,
-    ProblemError, Winding,
+    Fiber, Growth, GrowthFactor, History, HyperelasticMaterial, LatticeMaterial, Material, Model,
+    Mullins, ProblemError, Share, Winding,
 };
 
-/// Times, stretches, and the power of them that counts.
-type Factor = (Vec<f64>, Vec<f64>, f64);
-
 use crate::errors::{exception, to_python};
+use crate::simulate::rows;
+
+/// Times, stretches, the power of them that counts, and the share of each block where it is a field.
+type Factor<'py> = (Vec<f64>, Vec<f64>, f64, Option<PyReadonlyArray2<'py, f64>>);
 
 /// A family of fibers: a unit vector, a modulus in Pa, whether they carry compression, and the stretch at which they
 /// carry nothing.
@@ -165,21 +167,31 @@ impl PyMaterial {
         made(self.rubber(py, "activations")?.with_swelling(stretch))
     }
 
-    /// The same material that grows over time, and its fibers: times in s, stretches and a power for each factor.
+    /// The same material that grows over time, and its fibers: times in s, stretches, a power and, where it is a field, the
+    /// share of each block with half its differences across it, for each factor.
     fn with_growth(
         &self,
         py: Python<'_>,
-        of_material: Vec<Factor>,
-        of_fibers: Vec<Factor>,
+        of_material: Vec<Factor<'_>>,
+        of_fibers: Vec<Factor<'_>>,
     ) -> PyResult<Self> {
-        let growth = |factors: Vec<Factor>| {
-            let each = factors
-                .into_iter()
-                .map(|(times, stretches, power)| Ok((History::new(times, stretches)?, power)));
-            Growth::new(each.collect::<Result<_, ProblemError>>()?)
+        let factor = |(times, stretches, power, field): Factor<'_>| {
+            let share = match field {
+                None => Share::Whole,
+                Some(field) => Share::Field(rows("field", &field)?.into()),
+            };
+            let history = History::new(times, stretches).map_err(to_python)?;
+            Ok(GrowthFactor {
+                history,
+                power,
+                share,
+            })
         };
-        let of_material = growth(of_material).map_err(to_python)?;
-        let of_fibers = growth(of_fibers).map_err(to_python)?;
+        let growth = |factors: Vec<Factor<'_>>| {
+            let each = factors.into_iter().map(factor);
+            Growth::new(each.collect::<PyResult<_>>()?).map_err(to_python)
+        };
+        let (of_material, of_fibers) = (growth(of_material)?, growth(of_fibers)?);
         let rubber = self.rubber(py, "activations")?;
         made(Ok(rubber.with_growth(of_material, of_fibers)))
     }

@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::color::{color_order, interleave};
-use crate::hyperelastic::{Mullins, Wound};
+use crate::hyperelastic::{LocalMaterials, Mullins};
 use crate::lattice::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
@@ -116,7 +116,7 @@ impl Body {
 
         let mut masses = vec![0.0; mesh.vertices.len()];
         let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
-        let mut wound = Wound::beside(materials.len());
+        let mut local = LocalMaterials::beside(materials.len());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
         }
@@ -190,12 +190,14 @@ impl Body {
                         warping: Warping::NONE,
                         peak: material.mullins().map_or(0.0, Mullins::first),
                     };
-                    if !material.windings().is_empty() {
+                    if material.is_local() {
                         let axes = axes_of(mesh, block).unwrap_or(IDENTITY);
                         let ends = [0, 7].map(|c| mesh.vertices[vertices[c] as usize]);
                         let shift = apply_transposed(&axes, scale(side / 2.0, filling.shift));
                         let place = add(scale(0.5, add(ends[0], ends[1])), shift);
-                        brick.material = wound.number(part, material.at(place, side, &axes)?);
+                        let number = mesh.tet_block[block[0]] as usize;
+                        let here = material.at(number, place, side, &axes)?;
+                        brick.material = local.number(part, here);
                     }
                     // An eighth for each corner: the shares of the tetrahedra differ five to one between
                     // corners, which a brick's modes would feel as a rattle.
@@ -215,7 +217,7 @@ impl Body {
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
-        // a neighbor, which no brick asks for. Those with fibers wound about an axis, as they are at its voxels, follow.
+        // a neighbor, which no brick asks for. Those that differ from voxel to voxel, as they are there, follow.
         let hyperelastic: Vec<HyperelasticMaterial> = if bricks.is_empty() {
             Vec::new()
         } else {
@@ -224,7 +226,7 @@ impl Body {
             materials
                 .iter()
                 .filter_map(each)
-                .chain(wound.materials)
+                .chain(local.materials)
                 .collect()
         };
         let stuff = |brick: &Brick| &hyperelastic[brick.material as usize];

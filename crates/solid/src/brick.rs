@@ -35,6 +35,11 @@
 //! the deviation from the center of the material, and becomes `σ Ĥ` with its spread `σ` along each axis, which integrates
 //! the energy to second order.
 //!
+//! A voxel whose free stretch varies across it ([`crate::Growth`]) has `h` times their mean in place of `h`, and in all of the
+//! above its hourglass modes without those that it has free of stress: `p̂₂·e₁ − b₃` and `p̂₁·e₂ − b₃` along ζ, with half the
+//! difference `b₃` of the free stretches at `ζ = ±1` over their mean. (`b₃ S` would be right for large elastic strain as well;
+//! the difference is of the order of `b (S − 1)`, and `b` is one of the voxel size.)
+//!
 //! Where faces of a voxel are free, `W` sees less of its mean shear: `S̃` in place of `S`, see [`Warping`] and
 //! [`crate::warping`].
 //!
@@ -225,6 +230,7 @@ impl Brick {
             &self.modes(material, positions),
             self.filling,
             self.warping,
+            material.bent(),
             self.peak,
         )
     }
@@ -272,7 +278,7 @@ impl Brick {
         let mut modes = self.modes(material, positions);
         let softness = self.rotated(material, positions).softness(material);
         modes[3..].fill([0.0; 3]);
-        let state = Rotated::of(&modes, Filling::FULL, self.warping, self.peak);
+        let state = Rotated::of(&modes, Filling::FULL, self.warping, [0.0; 3], self.peak);
         let mut mean = state.virgin(material);
         mean.gradient = mean.gradient.map(|x| softness * x);
         let stress = to_matrix(&state.gradient_of(material, &mean).stress);

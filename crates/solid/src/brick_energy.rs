@@ -81,6 +81,8 @@ pub(crate) struct Rotated {
     pub rotation: Mat3,
     pub stretch: Sym,
     pub hourglass: [Vec3; 3],
+    /// How it bends by itself: half the difference of its free stretches at the two sides of each axis, over their mean.
+    pub bent: Vec3,
     pub bilinear: Vec3,
     /// The largest isochoric energy before, in J/m³.
     pub peak: f64,
@@ -201,12 +203,13 @@ impl Rotated {
             rotation: self.rotation,
             stretch: strain.stretch,
             hourglass: strain.hourglass,
+            bent: self.bent,
             bilinear: self.bilinear,
             peak: self.peak,
         }
     }
 
-    pub fn of(modes: &Modes, filling: Filling, warping: Warping, peak: f64) -> Self {
+    pub fn of(modes: &Modes, filling: Filling, warping: Warping, bent: Vec3, peak: f64) -> Self {
         let gradient: Mat3 = std::array::from_fn(|i| std::array::from_fn(|k| modes[k][i]));
         let (rotation, stretch) = polar(&gradient);
         Self {
@@ -214,10 +217,22 @@ impl Rotated {
             warping,
             stretch: to_sym(&stretch),
             hourglass: std::array::from_fn(|m| apply_transposed(&rotation, modes[3 + m])),
+            bent,
             bilinear: modes[6],
             peak,
             rotation,
         }
+    }
+
+    /// The elastic part of a coordinate of an hourglass mode: without that of a voxel which bends by itself.
+    #[inline(always)]
+    pub(crate) fn elastic_hourglass(&self, mode: usize, axis: usize) -> f64 {
+        let free = if mode == axis {
+            0.0
+        } else {
+            self.bent[3 - mode - axis]
+        };
+        self.hourglass[mode][axis] - free
     }
 
     /// `Ĥₙ` for the axis `n` with the others `i, j`.
@@ -225,7 +240,7 @@ impl Rotated {
     pub(crate) fn variation(&self, axes: Axes, thinning: f64) -> Variation {
         let (n, i, j) = axes;
         let p = &self.hourglass;
-        let (first, second) = (p[j][i], p[i][j]);
+        let (first, second) = (self.elastic_hourglass(j, i), self.elastic_hourglass(i, j));
         let thickness = Thickness::of(&self.stretch, axes);
         let mut h = [0.0; 6];
         h[i] = first;
@@ -395,8 +410,7 @@ impl Rotated {
             fiber::add_stress(&fiber, &self.stretch, &mut deviatoric.stress);
         }
         for (n, i, j) in AXES {
-            let p = &self.hourglass;
-            let (first, second) = (p[j][i], p[i][j]);
+            let (first, second) = (self.elastic_hourglass(j, i), self.elastic_hourglass(i, j));
             let trace = ((1.0 - thinning) * self.filling.spread[n]).powi(2) * bulk / 3.0;
             energy += trace * (first + second).powi(2) / 2.0;
             deviatoric.hourglass[j][i] += trace * (first + second);

@@ -173,7 +173,7 @@ impl Driver {
             return Self::itself(state.stretch[place]);
         }
         let axis = (place - 6) % 3;
-        let own = state.hourglass[(place - 6) / 3][axis];
+        let own = state.elastic_hourglass((place - 6) / 3, axis);
         let [stretch, slope, turn] = positive(state.stretch[axis]);
         Self {
             value: own / stretch,

@@ -110,8 +110,12 @@ fn neighbors(
 /// What a voxel of one material is to another; a lattice has none.
 fn what_is(materials: &[HyperelasticMaterial], own: u32, other: Option<u32>) -> Behind {
     let young = |material: u32| materials[material as usize].young();
+    let same = |other: u32| {
+        let [own, other] = [own, other].map(|number| &materials[number as usize]);
+        own.differs_in_growth_alone(other)
+    };
     match other {
-        Some(other) if other == own => Behind::Same,
+        Some(other) if other == own || same(other) => Behind::Same,
         Some(other) if young(other) >= HOLDS * young(own) => Behind::Stiff,
         _ => Behind::Other,
     }

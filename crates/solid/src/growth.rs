@@ -1,17 +1,96 @@
 //! How much longer a material is by itself, over time.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::vector::{Vec3, axpy};
 use crate::{History, ProblemError};
+
+/// How much of a growth a place has.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Share {
+    /// All of it, everywhere.
+    Whole,
+    /// By the block: the share at the center of its material, and half its differences between the two sides along each axis.
+    Field(Arc<[[f64; 4]]>),
+    /// That of one block.
+    Here([f64; 4]),
+}
+
+/// One factor of a free stretch: `(1 + s (b(t) − 1))ᵖ` for the share `s` of a place, the history `b` and the power `p`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GrowthFactor {
+    /// Of what the power is taken where the share is whole.
+    pub history: History,
+    /// 1 of a length, 1/3 of a volume.
+    pub power: f64,
+    /// How much of it a place has.
+    pub share: Share,
+}
+
+impl GrowthFactor {
+    /// What the power is taken of where it has a share.
+    fn base(&self, share: f64, whole: f64) -> f64 {
+        // Exactly the history where the share is whole.
+        if share == 1.0 {
+            whole
+        } else {
+            1.0 + share * (whole - 1.0)
+        }
+    }
+
+    /// The stretch at a time in s, and half its differences across a block over it.
+    fn at(&self, time: f64) -> (f64, Vec3) {
+        let whole = self.history.at(time);
+        let (share, slopes) = match &self.share {
+            Share::Here([share, x, y, z]) => (*share, [*x, *y, *z]),
+            Share::Whole | Share::Field(_) => (1.0, [0.0; 3]),
+        };
+        let base = self.base(share, whole);
+        let stretch = if self.power == 1.0 {
+            base
+        } else {
+            libm::pow(base, self.power)
+        };
+        let per_share = self.power * (whole - 1.0) / base;
+        (stretch, slopes.map(|slope| per_share * slope))
+    }
+
+    fn check(&self) -> Result<(), ProblemError> {
+        let what = "stretch of a material over time";
+        let numbers = match &self.share {
+            Share::Whole => [].as_slice(),
+            Share::Field(blocks) => blocks.as_flattened(),
+            Share::Here(here) => here.as_slice(),
+        };
+        if !self.power.is_finite() || numbers.iter().any(|x| !x.is_finite()) {
+            return Err(ProblemError::NotFinite { what });
+        }
+        let shares: &mut dyn Iterator<Item = f64> = match &self.share {
+            Share::Whole => &mut [1.0].into_iter(),
+            Share::Field(blocks) => &mut blocks.iter().map(|block| block[0]),
+            Share::Here([share, ..]) => &mut [*share].into_iter(),
+        };
+        for share in shares {
+            for &whole in self.history.factors() {
+                let value = self.base(share, whole);
+                if !(value > 0.0) {
+                    return Err(ProblemError::NotPositive { what, value });
+                }
+            }
+        }
+        Ok(())
+    }
+}
 
 /// A free stretch that changes over time: the product of powers of histories, such as the cube root of a change of volume.
 ///
 /// What evaluates a body at an instant calls [`Growth::begin`] first; until then it is that of the end.
 #[derive(Debug)]
 pub struct Growth {
-    factors: Vec<(History, f64)>,
-    /// The bits of the stretch now.
-    now: AtomicU64,
+    factors: Vec<GrowthFactor>,
+    /// The bits of the stretch now, and of half its differences across a voxel over it.
+    now: [AtomicU64; 4],
 }
 
 impl Growth {
@@ -20,72 +99,133 @@ impl Growth {
         Self::of(Vec::new())
     }
 
-    /// From histories, which stay above zero, each with its power.
-    pub fn new(factors: Vec<(History, f64)>) -> Result<Self, ProblemError> {
-        for (history, power) in &factors {
-            let what = "stretch of a material over time";
-            if let Some(&value) = history.factors().iter().find(|value| !(**value > 0.0)) {
-                return Err(ProblemError::NotPositive { what, value });
-            }
-            if !power.is_finite() {
-                return Err(ProblemError::NotFinite { what });
-            }
-        }
+    /// From factors that stay above zero.
+    pub fn new(factors: Vec<GrowthFactor>) -> Result<Self, ProblemError> {
+        factors.iter().try_for_each(GrowthFactor::check)?;
         Ok(Self::of(factors))
     }
 
-    fn of(factors: Vec<(History, f64)>) -> Self {
+    fn of(factors: Vec<GrowthFactor>) -> Self {
         let growth = Self {
             factors,
-            now: AtomicU64::new(1.0f64.to_bits()),
+            now: [const { AtomicU64::new(0) }; 4],
         };
         growth.begin(f64::INFINITY);
         growth
     }
 
+    /// Whether it differs from voxel to voxel.
+    pub(crate) fn is_field(&self) -> bool {
+        let field = |factor: &GrowthFactor| matches!(factor.share, Share::Field(_));
+        self.factors.iter().any(field)
+    }
+
+    /// Whether it varies within a voxel.
+    pub(crate) fn varies(&self) -> bool {
+        let slopes = |factor: &GrowthFactor| match factor.share {
+            Share::Here([_, x, y, z]) => [x, y, z] != [0.0; 3],
+            Share::Whole | Share::Field(_) => false,
+        };
+        self.factors.iter().any(slopes)
+    }
+
+    /// Whether it is the share of one voxel.
+    pub(crate) fn is_local(&self) -> bool {
+        let here = |factor: &GrowthFactor| matches!(factor.share, Share::Here(_));
+        self.factors.iter().any(here)
+    }
+
+    /// That of one block.
+    pub(crate) fn in_block(&self, block: usize) -> Result<Self, ProblemError> {
+        let here = |factor: &GrowthFactor| {
+            let share = match &factor.share {
+                Share::Field(blocks) => {
+                    Share::Here(*blocks.get(block).ok_or(ProblemError::Index {
+                        what: "block of a field of growth",
+                        index: block,
+                        count: blocks.len(),
+                    })?)
+                }
+                other => other.clone(),
+            };
+            Ok(GrowthFactor {
+                share,
+                ..factor.clone()
+            })
+        };
+        Ok(Self::of(
+            self.factors.iter().map(here).collect::<Result<_, _>>()?,
+        ))
+    }
+
+    /// The shares of one block and how they vary across it, of all factors in a row.
+    pub(crate) fn shares(&self) -> impl Iterator<Item = f64> + '_ {
+        self.factors.iter().flat_map(|factor| match factor.share {
+            Share::Here(here) => here,
+            Share::Whole | Share::Field(_) => [1.0, 0.0, 0.0, 0.0],
+        })
+    }
+
     /// The stretch at a time in s; `f64::INFINITY` gives the last.
     pub fn at(&self, time: f64) -> f64 {
-        let power = |(history, power): &(History, f64)| {
-            let base = history.at(time);
-            if *power == 1.0 {
-                base
-            } else {
-                libm::pow(base, *power)
-            }
-        };
-        self.factors.iter().map(power).product()
+        self.factors
+            .iter()
+            .map(|factor| factor.at(time).0)
+            .product()
     }
 
     /// Makes it that of a time in s.
     pub fn begin(&self, time: f64) {
-        self.now.store(self.at(time).to_bits(), Ordering::Relaxed);
+        let (mut stretch, mut bent) = (1.0, [0.0; 3]);
+        for factor in &self.factors {
+            let (own, slopes) = factor.at(time);
+            stretch *= own;
+            axpy(&mut bent, 1.0, slopes);
+        }
+        let [x, y, z] = bent;
+        for (kept, value) in self.now.iter().zip([stretch, x, y, z]) {
+            kept.store(value.to_bits(), Ordering::Relaxed);
+        }
+    }
+
+    #[inline(always)]
+    fn kept(&self, place: usize) -> f64 {
+        f64::from_bits(self.now[place].load(Ordering::Relaxed))
     }
 
     /// The stretch now.
     #[inline(always)]
     pub fn now(&self) -> f64 {
-        f64::from_bits(self.now.load(Ordering::Relaxed))
+        self.kept(0)
+    }
+
+    /// Half the difference of the stretches at the two sides of a voxel along each axis now, over the stretch.
+    #[inline(always)]
+    pub(crate) fn bent(&self) -> Vec3 {
+        [self.kept(1), self.kept(2), self.kept(3)]
     }
 
     /// The time in s after which it stays the same.
     pub fn end(&self) -> f64 {
-        let ends = self.factors.iter().map(|(history, _)| history.end());
+        let ends = self.factors.iter().map(|factor| factor.history.end());
         ends.fold(0.0, f64::max)
     }
 }
 
 impl Clone for Growth {
     fn clone(&self) -> Self {
+        let copy = |kept: &AtomicU64| AtomicU64::new(kept.load(Ordering::Relaxed));
         Self {
             factors: self.factors.clone(),
-            now: AtomicU64::new(self.now.load(Ordering::Relaxed)),
+            now: self.now.each_ref().map(copy),
         }
     }
 }
 
 impl PartialEq for Growth {
     fn eq(&self, other: &Self) -> bool {
-        self.factors == other.factors && self.now() == other.now()
+        let same = self.now() == other.now() && self.bent() == other.bent();
+        self.factors == other.factors && same
     }
 }
 
@@ -93,10 +233,17 @@ impl PartialEq for Growth {
 mod tests {
     use super::*;
 
+    fn ramp(end: f64, power: f64) -> GrowthFactor {
+        GrowthFactor {
+            history: History::new(vec![0.0, 2.0], vec![1.0, end]).unwrap(),
+            power,
+            share: Share::Whole,
+        }
+    }
+
     #[test]
     fn is_the_product_of_powers() {
-        let ramp = |end: f64| History::new(vec![0.0, 2.0], vec![1.0, end]).unwrap();
-        let growth = Growth::new(vec![(ramp(1.2), 1.0), (ramp(8.0), 1.0 / 3.0)]).unwrap();
+        let growth = Growth::new(vec![ramp(1.2, 1.0), ramp(8.0, 1.0 / 3.0)]).unwrap();
         // Where nobody has begun it is that of the end.
         assert!((growth.now() - 2.4).abs() < 1e-15);
         growth.begin(1.0);
@@ -110,7 +257,38 @@ mod tests {
 
     #[test]
     fn nothing_shrinks_to_nothing() {
-        let gone = History::new(vec![0.0, 1.0], vec![1.0, 0.0]).unwrap();
-        assert!(Growth::new(vec![(gone, 1.0)]).is_err());
+        assert!(Growth::new(vec![ramp(0.0, 1.0)]).is_err());
+        let share = Share::Field([[-6.0, 0.0, 0.0, 0.0]].into());
+        assert!(
+            Growth::new(vec![GrowthFactor {
+                share,
+                ..ramp(1.2, 1.0)
+            }])
+            .is_err()
+        );
+    }
+
+    #[test]
+    fn a_block_has_its_share_and_bends_with_the_slope_of_it() {
+        let share = Share::Field([[0.0; 4], [0.5, 0.0, 0.1, 0.0]].into());
+        let field = GrowthFactor {
+            share,
+            ..ramp(1.4, 1.0 / 3.0)
+        };
+        let growth = Growth::new(vec![field]).unwrap();
+        assert!(growth.is_field() && !growth.varies());
+        assert_eq!(growth.in_block(0).unwrap().now(), 1.0);
+        let here = growth.in_block(1).unwrap();
+        assert!(here.varies() && !here.is_field());
+        assert_eq!(here.now(), libm::cbrt(1.2));
+        // Half the difference between the sides over the mean, to second order in the slope.
+        let side = |s: f64| libm::cbrt(1.0 + s * 0.4);
+        let half = (side(0.6) - side(0.4)) / 2.0 / side(0.5);
+        let [x, y, z] = here.bent();
+        assert_eq!([x, z], [0.0; 2]);
+        assert!((y - half).abs() < 0.1 * 0.1 * half, "{y} {half}");
+        here.begin(0.0);
+        assert_eq!((here.now(), here.bent()), (1.0, [0.0; 3]));
+        assert!(growth.in_block(2).is_err());
     }
 }

@@ -87,7 +87,7 @@ pub use contact::{Contact, Moment, RecordedContact};
 pub use error::ProblemError;
 pub use floor::Floor;
 pub use fluid::Fluid;
-pub use growth::Growth;
+pub use growth::{Growth, GrowthFactor, Share};
 pub use hands::{Grab, Hands};
 pub use history::History;
 pub use hyperelastic::{Fiber, HyperelasticMaterial, Model, Mullins, Winding};

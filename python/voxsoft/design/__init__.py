@@ -16,6 +16,7 @@ from voxsoft.design.model import Design
 from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
+from voxsoft.design.profile import Profile
 from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.shape_memory import ShapeMemory
@@ -65,6 +66,7 @@ __all__ = [
     "Pressure",
     "PressureSupply",
     "Probe",
+    "Profile",
     "Pump",
     "Region",
     "Rotation",

@@ -9,6 +9,7 @@ from pydantic import Discriminator, model_validator
 
 from voxsoft.design.dielectric import Dielectric
 from voxsoft.design.growth import Activation, Growth
+from voxsoft.design.profile import Profile
 from voxsoft.design.shape_memory import ShapeMemory
 from voxsoft.errors import DesignError
 from voxsoft.units import Dimensionless, PositiveTemperature, ThermalExpansion
@@ -20,6 +21,8 @@ class _OfItsValue(Activation):
     #: 1 where the value is a change of length, 1/3 where it is one of volume.
     power: ClassVar[float] = 1.0
 
+    profile: Profile | None = None
+
     @abstractmethod
     def base(self, factor: float) -> float:
         """How many times as long, or as large, the part is at a factor of its history."""
@@ -28,9 +31,9 @@ class _OfItsValue(Activation):
     def growth(self) -> Growth:
         """How many times as long the part is over time when it is free of stress."""
         if self.history is None:
-            return Growth((0.0,), (self.base(1.0),), self.power)
+            return Growth((0.0,), (self.base(1.0),), self.power, self.profile)
         bases = tuple(self.base(factor) for factor in self.history.factors)
-        return Growth(self.history.times, bases, self.power)
+        return Growth(self.history.times, bases, self.power, self.profile)
 
 
 class _Growing(_OfItsValue):
@@ -69,6 +72,9 @@ class Strain(_Growing):
         The strain, above −1: ``"2 %"`` is 1.02 times as long, a negative one shrinks.
     history
         How it changes over time: a factor on the value. Default: it is there from the beginning.
+    profile
+        How it differs from place to place: a factor on the value. Default: it is the same
+        everywhere.
 
     Examples
     --------
@@ -91,6 +97,9 @@ class Swelling(_Growing):
         of water. The mass stays that of the dry part.
     history
         How it changes over time: a factor on the value. Default: it is there from the beginning.
+    profile
+        How it differs from place to place: a factor on the value. Default: it is the same
+        everywhere.
 
     Examples
     --------
@@ -118,6 +127,9 @@ class Thermal(_OfItsValue):
     history
         How the temperature changes over time: 0 is the reference, 1 the value. Default: it is the
         value from the beginning.
+    profile
+        How it differs from place to place: 0 is the reference, 1 the value. Default: it is the same
+        everywhere.
 
     Examples
     --------
@@ -171,6 +183,9 @@ class FiberStrain(_Growing):
         The strain, above −1: ``"-20 %"`` is a fifth shorter.
     history
         How it changes over time: a factor on the value. Default: it is there from the beginning.
+    profile
+        How it differs from place to place: a factor on the value. Default: it is the same
+        everywhere.
 
     Examples
     --------

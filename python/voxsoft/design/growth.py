@@ -7,6 +7,7 @@ from typing import NamedTuple, Self
 
 from voxsoft.design.history import History
 from voxsoft.design.operands import Name
+from voxsoft.design.profile import Profile
 from voxsoft.records import Record
 
 
@@ -21,16 +22,24 @@ class Growth(NamedTuple):
         What the power is taken of at each of them, above zero.
     power
         1 of a length, 1/3 of a volume.
+    profile
+        How much of it each place has; None: all of it.
     """
 
     times: tuple[float, ...]
     bases: tuple[float, ...]
     power: float
+    profile: Profile | None = None
 
     @property
     def last(self) -> float:
-        """The stretch at the end."""
+        """The stretch at the end, where the profile is one."""
         return float(self.bases[-1] ** self.power)
+
+    @property
+    def at_the_end(self) -> Growth:
+        """What stays as it is at the end."""
+        return self._replace(times=(0.0,), bases=self.bases[-1:])
 
 
 class Activation(Record):

@@ -73,10 +73,11 @@ def mirrored_part(part: Part, axis: Axis) -> Part:
 
 
 def mirrored_activation(activation: AnyActivation, axis: Axis) -> AnyActivation:
-    """The image of what acts in a part: a sheet with its normal."""
+    """The image of what acts in a part: a sheet with its normal, a profile with its axis."""
     if isinstance(activation, Dielectric):
         return activation.replace(normal=mirrored_point(activation.normal, axis))
-    return activation
+    profile = getattr(activation, "profile", None)
+    return activation if profile is None else activation.replace(profile=profile.mirrored(axis))
 
 
 def mirrored_fiber(fiber: Fiber, axis: Axis) -> Fiber:

@@ -105,7 +105,9 @@ class Dynamics(Method):
         """The problem that moves: one of its own where materials change, which it keeps changed."""
         if not grows_over_time(setup.design):
             return setup.problem
-        own = core_materials(setup.design, setup.materials, setup.origin, over_time=True)
+        own = core_materials(
+            setup.design, setup.materials, setup.mesh, setup.origin, over_time=True
+        )
         return setup.problem.with_materials(own)
 
     def _step(self, interval: float) -> float:

@@ -25,8 +25,10 @@ DEFAULT_ARC: Final = 0.2
 DEFAULT_VOLUME_RATIO: Final = 1.5
 
 
-#: In how many steps what swells too much for one does so.
-_SWELLING_STEPS: Final = (4, 16)
+#: The shortest step of what swells too much for one, as a part of the whole.
+_SHORTEST_STEP: Final = 1.0 / 128.0
+#: After a step of so few iterations the next one is twice as long.
+_FEW: Final = 6
 
 #: What to try instead of a control that found no equilibrium, and of one that met a limit.
 _OTHER_WAYS: Final[Mapping[str, str]] = {
@@ -69,24 +71,26 @@ class LoadControl(Statics):
         grows = any(each.growth is not None for each in setup.design.activations)
         if found[1].status != Status.NOT_CONVERGED or not grows:
             return found
-        steps = found[1].steps
-        for count in _SWELLING_STEPS:
-            start = None
-            for number in range(1, count + 1):
-                swollen = [each.share(number / count) for each in setup.design.activations]
-                design = setup.design.replace(activations=tuple(swollen))
-                own = core_materials(design, setup.materials, setup.origin)
-                problem = setup.problem.with_materials(own)
-                used, report = find_equilibrium(
-                    setup, self, watch.progress, problem, frames=watch.frames, start=start
-                )
-                steps += report.steps
-                if report.status != Status.AT_REST:
-                    break
-                start = Start(report.answer.positions)
+        steps, share, step = found[1].steps, 0.0, 0.25
+        start: Start | None = None
+        while share < 1.0:
+            share_then = min(1.0, share + step)
+            swollen = [each.share(share_then) for each in setup.design.activations]
+            design = setup.design.replace(activations=tuple(swollen))
+            own = core_materials(design, setup.materials, setup.mesh, setup.origin)
+            problem = setup.problem.with_materials(own)
+            used, report = find_equilibrium(
+                setup, self, watch.progress, problem, frames=watch.frames, start=start
+            )
+            steps += report.steps
+            if report.status == Status.AT_REST:
+                start, share = Start(report.answer.positions), share_then
+                step *= 2.0 if report.steps <= _FEW else 1.0
+            elif report.status == Status.NOT_CONVERGED and step > _SHORTEST_STEP:
+                step /= 4.0
             else:
-                return used, Report(report.answer, report.status, steps)
-        return found
+                return found
+        return used, Report(report.answer, report.status, steps)
 
 
 class ArcLengthControl(Statics):

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from math import prod
-from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft.design import Design
@@ -13,26 +17,62 @@ from voxsoft.errors import DesignError
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import closest
 
+#: What the core takes of a factor: times in s, stretches, their power, the share of each voxel.
+_Factor = tuple[tuple[float, ...], tuple[float, ...], float, NDArray[np.float64] | None]
 
-class PartGrowth(NamedTuple):
-    """How a part and its fibers grow; several activations of one multiply."""
 
-    of_part: tuple[Growth, ...] = ()
-    of_fibers: tuple[Growth, ...] = ()
+@dataclass(frozen=True)
+class PartGrowth:
+    """How a part and its fibers grow, by the number of the activation; several of one multiply."""
+
+    of_part: dict[int, Growth] = field(default_factory=dict)
+    of_fibers: dict[int, Growth] = field(default_factory=dict)
 
     @property
     def part_stretch(self) -> float:
         """How many times as long the part is in the end."""
-        return prod(each.last for each in self.of_part)
+        return prod(each.last for each in self.of_part.values())
 
     @property
     def fiber_stretch(self) -> float:
         """How many times as long its fibers are in the end."""
-        return prod(each.last for each in self.of_fibers)
+        return prod(each.last for each in self.of_fibers.values())
 
-    def over_time(self, core: _core.Material) -> _core.Material:
-        """The material of a part that grows as time goes on."""
-        return core.with_growth(self.of_part, self.of_fibers)
+    @property
+    def is_uniform(self) -> bool:
+        """Whether all places of the part grow alike."""
+        both = (*self.of_part.values(), *self.of_fibers.values())
+        return all(each.profile is None for each in both)
+
+    def give_to(
+        self,
+        core: _core.Material,
+        shares: Callable[[Growth, str], NDArray[np.float64] | None],
+        *,
+        over_time: bool,
+    ) -> _core.Material:
+        """The material of a part that grows over time, or differs from voxel to voxel.
+
+        Parameters
+        ----------
+        core
+            The part's material.
+        shares
+            How much of a growth each voxel of the mesh has, (n, 4), for the place of an activation
+            in the design; see :func:`voxsoft.simulation.profiles.shares_of`.
+        over_time
+            Whether it follows its history, or is as in the end.
+        """
+
+        def factors(growths: dict[int, Growth]) -> list[_Factor]:
+            found = []
+            for number, growth in growths.items():
+                share = shares(growth, f"activations[{number}]")
+                now = growth if over_time else growth.at_the_end
+                found.append((now.times, now.bases, now.power, share))
+            return found
+
+        return core.with_growth(factors(self.of_part), factors(self.of_fibers))
 
 
 def growths_of(design: Design) -> dict[int, PartGrowth]:
@@ -60,12 +100,8 @@ def growths_of(design: Design) -> dict[int, PartGrowth]:
             growth = activation.growth
             if growth is None:
                 continue
-            known = found.get(index, PartGrowth())
-            if activation.of_fibers:
-                known = known._replace(of_fibers=(*known.of_fibers, growth))
-            else:
-                known = known._replace(of_part=(*known.of_part, growth))
-            found[index] = known
+            known = found.setdefault(index, PartGrowth())
+            (known.of_fibers if activation.of_fibers else known.of_part)[number] = growth
     return found
 
 
@@ -73,6 +109,24 @@ def grows_over_time(design: Design) -> bool:
     """Whether a part of a design is longer by itself, and that has a history."""
     timed = [each for each in design.activations if each.history is not None]
     return any(activation.growth is not None for activation in timed)
+
+
+def refuse_profiles(design: Design, who: str) -> None:
+    """Raise where an activation has a profile and someone knows one growth for each part.
+
+    Raises
+    ------
+    DesignError
+        Naming who.
+    """
+    for index, activation in enumerate(design.activations):
+        growth = activation.growth
+        if growth is not None and growth.profile is not None:
+            raise DesignError(
+                f"activations[{index}].profile",
+                f"is not known to {who} yet",
+                "leave it out, or give several parts values of their own",
+            )
 
 
 def refuse_growth_over_time(design: Design, who: str) -> None:

@@ -225,7 +225,7 @@ def follow(
         started = time.perf_counter()
         own = None
         if swells:
-            own = core_materials(designs[number], setup.materials, solved.origin)
+            own = core_materials(designs[number], setup.materials, solved.mesh, solved.origin)
         used, report = find_equilibrium(
             solved,
             statics,

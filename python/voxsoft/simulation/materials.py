@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,7 +12,9 @@ from voxsoft.design import Design
 from voxsoft.design.assembly import voxel_size_of
 from voxsoft.errors import DesignError
 from voxsoft.materials import CompliantLattice, Hyperelastic, Lattice, Material, Rigid
+from voxsoft.mesh import Mesh
 from voxsoft.simulation.growth import PartGrowth, growths_of
+from voxsoft.simulation.profiles import shares_of
 
 
 def solid_materials(design: Design) -> list[Material]:
@@ -61,6 +65,7 @@ def solid_materials(design: Design) -> list[Material]:
 def core_materials(
     design: Design,
     materials: list[Material],
+    mesh: Mesh,
     origin: NDArray[np.float64],
     *,
     over_time: bool = False,
@@ -73,6 +78,8 @@ def core_materials(
         Whose parts have the fibers.
     materials
         One for each part, such as :func:`solid_materials` gives.
+    mesh
+        Whose voxels they are for.
     origin
         Where the solver's origin is [m], (3,).
     over_time
@@ -83,23 +90,25 @@ def core_materials(
     DesignError
         An activation that its part cannot have.
     """
-    found = []
+    found: list[_core.Material] = []
     growths = growths_of(design)
     poses = {body.name: body.pose for body in design.bodies}
     for index, (part, material) in enumerate(zip(design.parts, materials, strict=True)):
         core = material.core
         growth = growths.get(index, PartGrowth())
+        at_once = growth.is_uniform and not over_time
         if part.fibers:
-            free = 1.0 if over_time else growth.fiber_stretch
+            free = growth.fiber_stretch if at_once else 1.0
             straight = [fiber.core(free) for fiber in part.fibers if not fiber.is_wound]
             rotation, position = poses.get(part.body or "", (np.eye(3), np.zeros(3)))
             place = rotation, position - origin
             wound = [fiber.winding(*place, free) for fiber in part.fibers if fiber.is_wound]
             core = core.with_fibers(straight).with_windings(wound)
-        if growth.of_part and not over_time:
+        if growth.of_part and at_once:
             core = core.with_swelling(growth.part_stretch)
-        if over_time and index in growths:
-            core = growth.over_time(core)
+        if index in growths and not at_once:
+            shares = partial(shares_of, design, mesh, index)
+            core = growth.give_to(core, shares, over_time=over_time)
         found.append(core)
     return found
 

@@ -58,7 +58,7 @@ class SectorSetup(Setup):
     def problem(self) -> _core.Problem:
         """The problem of the sector, held at its planes."""
         parts = self.whole.sector_parts
-        materials = core_materials(self.design, self.materials, self.origin)
+        materials = core_materials(self.design, self.materials, self.mesh, self.origin)
         return core_problem(self.mesh, materials, parts, self.sector.directions)
 
     @property

@@ -41,6 +41,7 @@ from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resol
 from voxsoft.simulation.materials import core_materials, solid_materials
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
+from voxsoft.simulation.profiles import check_profile_symmetry
 from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
@@ -200,6 +201,7 @@ class Setup:
             self._refuse_with_bodies()
         found = Sector.of(planes, self.mesh, kinds_of(self.design.parts))
         check_fiber_symmetry(self.design)
+        check_profile_symmetry(self.design, self.mesh)
         return found
 
     def _refuse_with_bodies(self) -> None:
@@ -243,7 +245,9 @@ class Setup:
     def problem(self) -> _core.Problem:
         """The problem of the Rust core, with the design's own materials."""
         return core_problem(
-            self.mesh, core_materials(self.design, self.materials, self.origin), self._parts()
+            self.mesh,
+            core_materials(self.design, self.materials, self.mesh, self.origin),
+            self._parts(),
         )
 
     @cached_property
@@ -253,12 +257,14 @@ class Setup:
             return self.problem
         parts = self._parts(touching=False)
         return core_problem(
-            self.mesh, core_materials(self.design, self.materials, self.origin), parts
+            self.mesh, core_materials(self.design, self.materials, self.mesh, self.origin), parts
         )
 
     def problem_with(self, materials: list[Material]) -> _core.Problem:
         """The same problem with other materials, one for each part of the design."""
-        return self.problem.with_materials(core_materials(self.design, materials, self.origin))
+        return self.problem.with_materials(
+            core_materials(self.design, materials, self.mesh, self.origin)
+        )
 
     @cached_property
     def materials(self) -> list[Material]:

@@ -20,7 +20,7 @@ from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
 from voxsoft.simulation.fluids import refuse_supplies
-from voxsoft.simulation.growth import refuse_growth_over_time
+from voxsoft.simulation.growth import refuse_growth_over_time, refuse_profiles
 from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.studio import events
@@ -125,6 +125,7 @@ def page_of_body(
     refuse_supplies(body.setup.design, "exported pages")
     refuse_softening(body.setup.design, "exported pages")
     refuse_growth_over_time(body.setup.design, "exported pages")
+    refuse_profiles(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(

@@ -61,13 +61,14 @@ pub(super) struct Frame<S: Simd> {
     pub sound: Number<S>,
 }
 
-/// Whether a material has a kernel in lanes: an energy of the first invariant, and no fibers.
+/// Whether a material has a kernel in lanes: an energy of the first invariant, no fibers, and a free stretch
+/// that is one number.
 pub(super) fn has_lanes(material: &HyperelasticMaterial) -> bool {
     let simple = matches!(
         material.model(),
         Model::NeoHookean { .. } | Model::Yeoh { .. } | Model::Gent { .. }
     );
-    simple && material.fibers().is_empty() && material.mullins().is_none()
+    simple && material.fibers().is_empty() && material.mullins().is_none() && !material.varies()
 }
 
 /// A number of each voxel of a group.

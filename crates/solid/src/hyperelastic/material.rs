@@ -142,9 +142,20 @@ impl HyperelasticMaterial {
         &self.windings
     }
 
-    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row):
-    /// wound fibers have one direction there.
-    pub(crate) fn at(&self, place: Vec3, side: f64, axes: &Mat3) -> Result<Self, ProblemError> {
+    /// Whether it differs from voxel to voxel.
+    pub(crate) fn is_local(&self) -> bool {
+        !self.windings.is_empty() || self.growths().iter().any(|growth| growth.is_field())
+    }
+
+    /// The material as it is at a place (m) in a voxel of a side (m) with edges along `axes` (unit vectors row by row), the
+    /// `block`th: wound fibers have one direction there, and growth that is a field is that of the voxel.
+    pub(crate) fn at(
+        &self,
+        block: usize,
+        place: Vec3,
+        side: f64,
+        axes: &Mat3,
+    ) -> Result<Self, ProblemError> {
         let mut fibers = self.fibers.clone();
         for winding in &self.windings {
             fibers.push(winding.at(place, side, axes)?);
@@ -152,6 +163,8 @@ impl HyperelasticMaterial {
         Ok(Self {
             fibers,
             windings: Vec::new(),
+            growth: self.growth.in_block(block)?,
+            fiber_growth: self.fiber_growth.in_block(block)?,
             ..self.clone()
         })
     }
@@ -187,6 +200,25 @@ impl HyperelasticMaterial {
     #[inline(always)]
     pub fn swelling(&self) -> f64 {
         self.swelling * self.growth.now()
+    }
+
+    /// Whether two are one material with shares of its growth that differ from voxel to voxel.
+    pub(crate) fn differs_in_growth_alone(&self, other: &Self) -> bool {
+        let local = |of: &Self| of.growths().iter().any(|growth| growth.is_local());
+        let stuff = |of: &Self| (of.model, of.bulk, of.mullins);
+        local(self) && local(other) && stuff(self) == stuff(other) && self.fibers == other.fibers
+    }
+
+    /// How it bends by itself now: half the difference of its free stretches at the two sides of a voxel along each axis, over
+    /// their mean.
+    #[inline(always)]
+    pub(crate) fn bent(&self) -> Vec3 {
+        self.growth.bent()
+    }
+
+    /// Whether its free stretch varies within a voxel.
+    pub(crate) fn varies(&self) -> bool {
+        self.growth.varies()
     }
 
     /// How it and its fibers grow.

@@ -11,6 +11,7 @@
 //! energy, stress and tangent stay finite and continuous, and push an inverted element back.
 
 pub(crate) mod fiber;
+mod local;
 mod material;
 mod mullins;
 pub mod principal;
@@ -18,8 +19,8 @@ pub mod symmetric;
 mod winding;
 
 pub use fiber::Fiber;
+pub(crate) use local::LocalMaterials;
 pub use material::{HyperelasticMaterial, Model};
 pub use mullins::Mullins;
 pub use symmetric::{Response, Sym};
 pub use winding::Winding;
-pub(crate) use winding::Wound;

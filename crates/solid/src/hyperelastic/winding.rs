@@ -1,8 +1,6 @@
 //! Fibers wound about an axis: their direction differs from place to place.
 
-use std::collections::HashMap;
-
-use super::{Fiber, HyperelasticMaterial};
+use super::Fiber;
 use crate::ProblemError;
 use crate::matrix::{Mat3, apply};
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
@@ -49,40 +47,6 @@ impl Winding {
             compression: self.compression,
             free: self.free,
         })
-    }
-}
-
-/// The materials of voxels with wound fibers: one for each direction that a part has them in, so that voxels which differ
-/// only in their place along the axis share theirs.
-pub(crate) struct Wound {
-    pub(crate) materials: Vec<HyperelasticMaterial>,
-    /// By the part, and the bits of the directions.
-    numbers: HashMap<(u32, Vec<[u64; 3]>), u32>,
-    first: u32,
-}
-
-impl Wound {
-    /// None yet, numbered from `first` on.
-    pub(crate) fn beside(first: usize) -> Self {
-        Self {
-            materials: Vec::new(),
-            numbers: HashMap::new(),
-            first: first as u32,
-        }
-    }
-
-    /// The number of a material of a part as it is at a voxel.
-    pub(crate) fn number(&mut self, part: u32, material: HyperelasticMaterial) -> u32 {
-        let fibers = material.fibers().iter();
-        let bits = fibers.map(|fiber| fiber.direction.map(f64::to_bits));
-        let next = self.first + self.materials.len() as u32;
-        *self
-            .numbers
-            .entry((part, bits.collect()))
-            .or_insert_with(|| {
-                self.materials.push(material);
-                next
-            })
     }
 }
 

@@ -1,0 +1,38 @@
+//! Materials that differ from voxel to voxel.
+
+use std::collections::HashMap;
+
+use super::HyperelasticMaterial;
+
+/// The materials of voxels of parts that have wound fibers or growth that is a field: one for each direction and each share,
+/// so that voxels which differ only in their place along an axis have theirs in common.
+pub(crate) struct LocalMaterials {
+    pub(crate) materials: Vec<HyperelasticMaterial>,
+    /// By the part, and the bits of what differs.
+    numbers: HashMap<(u32, Vec<u64>), u32>,
+    first: u32,
+}
+
+impl LocalMaterials {
+    /// None yet, numbered from `first` on.
+    pub(crate) fn beside(first: usize) -> Self {
+        Self {
+            materials: Vec::new(),
+            numbers: HashMap::new(),
+            first: first as u32,
+        }
+    }
+
+    /// The number of a material of a part as it is at a voxel.
+    pub(crate) fn number(&mut self, part: u32, material: HyperelasticMaterial) -> u32 {
+        let directions = material.fibers().iter().flat_map(|fiber| fiber.direction);
+        let growths = material.growths();
+        let shares = growths.iter().flat_map(|growth| growth.shares());
+        let bits = directions.chain(shares).map(f64::to_bits).collect();
+        let next = self.first + self.materials.len() as u32;
+        *self.numbers.entry((part, bits)).or_insert_with(|| {
+            self.materials.push(material);
+            next
+        })
+    }
+}
