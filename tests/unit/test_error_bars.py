@@ -8,8 +8,9 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison import ErrorBar, discretization_error
-from voxsoft.design import families
+from voxsoft.design import Body, families
 from voxsoft.jobs import RunSpec, run_job
+from voxsoft.simulation.choice import settings_at_rest
 from voxsoft.units import kPa, mm
 
 RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.45)
@@ -130,6 +131,43 @@ def test_without_bars_the_reason_stands_there(design, reason):
     assert not found.voxel_sizes
     assert reason in found.sentence
     assert "Try:" in found.sentence
+
+
+def test_motion_has_bars_of_its_end_where_they_are_asked_for():
+    moving = {"end_time": "40 ms", "method": "dynamics", "time_step": "2 ms", "damping": "50 1/s"}
+    found = vs.error_bars(vs.simulate(beam(error="finer", **moving)))
+    assert found.voxel_sizes == (5 * mm, 2.5 * mm)
+    finest = vs.simulate(beam(**moving).with_values("voxel_size=1.25 mm")).probes["tip"][2]
+    tip = found.probes["tip"][2]
+    assert abs(finest - tip.estimate) < tip.error < 0.2 * abs(finest)
+
+
+def test_an_equilibrium_of_a_design_of_motion_has_bars():
+    still = vs.simulate(beam(end_time="1 s"), **settings_at_rest())
+    found = vs.error_bars(still)
+    assert found.probes["tip"][2].estimate == pytest.approx(
+        vs.error_bars(vs.simulate(beam())).probes["tip"][2].estimate
+    )
+
+
+@pytest.mark.parametrize("levels", [1, 2])
+def test_several_bodies_have_bars_as_each_of_them(levels):
+    alone = vs.error_bars(vs.simulate(beam()))
+    two = [
+        Body(name=name, design=beam(), position=(x, 0, 0))
+        for name, x in [("left", -0.05), ("right", 0.05)]
+    ]
+    both = vs.Design(name="both", voxel_size="3 mm", bodies=two, loads=beam().loads)
+    if levels == 2:
+        both = both.replace(voxel_size=1 * mm, bodies=[Body(name="pair", design=both)])
+    found = vs.error_bars(vs.simulate(both))
+    names = [name for name in found.probes if name.endswith("left.tip")]
+    for name in names:
+        for bar, own in zip(found.probes[name], alone.probes["tip"], strict=True):
+            assert bar.value == pytest.approx(own.value, abs=1e-9)
+            assert bar.error == pytest.approx(own.error, abs=1e-8)
+    assert len(names) == 1
+    assert found.voxels == tuple(2 * count for count in alone.voxels)
 
 
 def test_another_body_on_coarser_voxels_gives_no_bar(monkeypatch):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
+from voxsoft.comparison.other_voxels import on_voxels
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.design.discretize import voxels_of
@@ -25,7 +26,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.metrics import METRICS
 from voxsoft.simulation import Result, simulate
-from voxsoft.simulation.choice import kind_of
+from voxsoft.simulation.choice import kind_of, settings_at_rest
 from voxsoft.simulation.touching import has_contact
 
 #: Voxels that finer ones may be without being asked for: some 10 s for a body of rubber.
@@ -87,8 +88,9 @@ def error_bars(
     -------
     ErrorBars
         None, with the reason, where the numbers say nothing of their error: without an
-        equilibrium, in motion over time, with several bodies, for lattices unless `error` or
-        `accuracy` asks for them, or where voxels of no other size can be solved.
+        equilibrium, in motion over time and for lattices unless `error` or `accuracy` asks for
+        them, or where voxels of no other size can be solved. Those of a motion are of its end, with
+        the same steps in time.
 
     Examples
     --------
@@ -103,11 +105,21 @@ def error_bars(
     >>> abs(bar.value - bar.estimate) < 1.01 * bar.error < 0.02 * bar.estimate
     True
     """
+    result = _of_equilibrium(result)
     refusal = _refusal(result)
     if refusal is not None:
         return ErrorBars.none(*refusal)
     search = _Search(result, progress, announce, solve)
     return search.until_accurate() if _wants_accuracy(result.design) else search.pair()
+
+
+def _of_equilibrium(result: Result) -> Result:
+    """A design of motion may have been brought to rest all the same, as the studio does."""
+    design = result.design
+    if result.solver["method"] != "statics" or kind_of(design, design.solver).to_rest:
+        return result
+    at_rest = design.solver.replace(**settings_at_rest())
+    return replace(result, design=design.replace(solver=at_rest))
 
 
 def _refusal(result: Result) -> tuple[str, str] | None:
@@ -117,14 +129,13 @@ def _refusal(result: Result) -> tuple[str, str] | None:
         return 'the solver\'s error is "off"', 'write error = "auto"'
     if result.status != "ok":
         return "the run did not come to rest", "solve that first"
-    if not kind_of(design, design.solver).to_rest:
-        return "motion over time has none", "compare runs on several voxel sizes"
-    if result.mesh.bodies:
-        return "several bodies have none yet", "compare runs on several voxel sizes"
+    unasked = design.solver.error == "auto" and not _wants_accuracy(design)
+    if unasked and not kind_of(design, design.solver).to_rest:
+        return "motion over time has none unless it is asked for", 'write error = "coarser"'
     if result.mesh.voxel_size is None:
         return "the mesh is not made of voxels", "compare several meshes"
     lattice = any(isinstance(design.material_of(part), Lattice) for part in design.parts)
-    if lattice and design.solver.error == "auto" and not _wants_accuracy(design):
+    if lattice and unasked:
         what = "the constants of a lattice are fitted on voxels of one size, and hold its error"
         return what, 'take rubber, or write error = "finer" to see how the size changes it'
     return None
@@ -132,9 +143,10 @@ def _refusal(result: Result) -> tuple[str, str] | None:
 
 @dataclass
 class _Run:
-    """A run and what tells whether another one holds the same body."""
+    """A run and what tells whether another one holds the same bodies."""
 
     result: Result
+    #: Of the voxels in m; of several bodies that of the design, which all keep their ratio to.
     size: float
 
     @cached_property
@@ -144,12 +156,9 @@ class _Run:
     @cached_property
     def wall(self) -> int:
         """Voxels through the thinnest wall."""
-        design = self.result.design.replace(voxel_size=self.size)
-        cells = voxels_of(design)
-        found = [wall.thickness for wall in cells.cavity_walls]
-        if not found and (thinnest := cells.wall_thickness.thinnest) is not None:
-            found = [thinnest.thickness]
-        return min(found, default=1) * design.solver.refine
+        design = self.result.design
+        alone = [design.alone(name) for name in design.body_names] or [design]
+        return min(map(_thinnest_wall, alone)) * design.solver.refine
 
     def is_like(self, other: _Run) -> bool:
         """Whether both hold the same body, as far as volumes and extents can tell."""
@@ -164,6 +173,15 @@ class _Run:
             if not np.allclose(mine, theirs, rtol=0.0, atol=1e-6 * self.size):
                 return False
         return all(math.isclose(v, w, rel_tol=SAME_VOLUME) for v, w in volumes)
+
+
+def _thinnest_wall(design: Design) -> int:
+    """Voxels through the thinnest wall of a body."""
+    cells = voxels_of(design)
+    found = [wall.thickness for wall in cells.cavity_walls]
+    if not found and (thinnest := cells.wall_thickness.thinnest) is not None:
+        found = [thinnest.thickness]
+    return min(found, default=1)
 
 
 class _Search:
@@ -239,8 +257,8 @@ class _Search:
         if self._announce is not None:
             seconds = self.own.result.seconds * TIMES_AS_LONG ** (math.log2(finer) / 3.0)
             self._announce(size, round(finer * self.own.voxels), seconds)
-        other = design.with_values(f"voxel_size={size * 1e3!r} mm")
         try:
+            other = on_voxels(design, size / self.own.size)
             begin = None if coarser is None else coarser.result
             if self._solve is None:
                 result = simulate(other, progress=self._progress, coarser=begin)
