@@ -118,6 +118,23 @@ def test_a_section_opens_the_cavity(result):
     assert orange[1] > 500
 
 
+def test_a_frame_is_drawn_as_a_run_that_ends_there():
+    beam = families.beam().with_values("parts.0.material=ecoflex-00-30")
+    moving = {"record_interval": "10 ms", "time_step": "10 ms", "method": "dynamics"}
+    long = vs.simulate(beam, frames=True, end_time="60 ms", **moving)
+    short = vs.simulate(beam, end_time="30 ms", **moving)
+    frame = int(np.flatnonzero(np.isclose(long.recording.times, 0.03))[0])
+    at_end, within, last = (
+        pixels(each) for each in (plot_body(short), plot_body(long, frame=frame), plot_body(long))
+    )
+    assert np.abs(within - at_end).max() <= 1
+    assert np.abs(within - last).max() > 80
+    with pytest.raises(MeshError, match="the run recorded 7"):
+        plot_body(long, frame=7)
+    with pytest.raises(MeshError, match="frames=True"):
+        plot_body(short, frame=0)
+
+
 def test_parts_have_colors_of_their_own():
     one, two = (vs.Voxels.from_array([[[1, last]]], voxel_size=0.005).mesh() for last in (1, 2))
     same, other = (pixels(plot_body(mesh, "part", lines=False)) for mesh in (one, two))
@@ -131,6 +148,7 @@ def test_parts_have_colors_of_their_own():
         ({"field": [1.0, 2.0]}, "one number for each of 660 vertices"),
         ({"field": np.full(660, np.nan)}, "no finite number"),
         ({"section": ("x", -1.0)}, "leaves nothing"),
+        ({"frame": 0}, "is for a result"),
     ],
 )
 def test_what_cannot_be_drawn_is_reported(result, options, words):

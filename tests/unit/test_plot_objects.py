@@ -9,6 +9,7 @@ from pressed import PLATE, POST, SIDE, pressed
 import voxsoft as vs
 from voxsoft.plot import plot_body
 from voxsoft.plot.body import body_image
+from voxsoft.plot.frames import at_frame
 from voxsoft.plot.objects import cut, near, objects_of
 from voxsoft.simulation import simulate
 from voxsoft.units import mm
@@ -51,6 +52,18 @@ def test_a_body_shows_through_what_is_in_front_of_it(beside):
     side = with_post.shape[1] / 12.5
     assert covered.sum() == pytest.approx((4 * side) ** 2, rel=0.2)
     assert np.ptp(with_post[covered], axis=1).mean() > 20  # not gray: colors of the body in it
+
+
+def test_a_frame_has_objects_where_they_were(beside):
+    away = ((0.0, 0.0, 0.0), (1.0, 2.0, 3.0))
+    recording = replace(
+        beside.recording,
+        frames=np.stack([beside.mesh.vertices, beside.positions]),
+        objects={"post": (np.array(away), np.stack([np.eye(3)] * 2))},
+    )
+    there = at_frame(replace(beside, recording=recording), -1)
+    assert there.objects["post"].position == away[1]
+    assert at_frame(replace(beside, recording=recording), 0).objects["post"].position == away[0]
 
 
 def test_objects_are_where_the_result_has_them(result):

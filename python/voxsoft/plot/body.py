@@ -15,6 +15,7 @@ from voxsoft.plot import shading
 from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.color_range import CLIP, ColorRange, color_range
+from voxsoft.plot.frames import at_frame
 from voxsoft.plot.objects import cut, near, objects_of, with_objects
 from voxsoft.plot.quantities import Scale, scale_for
 from voxsoft.plot.raster import Raster, rasterize
@@ -59,6 +60,7 @@ def plot_body(
     ghost: bool = True,
     lines: bool | None = None,
     objects: bool | None = None,
+    frame: int | None = None,
     title: str | None = None,
 ) -> Figure:
     """Draw a body: shaded, deformed as it is, with its tendons and a scale bar.
@@ -88,6 +90,9 @@ def plot_body(
     objects
         Whether to draw the rigid objects of a result, gray; default: but where the color says what
         they press.
+    frame
+        Which recorded frame of a result to draw, in place of its end: a run with ``frames=True``
+        has one for each of ``result.recording.times``. Tendons are drawn at the end alone.
     title
         Default: the name of the design.
 
@@ -99,8 +104,8 @@ def plot_body(
     Raises
     ------
     MeshError
-        An unknown field, a number of values that is not that of the vertices, or a section that
-        leaves nothing.
+        An unknown field, a number of values that is not that of the vertices, a section that
+        leaves nothing, or a frame that was not recorded.
 
     Examples
     --------
@@ -110,6 +115,10 @@ def plot_body(
     >>> figure.axes[1].get_ylabel()
     'height (mm)'
     """
+    if frame is not None:
+        if not isinstance(body, Result):
+            raise MeshError("frame", "is for a result, and a mesh came", "leave it out")
+        body = at_frame(body, frame)
     mesh = body.mesh if isinstance(body, Result) else body
     positions = body.positions if isinstance(body, Result) else mesh.vertices
     has_ghost = ghost and isinstance(body, Result) and section is None
