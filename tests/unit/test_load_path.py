@@ -291,7 +291,7 @@ def test_tendons_pull_along_a_path_and_friction_makes_a_loop():
     assert there < 0.98 * rise[2] < 0.98 * back
 
 
-def test_supplies_that_change_over_time_are_refused_along_a_path():
+def test_histories_of_supplies_are_refused_along_a_path_of_values():
     hollow = vs.Box(size=("20 mm",) * 3) - vs.Box(size=("10 mm",) * 3, corner=("5 mm",) * 3)
     filled = beam(
         parts=[vs.Part(shape=hollow, material=RUBBER)],
@@ -308,4 +308,4 @@ def test_supplies_that_change_over_time_are_refused_along_a_path():
         ],
     )
     with pytest.raises(SimulationError, match=r"supplies\[0\].history"):
-        vs.follow(filled, "time=0..1 s/3")
+        vs.follow(filled, "supplies[0].value=0..0.1 mL/3")

@@ -8,6 +8,7 @@ import voxsoft as vs
 from voxsoft import _core
 from voxsoft.design import Connection, FlowSupply, Liquid, MassSupply, PressureSupply, VolumeSupply
 from voxsoft.design.fluid import ATMOSPHERE, FLUIDS, ROOM
+from voxsoft.errors import DesignError, SimulationError
 from voxsoft.simulation import Setup, simulate
 from voxsoft.units import kPa, mm
 
@@ -479,3 +480,82 @@ def test_multigrid_and_a_direct_factor_find_the_same(fluid):
     assert one.path.stable
     assert other.path.stable
     assert one.chambers[0, 0] == pytest.approx(other.chambers[0, 0], rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("varied", "still", "key", "values"),
+    [
+        (
+            VolumeSupply(chamber="left", value="0.3 mL"),
+            PressureSupply(chamber="right", value="5 kPa"),
+            "value",
+            "-0.2..0.4 mL/4",
+        ),
+        (
+            PressureSupply(chamber="left", value="5 kPa"),
+            VolumeSupply(chamber="right", value="0.1 mL", fluid="water"),
+            "value",
+            "8..-4 kPa/4",
+        ),
+        (
+            MassSupply(chamber="left", temperature="300 K"),
+            MassSupply(chamber="right"),
+            "temperature",
+            "280..340 K/4",
+        ),
+        (
+            FlowSupply(chamber="left", source="5 kPa", valve={"conductance": "0.1 L/s/bar"}),
+            MassSupply(chamber="right"),
+            "source",
+            "0..6 kPa/4",
+        ),
+    ],
+    ids=["syringe", "regulator", "heat", "source"],
+)
+def test_along_a_path_of_supplies_each_state_is_that_of_a_single_run(varied, still, key, values):
+    design = pair(varied, still)
+    path = vs.follow(design, f"supplies[0].{key}={values}")
+    assert path.status == "ok"
+    for found in path.results:
+        alone = simulate(found.design)
+        for here, there in zip(found.supplies, alone.supplies, strict=True):
+            assert here.pressure == pytest.approx(there.pressure, rel=1e-5, abs=1e-2)
+            assert here.volume == pytest.approx(there.volume, rel=1e-6)
+            assert here.mass == pytest.approx(there.mass, rel=1e-6)
+        assert found.positions == pytest.approx(alone.positions, abs=1e-8)
+
+
+def test_work_goes_on_along_a_path_of_supplies_and_comes_back():
+    design = pair(VolumeSupply(chamber="left", value="0.4 mL", fluid="water"))
+    path = vs.follow(design, "supplies[0].value=0..0.4..0 mL/9")
+    work = [each.supplies[0].work for each in path.results]
+    (alone,) = simulate(design).supplies
+    # Steps of a path are added up by the trapezoidal rule, the longest ones being a quarter of it.
+    assert work[4] == pytest.approx(alone.work, rel=5e-3)
+    assert work[4] == max(work)
+    assert abs(work[-1]) < 5e-3 * work[4]
+
+
+def test_a_path_that_changes_more_of_supplies_is_refused():
+    leaky = FlowSupply(chamber="left", source="5 kPa", valve={"conductance": "0.1 L/s/bar"})
+    with pytest.raises(DesignError, match="changes more of supplies"):
+        vs.follow(pair(leaky), "supplies[0].valve.conductance=0.1..0.2 L/s/bar/2")
+
+
+def test_supplies_follow_their_histories_along_time():
+    ramp = {"time": ("0 s", "2 s"), "factor": (0, 1)}
+    pushed = VolumeSupply(chamber="left", value="0.4 mL", fluid="water")
+    held = PressureSupply(chamber="right", value="6 kPa")
+    moving = pair(*(each.replace(history=ramp) for each in (pushed, held)))
+    path = vs.follow(moving, "time=0..2 s/3")
+    for found, part in zip(path.results, (0.0, 0.5, 1.0), strict=True):
+        now = simulate(pair(*(each.replace(value=part * each.value) for each in (pushed, held))))
+        assert found.positions == pytest.approx(now.positions, abs=1e-8)
+        assert found.supplies[1].pressure == pytest.approx(part * 6 * kPa)
+
+
+def test_a_valve_that_opens_over_time_is_refused_along_time():
+    valve = {"conductance": "0.1 L/s/bar", "history": {"time": ("0 s", "1 s"), "factor": (0, 1)}}
+    filled = pair(FlowSupply(chamber="left", source="5 kPa", valve=valve))
+    with pytest.raises(SimulationError, match=r"supplies\[0\].valve.history: is not followed"):
+        vs.follow(filled, "time=0..1 s/3")

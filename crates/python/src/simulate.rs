@@ -938,7 +938,7 @@ impl PyProblem {
         let (load, load_moment) = total_load_under(&self.problem, positions, factor_of);
         let sensors = watch.sensors.len();
         let now = self.problem.fluid().map_or(Vec::new(), |fluid| {
-            fluid.read(positions, fluid.part(factor_of))
+            fluid.read(positions, fluid.instant(factor_of))
         });
         let now: Vec<[f64; 6]> = now.iter().map(|reading| reading.numbers()).collect();
         let read = if watch.chambers.is_empty() {

@@ -78,13 +78,13 @@ impl Watch {
         if now.record {
             self.record(now.positions, now.time);
             if let Some(fluid) = &self.fluid {
-                // Without velocities it is a point of a path of equilibria, and the time its load factor.
-                let part = if now.velocities.is_empty() {
-                    now.time
+                // Without velocities it is a point of a path of equilibria, which the fluid has taken.
+                let instant = if now.velocities.is_empty() {
+                    fluid.last_instant()
                 } else {
-                    1.0
+                    voxsoft_solid::fluid::Instant::at_the_end(1.0)
                 };
-                let readings = fluid.read(now.positions, part);
+                let readings = fluid.read(now.positions, instant);
                 self.chambers
                     .extend(readings.iter().flat_map(|reading| reading.numbers()));
             }

@@ -183,7 +183,7 @@ impl Problem {
             load.kind.add_forces(on, factor_of(load), forces);
         }
         if let Some(fluid) = &self.fluid {
-            fluid.add_forces(positions, fluid.part(factor_of), forces);
+            fluid.add_forces(positions, fluid.instant(factor_of), forces);
         }
     }
 
@@ -282,7 +282,7 @@ impl Problem {
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
         let on = self.vertices(positions);
         let potential = |load: &Load| load.kind.potential(on, factor_of(load));
-        let of_fluid = |fluid: &Fluid| fluid.potential(positions, fluid.part(factor_of));
+        let of_fluid = |fluid: &Fluid| fluid.potential(positions, fluid.instant(factor_of));
         let of_loads: f64 = self.loads.iter().map(potential).sum();
         self.fluid.as_ref().map_or(0.0, of_fluid) + of_loads
     }
@@ -315,7 +315,7 @@ impl Problem {
             load.kind.visit_stiffness(positions, factor, visit);
         }
         if let Some(fluid) = &self.fluid {
-            fluid.visit_stiffness(positions, fluid.part(factor_of), visit);
+            fluid.visit_stiffness(positions, fluid.instant(factor_of), visit);
         }
     }
 
@@ -326,7 +326,7 @@ impl Problem {
         factor_of: &dyn Fn(&Load) -> f64,
     ) -> Option<Coupling> {
         let fluid = self.fluid.as_ref()?;
-        Some(fluid.coupling(positions, fluid.part(factor_of)))
+        Some(fluid.coupling(positions, fluid.instant(factor_of)))
     }
 
     /// Hands over the vertices of every element and every piece of the loads' stiffness: the tangent joins no

@@ -57,6 +57,7 @@ fn chamber(medium: Medium, over: f64) -> Chamber {
         temperature: Ramp(ROOM, ROOM),
         outside: Ramp(0.0, 0.0),
         history: always(),
+        path: None,
         held: None,
     }
 }

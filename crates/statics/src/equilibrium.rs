@@ -407,8 +407,9 @@ impl<'a> Equilibrium<'a> {
                 Some(strains) => strains.carry(body, positions, &moves),
                 None => Strains::predict(body, positions, &moves),
             });
-            carried = fluid
-                .map(|fluid| fluid.carried_on(positions, fluid.part(&point.factor_of()), &moves));
+            carried = fluid.map(|fluid| {
+                fluid.carried_on(positions, fluid.instant(&point.factor_of()), &moves)
+            });
             drop(carrying);
             for (x, m) in positions.iter_mut().zip(&moves) {
                 *x = add(*x, *m);

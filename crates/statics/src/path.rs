@@ -255,7 +255,7 @@ impl Path<'_, '_> {
         let problem = self.equilibrium.problem;
         problem.accept_loads(&positions, &point.factor_of());
         if let Some(fluid) = self.equilibrium.problem.fluid() {
-            fluid.take_rest(&positions, fluid.part(&point.factor_of()));
+            fluid.take_rest(&positions, fluid.instant(&point.factor_of()));
         }
         self.positions = positions;
         self.point = point;

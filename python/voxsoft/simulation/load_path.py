@@ -8,7 +8,7 @@ meshed once.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from statistics import fmean
@@ -28,6 +28,7 @@ from voxsoft.errors import DesignError, SimulationError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation.choice import method_of
 from voxsoft.simulation.equilibrium import LoadControl, Stretch, find_equilibrium
+from voxsoft.simulation.fluid_path import FluidPath, SetupAlong
 from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.over import TIME, Over
 from voxsoft.simulation.result import Result
@@ -42,6 +43,8 @@ from voxsoft.simulation.touching import refuse_contact
 _LONGEST: Final = 0.05
 #: What may change along a path: the rest of the design says what is meshed.
 _ALONG: Final = ("loads", "tendons", "clamps", "objects")
+#: What may change too, each in a way of its own.
+_ALONG_OTHERWISE: Final = ("activations", "supplies")
 #: What one number a path has, by :data:`voxsoft.design.target.Along`.
 _ALONG_PATH: Final[Mapping[Along, Callable[[Sequence[float]], float]]] = {
     "last": lambda values: values[-1],
@@ -203,12 +206,22 @@ def follow(
     _check(given, solver)
     check_softening(given)
     if asked.key == TIME:
-        _check_supplies(given)
+        _check_supplies(given, over_time=True)
     designs = [_with_value(given, asked, number) for number in range(len(asked.values))]
     if asked.key != TIME:
         designs = _remembering(designs)
     timed, instants = _joined(designs, asked, given)
     setup = Setup.of(timed, refine=solver.refine)
+    if any(each.supplies != timed.supplies for each in designs):
+        _check_supplies(given, over_time=False)
+        fluids = FluidPath(
+            timed,
+            setup.mesh,
+            designs=tuple(designs),
+            instants=tuple(instants),
+            key=asked.key,
+        )
+        setup = SetupAlong(setup.design, setup.mesh, along=fluids)
     part = SectorSetup.part_of(setup)
     solved = setup if part is None else part
     swells = any(_sizes(each) != _sizes(given) for each in designs)
@@ -268,15 +281,30 @@ def _check(design: Design, solver: Solver) -> None:
         )
 
 
-def _check_supplies(design: Design) -> None:
-    """Refuse a path over time of what flows: equilibria know supplies at their end alone."""
+def _check_supplies(design: Design, *, over_time: bool) -> None:
+    """Refuse histories of supplies where equilibria cannot follow them: flow takes time."""
+    for where in _supply_histories(design, of_valves_alone=over_time):
+        what = "is gone through at each value of the path"
+        raise SimulationError(
+            where,
+            "is not followed by a path of equilibria" if over_time else what,
+            "leave it out, or give the design an end_time: motion over time fills the chamber",
+        )
+
+
+def _supply_histories(design: Design, *, of_valves_alone: bool) -> Iterator[str]:
+    """The places of histories of supplies and of their valves."""
     for index, supply in enumerate(design.supplies):
-        if supply.history is not None:
-            raise SimulationError(
-                f"supplies[{index}].history",
-                "is not followed by a path of equilibria",
-                "give the design an end_time, and motion over time fills the chamber",
-            )
+        if supply.history is not None and not of_valves_alone:
+            yield f"supplies[{index}].history"
+        for name in ("valve", "leak"):
+            valve = getattr(supply, name, None)
+            if valve is not None and valve.history is not None:
+                yield f"supplies[{index}].{name}.history"
+    for index, connection in enumerate(design.connections):
+        valve = connection.valve
+        if valve is not None and valve.history is not None:
+            yield f"connections[{index}].valve.history"
 
 
 def _with_value(design: Design, over: Over, number: int) -> Design:
@@ -358,7 +386,7 @@ def _joined(designs: list[Design], over: Over, given: Design) -> tuple[Design, l
     first = designs[0]
     for other in designs[1:]:
         for name in Design.model_fields:
-            if name in (*_ALONG, "activations", "parameters", "included"):
+            if name in (*_ALONG, *_ALONG_OTHERWISE, "parameters", "included"):
                 continue
             if getattr(first, name) != getattr(other, name):
                 raise DesignError(

@@ -43,6 +43,28 @@ const GAUSS: [(f64, f64); 5] = [
 /// Into how many parts of equal ratio the way from one volume to another is cut for it.
 const PARTS: i32 = 4;
 
+/// What rounding may leave of a time, as a part of it.
+const ROUNDING: f64 = 1e-12;
+
+/// An instant of a body at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// How far everything has gone on the way from the unloaded body.
+    pub part: f64,
+    /// The time of histories in s.
+    pub time: f64,
+}
+
+impl Instant {
+    /// After all histories.
+    pub fn at_the_end(part: f64) -> Self {
+        Self {
+            part,
+            time: f64::INFINITY,
+        }
+    }
+}
+
 /// The walls of a chamber, each with its weight in place of a pressure: both ways to cut them have a half.
 pub type Walls = Vec<Pressure>;
 
@@ -53,6 +75,8 @@ pub struct Fluid {
     walls: Arc<Vec<Walls>>,
     /// A load whose factor is the part of the way from the unloaded body.
     part: Load,
+    /// A load whose factor is that times the time in s, up to the end of all histories.
+    clock: Load,
     state: Arc<Mutex<State>>,
 }
 
@@ -79,16 +103,24 @@ impl Fluid {
             });
         }
         let count = walls.len();
+        let end = network.end();
+        let clock = if end > 0.0 {
+            History::new(vec![0.0, end], vec![0.0, end])?
+        } else {
+            History::constant()
+        };
+        let nothing = |history: History| Load {
+            kind: LoadKind::Forces(PointForces {
+                vertices: Vec::new(),
+                forces: Vec::new(),
+            }),
+            history,
+        };
         Ok(Self {
             network: Arc::new(network),
             walls: Arc::new(walls),
-            part: Load {
-                kind: LoadKind::Forces(PointForces {
-                    vertices: Vec::new(),
-                    forces: Vec::new(),
-                }),
-                history: History::constant(),
-            },
+            part: nothing(History::constant()),
+            clock: nothing(clock),
             state: Arc::new(Mutex::new(State {
                 exchanged: vec![0.0; count],
                 before: vec![0.0; count],
@@ -127,9 +159,15 @@ impl Fluid {
         self.network.end()
     }
 
-    /// What the factor of a load is the part of the way for.
-    pub fn part(&self, factor_of: &dyn Fn(&Load) -> f64) -> f64 {
-        factor_of(&self.part)
+    /// The instant of a state at rest, told by the factors that loads have in it.
+    pub fn instant(&self, factor_of: &dyn Fn(&Load) -> f64) -> Instant {
+        let part = factor_of(&self.part);
+        let (time, end) = (factor_of(&self.clock) / part, self.network.end());
+        if time < (1.0 - ROUNDING) * end {
+            Instant { part, time }
+        } else {
+            Instant::at_the_end(part)
+        }
     }
 
     /// The triangles that it pushes.
@@ -153,13 +191,14 @@ impl Fluid {
     }
 
     /// The pressures that push, those whose stiffness the walls feel, and how pressures follow volumes.
-    fn answer(&self, volumes: &[f64], part: f64) -> (Pressures, Vec<f64>) {
+    fn answer(&self, volumes: &[f64], instant: Instant) -> (Pressures, Vec<f64>) {
+        let Instant { part, time } = instant;
         let state = self.state();
         let found = match (&state.carried, &state.step) {
             (Some(near), Some(step)) => self.network.along_end_of(step, near, volumes),
-            (Some(near), None) => self.network.along_rest(near, volumes, part, f64::INFINITY),
+            (Some(near), None) => self.network.along_rest(near, volumes, part, time),
             (None, Some(step)) => self.network.at_end_of(step, volumes),
-            (None, None) => self.network.at_rest(volumes, part, f64::INFINITY),
+            (None, None) => self.network.at_rest(volumes, part, time),
         };
         let n = volumes.len();
         let found = found.unwrap_or_else(|| Pressures {
@@ -174,8 +213,8 @@ impl Fluid {
     }
 
     /// Adds the forces (N) on the walls.
-    pub fn add_forces(&self, positions: &[Vec3], part: f64, forces: &mut [Vec3]) {
-        let (found, _) = self.answer(&self.volumes(positions), part);
+    pub fn add_forces(&self, positions: &[Vec3], instant: Instant, forces: &mut [Vec3]) {
+        let (found, _) = self.answer(&self.volumes(positions), instant);
         let on = bare(positions);
         for (walls, pressure) in self.walls.iter().zip(found.pressures) {
             walls
@@ -185,13 +224,15 @@ impl Fluid {
     }
 
     /// Its potential (J), up to a constant of the step.
-    pub fn potential(&self, positions: &[Vec3], part: f64) -> f64 {
+    pub fn potential(&self, positions: &[Vec3], instant: Instant) -> f64 {
         let volumes = self.volumes(positions);
         let step = self.state().step.clone();
         match step {
             Some(step) if !self.network.is_closed() => -self.work_in(&step, &volumes),
             Some(step) => -self.network.work_at_rest(&volumes, 1.0, step.time),
-            None => -self.network.work_at_rest(&volumes, part, f64::INFINITY),
+            None => -self
+                .network
+                .work_at_rest(&volumes, instant.part, instant.time),
         }
     }
 
@@ -230,8 +271,8 @@ impl Fluid {
     }
 
     /// Hands over the part of the stiffness that joins neighbors (N/m).
-    pub fn visit_stiffness(&self, positions: &[Vec3], part: f64, visit: Visitor<'_>) {
-        let (_, bent) = self.answer(&self.volumes(positions), part);
+    pub fn visit_stiffness(&self, positions: &[Vec3], instant: Instant, visit: Visitor<'_>) {
+        let (_, bent) = self.answer(&self.volumes(positions), instant);
         for (walls, pressure) in self.walls.iter().zip(bent) {
             for wall in walls {
                 wall.visit_stiffness(positions, pressure, visit);
@@ -248,8 +289,8 @@ impl Fluid {
     }
 
     /// The part of the stiffness that joins all of the walls.
-    pub fn coupling(&self, positions: &[Vec3], part: f64) -> Coupling {
-        let (found, _) = self.answer(&self.volumes(positions), part);
+    pub fn coupling(&self, positions: &[Vec3], instant: Instant) -> Coupling {
+        let (found, _) = self.answer(&self.volumes(positions), instant);
         Coupling {
             gradients: self.gradients(positions),
             stiffness: found.stiffness,
@@ -279,8 +320,8 @@ impl Fluid {
     }
 
     /// The pressures to carry along after a move of the vertices, to first order.
-    pub fn carried_on(&self, positions: &[Vec3], part: f64, moves: &[Vec3]) -> Vec<f64> {
-        let (found, _) = self.answer(&self.volumes(positions), part);
+    pub fn carried_on(&self, positions: &[Vec3], instant: Instant, moves: &[Vec3]) -> Vec<f64> {
+        let (found, _) = self.answer(&self.volumes(positions), instant);
         let grown: Vec<f64> = (self.gradients(positions).iter())
             .map(|gradient| {
                 let pairs = gradient.as_flattened().iter().zip(moves.as_flattened());

@@ -1,7 +1,7 @@
 //! A fluid from one accepted state to the next: along a path of equilibria, or over time.
 
-use super::Fluid;
 use super::network::{Network, Step};
+use super::{Fluid, Instant};
 use crate::vector::Vec3;
 
 /// What it remembers between steps and iterations.
@@ -69,7 +69,7 @@ impl Fluid {
     pub fn start(&self, positions: &[Vec3], time: Option<f64>) {
         let volumes = self.volumes(positions);
         let network = &self.network;
-        let (part, moment) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
+        let (part, instant) = time.map_or((0.0, f64::INFINITY), |time| (1.0, time));
         let n = volumes.len();
         // What has not been joined yet is as it was put in.
         let alone = Network {
@@ -78,16 +78,16 @@ impl Fluid {
             ..(**network).clone()
         };
         let found = if time.is_some() {
-            alone.at_rest(&volumes, part, moment)
+            alone.at_rest(&volumes, part, instant)
         } else {
-            network.at_rest(&volumes, part, moment)
+            network.at_rest(&volumes, part, instant)
         };
         let pressures = found.map_or(vec![f64::NAN; n], |found| found.pressures);
         let power = match time {
             Some(time) => network.power(&pressures, time),
             None => vec![0.0; n],
         };
-        let masses = network.masses(&volumes, &pressures, part, moment);
+        let masses = network.masses(&volumes, &pressures, part, instant);
         *self.state() = State {
             step: None,
             carried: None,
@@ -100,7 +100,7 @@ impl Fluid {
                 volumes,
                 pressures,
                 part,
-                time: moment,
+                time: instant,
                 power,
                 masses,
             }),
@@ -169,25 +169,34 @@ impl Fluid {
     }
 
     /// Takes a state as a point of a path of equilibria.
-    pub fn take_rest(&self, positions: &[Vec3], part: f64) {
+    pub fn take_rest(&self, positions: &[Vec3], instant: Instant) {
         let volumes = self.volumes(positions);
-        if let Some(found) = self.network.at_rest(&volumes, part, f64::INFINITY) {
+        let Instant { part, time } = instant;
+        if let Some(found) = self.network.at_rest(&volumes, part, time) {
             let power = vec![0.0; volumes.len()];
-            let masses = self
-                .network
-                .masses(&volumes, &found.pressures, part, f64::INFINITY);
+            let masses = self.network.masses(&volumes, &found.pressures, part, time);
             self.state().count(
                 &self.network,
                 Last {
                     volumes,
                     pressures: found.pressures,
                     part,
-                    time: f64::INFINITY,
+                    time,
                     power,
                     masses,
                 },
             );
         }
+    }
+
+    /// The instant of the last accepted state; that of the unloaded body where there is none.
+    pub fn last_instant(&self) -> Instant {
+        let state = self.state();
+        let last = state.last.as_ref();
+        last.map_or(Instant::at_the_end(0.0), |last| Instant {
+            part: last.part,
+            time: last.time,
+        })
     }
 
     /// Those of the last accepted state, Pa.
@@ -213,11 +222,12 @@ impl Fluid {
     }
 
     /// Every chamber where the vertices are at `positions`.
-    pub fn read(&self, positions: &[Vec3], part: f64) -> Vec<Reading> {
+    pub fn read(&self, positions: &[Vec3], instant: Instant) -> Vec<Reading> {
         let volumes = self.volumes(positions);
-        let (found, _) = self.answer(&volumes, part);
+        let (found, _) = self.answer(&volumes, instant);
+        let part = instant.part;
         let state = self.state();
-        let time = state.step.as_ref().map_or(f64::INFINITY, |step| step.time);
+        let time = state.step.as_ref().map_or(instant.time, |step| step.time);
         let masses = self.network.masses(&volumes, &found.pressures, part, time);
         let flows: Vec<f64> = match &state.step {
             Some(step) if step.rate.is_finite() => {
@@ -254,7 +264,7 @@ impl State {
     /// Adds up work and energy on the way to a state, by the trapezoidal rule.
     fn count(&mut self, network: &Network, now: Last) {
         if let Some(last) = &self.last {
-            let step = if now.time.is_finite() {
+            let step = if now.time.is_finite() && last.time.is_finite() {
                 now.time - last.time
             } else {
                 0.0

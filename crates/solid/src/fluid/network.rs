@@ -29,6 +29,9 @@ pub struct Chamber {
     pub outside: Ramp,
     /// Times in s and factors of the three.
     pub history: Course,
+    /// Times in s and what the three come to at them, in place of their last values and the history.
+    #[serde(default)]
+    pub path: Option<[Course; 3]>,
     /// The source whose pressure it has whatever flows, by its index.
     #[serde(default)]
     pub held: Option<usize>,
@@ -154,6 +157,12 @@ impl Course {
     }
 }
 
+impl Chamber {
+    fn courses(&self) -> impl Iterator<Item = &Course> {
+        std::iter::once(&self.history).chain(self.path.iter().flatten())
+    }
+}
+
 impl Network {
     /// What is wrong with it, if anything.
     pub fn check(&self) -> Result<(), &'static str> {
@@ -170,7 +179,7 @@ impl Network {
         if !each.flat_map(|b| b.ends).all(known) || self.pumps.iter().any(|p| p.chamber >= count) {
             return Err("a line or a pump of a fluid ends nowhere");
         }
-        let chambers = self.chambers.iter().map(|chamber| &chamber.history);
+        let chambers = self.chambers.iter().flat_map(Chamber::courses);
         let sources = self.sources.iter().map(|source| &source.history);
         let pumps = self.pumps.iter().map(|pump| &pump.history);
         let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
@@ -186,7 +195,8 @@ impl Network {
 
     /// When nothing is changed from outside any more, s.
     pub fn end(&self) -> f64 {
-        let chambers = self.chambers.iter().map(|chamber| chamber.history.end());
+        let courses = self.chambers.iter().flat_map(Chamber::courses);
+        let chambers = courses.map(Course::end);
         let sources = self.sources.iter().map(|source| source.history.end());
         let pumps = self.pumps.iter().map(|pump| pump.history.end());
         let valves = self.branches.iter().filter_map(|b| b.opening.as_ref());
@@ -214,12 +224,18 @@ impl Network {
 
     pub(super) fn contents(&self, part: f64, time: f64) -> Vec<Content> {
         let at = |chamber: &Chamber| {
-            let part = part * chamber.history.at(time);
+            let ramps = [chamber.mass, chamber.temperature, chamber.outside];
+            let [mass, temperature, outside] = match &chamber.path {
+                None => ramps.map(|ramp| ramp.at(part * chamber.history.at(time))),
+                Some(path) => std::array::from_fn(|number| {
+                    Ramp(ramps[number].0, path[number].at(time)).at(part)
+                }),
+            };
             Content {
                 medium: chamber.medium,
-                mass: chamber.mass.at(part),
-                temperature: chamber.temperature.at(part),
-                outside: chamber.outside.at(part),
+                mass,
+                temperature,
+                outside,
             }
         };
         self.chambers.iter().map(at).collect()
