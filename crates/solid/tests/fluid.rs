@@ -2,7 +2,7 @@
 
 use voxsoft_solid::conformance::check_load;
 use voxsoft_solid::fluid::{
-    Branch, Chamber, Course, End, Fluid, Line, Medium, Network, Ramp, Source, Tube, Valve,
+    Branch, Chamber, Course, End, Fluid, Instant, Line, Medium, Network, Ramp, Source, Tube, Valve,
 };
 use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{ExternalForce, Hydrostatic, Pressure, Vertices};
@@ -38,6 +38,12 @@ fn wall(weight: f64) -> Pressure {
         closed: true,
     }
 }
+
+/// All of it, after all histories.
+const END: Instant = Instant {
+    part: 1.0,
+    time: f64::INFINITY,
+};
 
 fn volume() -> f64 {
     let on = Vertices {
@@ -109,7 +115,7 @@ fn add_product(vertices: &[u32], matrix: &[f64], field: &[Vec3], product: &mut [
 
 fn forces(fluid: &Fluid, positions: &[Vec3]) -> Vec<Vec3> {
     let mut forces = vec![[0.0; 3]; positions.len()];
-    fluid.add_forces(positions, 1.0, &mut forces);
+    fluid.add_forces(positions, END, &mut forces);
     forces
 }
 
@@ -130,10 +136,10 @@ fn check_derivatives(fluid: &Fluid, step: f64) {
     };
     let (ahead, behind) = (at(step), at(-step));
     let mut stiffness = vec![[0.0; 3]; x.len()];
-    fluid.visit_stiffness(&x, 1.0, &mut |vertices, matrix| {
+    fluid.visit_stiffness(&x, END, &mut |vertices, matrix| {
         add_product(vertices, matrix, &way, &mut stiffness);
     });
-    fluid.coupling(&x, 1.0).add_product(&way, &mut stiffness);
+    fluid.coupling(&x, END).add_product(&way, &mut stiffness);
     let (high, low) = (forces(fluid, &ahead), forces(fluid, &behind));
     let size = product(&stiffness, &stiffness).sqrt();
     for vertex in 0..x.len() {
@@ -144,7 +150,7 @@ fn check_derivatives(fluid: &Fluid, step: f64) {
         }
     }
     if fluid.is_conservative() {
-        let potential = |x: &[Vec3]| fluid.potential(x, 1.0);
+        let potential = |x: &[Vec3]| fluid.potential(x, END);
         let slope = (potential(&ahead) - potential(&behind)) / (2.0 * step);
         let power = product(&forces(fluid, &x), &way);
         assert!((slope + power).abs() < 1e-5 * power.abs());
@@ -193,7 +199,7 @@ fn what_two_chambers_exchange_is_not_lost() {
     let fluid = Fluid::new(both, vec![vec![wall(1.0)], vec![wall(1.0)]]).unwrap();
     assert!(!fluid.is_conservative());
     fluid.start(&corners(), Some(0.0));
-    let total = |fluid: &Fluid| -> f64 { fluid.read(&corners(), 1.0).iter().map(|r| r.mass).sum() };
+    let total = |fluid: &Fluid| -> f64 { fluid.read(&corners(), END).iter().map(|r| r.mass).sum() };
     let before = total(&fluid);
     let steps = 40;
     for step in 1..=steps {
@@ -207,7 +213,7 @@ fn what_two_chambers_exchange_is_not_lost() {
         check_derivatives(&fluid, 1e-5);
         fluid.take_step(&corners());
     }
-    let [a, b] = fluid.read(&corners(), 1.0)[..] else {
+    let [a, b] = fluid.read(&corners(), END)[..] else {
         panic!("two chambers")
     };
     // Forty roundings.
@@ -240,7 +246,7 @@ fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
     for (opening, expected) in [(vec![1.0, 0.0], 0.0), (vec![0.0, 1.0], 5e4)] {
         let fluid = filled(opening);
         fluid.start(&corners(), None);
-        let pressure = fluid.read(&corners(), 1.0)[0].pressure;
+        let pressure = fluid.read(&corners(), END)[0].pressure;
         assert!((pressure - expected).abs() < 1e-6 * ATMOSPHERE);
     }
     let fluid = filled(vec![0.5, 0.0]);
@@ -250,7 +256,7 @@ fn nothing_flows_through_a_closed_valve_at_rest_or_over_time() {
         fluid.begin(0.5 * f64::from(step), 2.0, [1.0, 0.0]);
         check_derivatives(&fluid, 1e-5);
         fluid.take_step(&corners());
-        masses.push(fluid.read(&corners(), 1.0)[0].mass);
+        masses.push(fluid.read(&corners(), END)[0].mass);
     }
     assert!(masses[0] > chamber(AIR, 1.0).mass.1);
     assert!(masses[1..].iter().all(|mass| *mass == masses[1]));
@@ -278,11 +284,11 @@ fn a_pressure_that_is_carried_along_ends_at_that_of_the_volume() {
     let sealed = network(vec![chamber(WATER, 1.001)], vec![], vec![]);
     let fluid = Fluid::new(sealed, vec![vec![wall(1.0)]]).unwrap();
     fluid.start(&corners(), None);
-    let pressure = fluid.read(&corners(), 1.0)[0].pressure;
+    let pressure = fluid.read(&corners(), END)[0].pressure;
     let mut carried = vec![0.9 * pressure];
     for _ in 0..6 {
         fluid.carry(Some(carried));
-        carried = fluid.carried_on(&corners(), 1.0, &[[0.0; 3]; 4]);
+        carried = fluid.carried_on(&corners(), END, &[[0.0; 3]; 4]);
     }
     fluid.carry(None);
     assert!((carried[0] - pressure).abs() < 1e-9 * pressure);
