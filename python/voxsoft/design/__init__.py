@@ -16,6 +16,7 @@ from voxsoft.design.model import Design
 from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
+from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.shape_memory import ShapeMemory
@@ -66,6 +67,7 @@ __all__ = [
     "PressureSupply",
     "Probe",
     "Pump",
+    "Refinement",
     "Region",
     "Rotation",
     "ShapeMemory",
