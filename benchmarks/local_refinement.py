@@ -11,7 +11,6 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
 from measure import Report
 
 import voxsoft as vs
@@ -24,7 +23,7 @@ RUBBER = vs.NeoHookean(young=60 * kPa, poisson=0.49, density=1070.0)
 
 @dataclass(frozen=True)
 class Body:
-    """A design, where it is refined, what of it is looked at, and the voxels that it is held against."""
+    """A design, where it is refined, what is looked at, and how small voxels of its truth are."""
 
     name: str
     design: vs.Design

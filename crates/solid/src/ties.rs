@@ -10,7 +10,7 @@
 
 use std::borrow::Cow;
 
-use crate::assembly::Visitor;
+use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::vector::{Vec3, axpy};
 
 /// Which vertices follow which.
@@ -157,6 +157,35 @@ impl Ties {
             }
         }
         visit(&vertices, &found);
+    }
+
+    /// The same of many: those without tied vertices stay together, as many as there are.
+    pub(crate) fn visit_elements(&self, elements: Elements<'_>, visit: ElementsVisitor<'_>) {
+        if self.is_empty() {
+            visit(elements);
+            return;
+        }
+        let width = elements.width;
+        let (mut vertices, mut matrices) = (Vec::new(), Vec::new());
+        for (corners, matrix) in elements.iter() {
+            if corners.iter().any(|corner| self.has(*corner)) {
+                self.visit(corners, matrix, &mut |vertices, matrices| {
+                    visit(Elements {
+                        width: vertices.len(),
+                        vertices,
+                        matrices,
+                    });
+                });
+            } else {
+                vertices.extend_from_slice(corners);
+                matrices.extend_from_slice(matrix);
+            }
+        }
+        visit(Elements {
+            width,
+            vertices: &vertices,
+            matrices: &matrices,
+        });
     }
 
     /// All that some vertices hang on, each once, in order.

@@ -70,12 +70,12 @@ def _asked_for(setup: Setup, corners: NDArray[np.int32], parts: NDArray[np.uint8
     labels = np.array(["", *(part.label for part in design.parts)])
     found = np.zeros(len(corners), dtype=bool)
     for index, refinement in enumerate(design.refine):
-        own = np.full(len(corners), fill_value=True)
+        own: Marks = np.full(len(corners), fill_value=True)
         if refinement.region is not None:
             where = f"refine[{index}].region"
             caught = np.zeros(len(mesh.vertices), dtype=bool)
             caught[setup.vertices_in(refinement.region, where)] = True
-            own = caught[corners].any(axis=1)
+            own = np.asarray(caught[corners].any(axis=1))
         if refinement.part is not None:
             own = np.logical_and(own, labels[parts] == refinement.part)
         if not own.any():

@@ -149,6 +149,8 @@ class Setup:
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
         _ = self.places, self.attached, self.tendons
+        if self.design.refine:
+            _ = self.large_voxels
         if self.fluids is not None:
             _ = self.fluids.network
         if self.touching is not None:
@@ -171,6 +173,12 @@ class Setup:
             A refinement that catches nothing.
         """
         return large_voxels(self)
+
+    @property
+    def elements(self) -> int:
+        """How many voxels there are, large and small; five tetrahedra of another mesh are one."""
+        joined = 7 * len(self.large_voxels) if self.design.refine else 0
+        return len(self.mesh.tets) // 5 - joined
 
     @cached_property
     def other_split(self) -> OtherSplit:

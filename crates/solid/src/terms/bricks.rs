@@ -266,19 +266,7 @@ impl Bricks {
                     vertices: &vertices,
                     matrices: matrices.as_flattened().as_flattened(),
                 };
-                if self.ties.is_empty() {
-                    visit(elements);
-                    return;
-                }
-                for (corners, matrix) in elements.iter() {
-                    self.ties.visit(corners, matrix, &mut |vertices, matrices| {
-                        visit(Elements {
-                            width: vertices.len(),
-                            vertices,
-                            matrices,
-                        });
-                    });
-                }
+                self.ties.visit_elements(elements, visit);
             },
         );
     }
