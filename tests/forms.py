@@ -23,6 +23,7 @@ from voxsoft.design.layer import Layer
 from voxsoft.design.line import Pump, Valve
 from voxsoft.design.object import Object
 from voxsoft.design.part import Part
+from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
@@ -133,7 +134,7 @@ INNER = {
 }
 SPECIAL[History, "expression"] = ("1 - exp(-t)", "sin(2*pi*t)^2")
 ACTIVATIONS = (Dielectric, FiberStrain, ShapeMemory, Strain, Swelling, Thermal)
-SPECIAL |= {(model, "part"): ("plain",) for model in ACTIVATIONS}
+SPECIAL |= {(model, "part"): ("plain",) for model in (*ACTIVATIONS, Refinement)}
 # Of whole kelvins the forms make coefficients that leave nothing of a part.
 SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
 # Of one temperature, or of two in any order, there is no way up and down.

@@ -6,7 +6,7 @@ import pytest
 import voxsoft as vs
 from voxsoft import Objective, gradient
 from voxsoft.comparison.bars import error_bars
-from voxsoft.design import Refinement
+from voxsoft.design import FiberStrain, Refinement
 from voxsoft.design.variation import number_of, with_number
 from voxsoft.simulation import Setup
 from voxsoft.units import kPa, mm
@@ -137,3 +137,75 @@ def test_error_bars_come_from_two_sizes_of_both(both):
     bar = bars.probes["top"][2]
     truth = vs.simulate(block(voxel_size=1 * mm)).probes["top"][2]
     assert abs(bar.estimate - truth) < bar.error
+
+
+def test_small_voxels_everywhere_are_the_same_bits():
+    everywhere = Refinement(region=vs.Region(z=(0, 32 * mm)))
+    local = vs.simulate(block(refine=[everywhere]))
+    whole = vs.simulate(block(), refine=2)
+    assert np.array_equal(local.positions, whole.positions)
+
+
+def test_a_body_swells_uniformly_along_and_across_its_fibers():
+    """Free of stress it has one stretch along the fibers and one across; no size is another's."""
+    muscle = vs.Part(
+        shape=vs.Box(size=(32 * mm, 16 * mm, 16 * mm), corner=(0, 0, 0)),
+        material=RUBBER,
+        fibers=[{"direction": (0.6, 0.8, 0), "modulus": 300 * kPa, "compression": True}],
+        name="muscle",
+    )
+    design = vs.Design(
+        name="muscle",
+        voxel_size=4 * mm,
+        parts=[muscle],
+        activations=[FiberStrain(part="muscle", value="-10 %")],
+        clamps=[
+            vs.Clamp(region=vs.Region(center=(0, 0, 0), radius=0.1 * mm)),
+            vs.Clamp(region=vs.Region(center=(32 * mm, 0, 0), radius=0.1 * mm), axes="yz"),
+            vs.Clamp(region=vs.Region(center=(0, 16 * mm, 0), radius=0.1 * mm), axes="z"),
+        ],
+        refine=[Refinement(region=vs.Region(center=(32 * mm, 16 * mm, 16 * mm), radius=9 * mm))],
+    )
+    result = vs.simulate(design)
+    assert len(Setup.of(design).large_voxels) > 10
+    assert result.status == "ok"
+    rest = result.mesh.vertices
+    affine = np.linalg.lstsq(np.c_[rest, np.ones(len(rest))], result.positions, rcond=None)[0]
+    off = np.c_[rest, np.ones(len(rest))] @ affine - result.positions
+    # Newton leaves 1e-8 of what holds it, of a body that grew by 3 mm.
+    assert np.abs(off).max() < 1e-6 * 3 * mm
+    assert np.abs(affine[:3] - np.eye(3)).max() > 0.03
+
+
+def test_a_bar_with_a_layer_and_a_spring_sags_alike():
+    """Voxels bend right from one across, so that the sizes differ by little."""
+    sheet = vs.Layer(region=vs.Region(z=(0, 0)), young="1 MPa", thickness="0.2 mm")
+    end = vs.Probe(x=(60 * mm, 60 * mm))
+    tie = vs.Spring(at=end, anchor=(60 * mm, 5 * mm, 50 * mm), stiffness="0.5 N/m")
+    bar = vs.Design(
+        name="bar",
+        voxel_size=5 * mm,
+        parts=[
+            vs.Part(
+                shape=vs.Box(size=(60 * mm, 10 * mm, 10 * mm), corner=(0, 0, 0)), material=RUBBER
+            )
+        ],
+        layers=[sheet],
+        springs=[tie],
+        clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+        loads=[vs.Gravity()],
+        probes={"end": end},
+    )
+    part = bar.replace(refine=[Refinement(region=vs.Region(x=(0, 20 * mm)))])
+    assert len(Setup.of(part).large_voxels) > 4
+    found, expected = vs.simulate(part), vs.simulate(bar, refine=2)
+    # Large voxels everywhere are 0.6 % off.
+    assert found.probes["end"][2] == pytest.approx(expected.probes["end"][2], rel=0.01)
+
+
+def test_a_path_and_both_other_controls_meet_the_same_state(both):
+    design = both.design
+    path = vs.follow(design, "loads[0].value=0..10 kPa/2", error="off")
+    assert path.results[-1].cavity_volumes[0] == pytest.approx(both.cavity_volumes[0], rel=1e-6)
+    arc = vs.simulate(design, control="arc-length")
+    assert arc.cavity_volumes[0] == pytest.approx(both.cavity_volumes[0], rel=1e-6)

@@ -6,7 +6,7 @@ use crate::fluid::Coupling;
 use crate::loads::Vertices;
 use crate::vector::Vec3;
 use crate::{
-    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term, Ties,
+    Body, Clamp, Contact, Floor, Fluid, History, Load, LoadKind, ProblemError, Rigid, Term,
 };
 
 /// A body with clamps, loads, and maybe a floor or contact.
@@ -64,7 +64,7 @@ impl Problem {
             }
         }
         for term in body.terms() {
-            check_free(ties, term.name(), |found| term.visit_pattern(found))?;
+            ties.check_free(term.name(), |found| term.visit_pattern(found))?;
         }
         let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
@@ -117,9 +117,8 @@ impl Problem {
 
     /// The same with another term on its body.
     pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
-        check_free(self.body.ties(), term.name(), |found| {
-            term.visit_pattern(found);
-        })?;
+        let ties = self.body.ties();
+        ties.check_free(term.name(), |found| term.visit_pattern(found))?;
         self.body.attach(term)?;
         Ok(self)
     }
@@ -403,24 +402,6 @@ impl Problem {
             }
         }
         self.body.ties().follow(positions);
-    }
-}
-
-/// Refuses what acts on tied vertices and does not hand on to what they hang on.
-fn check_free(
-    ties: &Ties,
-    what: &'static str,
-    visit_pattern: impl FnOnce(&mut dyn FnMut(&[u32])),
-) -> Result<(), ProblemError> {
-    let mut found = None;
-    if !ties.is_empty() {
-        visit_pattern(&mut |vertices| {
-            found = found.or_else(|| vertices.iter().copied().find(|vertex| ties.has(*vertex)));
-        });
-    }
-    match found {
-        Some(vertex) => Err(ProblemError::OnTied { what, vertex }),
-        None => Ok(()),
     }
 }
 

@@ -10,6 +10,7 @@
 
 use std::borrow::Cow;
 
+use crate::ProblemError;
 use crate::assembly::{Elements, ElementsVisitor, Visitor};
 use crate::vector::{Vec3, axpy};
 
@@ -114,6 +115,24 @@ impl Ties {
             for &leader in &tie.leaders {
                 numbers[leader as usize] += tie.weight() * own;
             }
+        }
+    }
+
+    /// Refuses what acts on tied vertices and does not know of it.
+    pub(crate) fn check_free(
+        &self,
+        what: &'static str,
+        visit_pattern: impl FnOnce(&mut dyn FnMut(&[u32])),
+    ) -> Result<(), ProblemError> {
+        let mut found = None;
+        if !self.is_empty() {
+            visit_pattern(&mut |vertices| {
+                found = found.or_else(|| vertices.iter().copied().find(|v| self.has(*v)));
+            });
+        }
+        match found {
+            Some(vertex) => Err(ProblemError::OnTied { what, vertex }),
+            None => Ok(()),
         }
     }
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from pydantic import model_validator
+from pydantic import ConfigDict, model_validator
 
 from voxsoft.design.operands import Name
 from voxsoft.design.region import Region
@@ -21,7 +21,7 @@ class Refinement(Record):
     Parameters
     ----------
     region
-        Voxels with a part in it, or within a quarter of their edge of it.
+        Voxels that it meets, or comes as near as a quarter of their edge.
     part
         The name of a part: voxels of it alone. Default: of all parts.
 
@@ -39,6 +39,8 @@ class Refinement(Record):
     ...
     voxsoft.errors.DesignError: says nowhere. Try: give a region, or a part, or both
     """
+
+    model_config = ConfigDict(json_schema_extra={"examples": [{"region": {"x": [0, "10 mm"]}}]})
 
     region: Region | None = None
     part: Name | None = None
