@@ -199,7 +199,7 @@ def test_a_bar_with_a_layer_and_a_spring_sags_alike():
     part = bar.replace(refine=[Refinement(region=vs.Region(x=(0, 20 * mm)))])
     assert len(Setup.of(part).large_voxels) > 4
     found, expected = vs.simulate(part), vs.simulate(bar, refine=2)
-    # Large voxels everywhere are 0.6 % off.
+    # Large voxels everywhere are 0.8 % off, these 0.03 %.
     assert found.probes["end"][2] == pytest.approx(expected.probes["end"][2], rel=0.01)
 
 
