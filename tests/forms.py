@@ -24,6 +24,7 @@ from voxsoft.design.line import Pump, Valve
 from voxsoft.design.object import Object
 from voxsoft.design.part import Part
 from voxsoft.design.profile import Profile
+from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Spot
 from voxsoft.design.spring import Spring
 from voxsoft.design.supply import Connection, FlowSupply, MassSupply, Supply
@@ -138,7 +139,7 @@ SPECIAL[Profile, "axis"] = ("x", "z")
 SPECIAL[Profile, "at"] = (("0 mm", "5 mm"), [-1 / 3, 0.01])
 SPECIAL[Profile, "factor"] = ((0, 1), [1 / 3, 2])
 SPECIAL[Profile, "expression"] = ("z / 0.005", "x*y + 1")
-SPECIAL |= {(model, "part"): ("plain",) for model in ACTIVATIONS}
+SPECIAL |= {(model, "part"): ("plain",) for model in (*ACTIVATIONS, Refinement)}
 # Of whole kelvins the forms make coefficients that leave nothing of a part.
 SPECIAL[Thermal, "expansion"] = ("3e-4 1/K", 1e-4)
 # Of one temperature, or of two in any order, there is no way up and down.

@@ -376,6 +376,7 @@ class ProblemParts:
     def fractions(
         self, fractions: NDArray[np.float64], moments: NDArray[np.float64] | None = None
     ) -> None: ...
+    def coarse(self, groups: NDArray[np.uint32]) -> None: ...
 
 @final
 class Status:

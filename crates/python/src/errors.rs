@@ -19,6 +19,7 @@ pub fn to_python(error: ProblemError) -> PyErr {
         ProblemError::RestVolume { .. }
         | ProblemError::NotCubes { .. }
         | ProblemError::NotVoxels { .. } => ("MeshError", "mesh"),
+        ProblemError::NotOneCube { .. } | ProblemError::OnTied { .. } => ("DesignError", "refine"),
         ProblemError::FlatMembrane { .. } => ("DesignError", "layers"),
         ProblemError::OnAxis { .. } => ("DesignError", "parts"),
         // The message says which.

@@ -90,6 +90,7 @@ pub struct PyProblemParts {
     block_fraction: Vec<f64>,
     block_filling: Vec<Filling>,
     block_axes: Vec<Mat3>,
+    coarse: Vec<[u32; 8]>,
     attachments: Vec<Attachment>,
     touch: Option<TouchParts>,
     tendons: Vec<(TendonPart, History)>,
@@ -499,6 +500,12 @@ impl PyProblemParts {
         self.block_filling = rows.into_iter().map(filling).collect();
         Ok(())
     }
+
+    /// Groups of eight blocks that are one voxel of twice the side.
+    fn coarse(&mut self, groups: PyReadonlyArray2<'_, u32>) -> PyResult<()> {
+        self.coarse = rows("groups", &groups)?;
+        Ok(())
+    }
 }
 
 /// Triangles, voids, and the weight of both.
@@ -576,6 +583,7 @@ impl PyProblem {
             block_fraction: parts.block_fraction.clone(),
             block_filling: parts.block_filling.clone(),
             block_axes: parts.block_axes.clone(),
+            coarse: parts.coarse.clone(),
             membranes: Vec::new(),
             attachments: parts.attachments.clone(),
             point_masses: Vec::new(),
@@ -606,6 +614,7 @@ impl PyProblem {
             block_fraction: Vec::new(),
             block_filling: Vec::new(),
             block_axes: Vec::new(),
+            coarse: Vec::new(),
             attachments: Vec::new(),
             touch: None,
             tendons: Vec::new(),
@@ -662,10 +671,11 @@ impl PyProblem {
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let positions = self.positions(&positions)?;
-        let bricks = self.problem.body().brick_term();
+        let body = self.problem.body();
+        let pressures = body.brick_term().pressures(&positions);
         let mut found = vec![f64::NAN; self.own()];
-        for (brick, pressure) in bricks.bricks.iter().zip(bricks.pressures(&positions)) {
-            found[brick.vertices[0] as usize] = pressure;
+        for (index, brick) in body.small_bricks().iter().enumerate() {
+            found[brick.vertices[0] as usize] = pressures[body.element_of(index)];
         }
         Ok(PyArray1::from_vec(py, found))
     }

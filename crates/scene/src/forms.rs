@@ -289,6 +289,7 @@ impl TryFrom<Mesh> for solid::Mesh {
             attachments: form.attachments,
             point_masses: form.point_masses,
             block_axes: Vec::new(),
+            coarse: Vec::new(),
             vertices: form.vertices,
             tets: form.tets,
             tet_part: form.tet_part,

@@ -97,6 +97,7 @@ fn full() -> Scene {
         }]))],
         point_masses: (first..first + 4).map(|vertex| (vertex, 0.01)).collect(),
         block_axes: vec![],
+        coarse: vec![],
     };
     let fiber = Fiber {
         direction: [0.0, 0.6, 0.8],

@@ -15,11 +15,13 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::Arc;
 
+use crate::coarse::Coarse;
 use crate::color::{color_order, interleave};
 use crate::hyperelastic::{LocalMaterials, Mullins};
 use crate::lattice::LatticeConstants;
 use crate::matrix::{IDENTITY, Mat3, apply_transposed};
 use crate::terms::{Attachment, Bricks, Edge, Edges, Membranes, Term, Tet, Tets};
+use crate::ties::Ties;
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use crate::{
     Brick, Filling, Growth, HyperelasticMaterial, LatticeMaterial, Material, Membrane,
@@ -59,6 +61,9 @@ pub struct Mesh {
     pub block_filling: Vec<Filling>,
     /// The directions of each block's edges, unit vectors row by row; empty means x, y and z.
     pub block_axes: Vec<Mat3>,
+    /// Groups of eight blocks of a hyperelastic material that are one element, a cube of twice the side, on one lattice of
+    /// such cubes.
+    pub coarse: Vec<[u32; 8]>,
     /// Membranes on triangles.
     pub membranes: Vec<Membrane>,
     /// What else is attached.
@@ -80,6 +85,7 @@ pub struct Body {
     tets: Tets,
     voxels: Vec<[u32; 8]>,
     bricks: Bricks,
+    coarse: Coarse,
     membranes: Membranes,
     attachments: Vec<Attachment>,
     foreign: Vec<Foreign>,
@@ -116,6 +122,7 @@ impl Body {
 
         let mut masses = vec![0.0; mesh.vertices.len()];
         let (mut voxels, mut bricks) = (Vec::new(), Vec::new());
+        let mut brick_of = vec![u32::MAX; mesh.tets.len()];
         let mut local = LocalMaterials::beside(materials.len());
         for membrane in &mesh.membranes {
             membrane.add_mass(&mut masses);
@@ -205,6 +212,7 @@ impl Body {
                         masses[vertex as usize] +=
                             material.density() * (fraction * side.powi(3)) / 8.0;
                     }
+                    brick_of[mesh.tet_block[block[0]] as usize] = bricks.len() as u32;
                     bricks.push(brick);
                 }
                 owned.push((first_new..found.len()).collect());
@@ -214,6 +222,13 @@ impl Body {
             edge_order.extend(interleave(&owned));
             chunk_edges.push(edge_order.len() as u32);
             chunk_tets.push(tets.len() as u32);
+        }
+        let (mut coarse, mut ties) = (Coarse::default(), Ties::default());
+        if !mesh.coarse.is_empty() {
+            let number = |block: u32| brick_of.get(block as usize).copied().unwrap_or(u32::MAX);
+            let groups: Vec<[u32; 8]> = mesh.coarse.iter().map(|g| g.map(number)).collect();
+            (coarse, bricks, ties) = Coarse::of(bricks, &groups, masses.len())?;
+            ties.hand_over_numbers(&mut masses);
         }
         let edges: Vec<Edge> = edge_order.into_iter().map(|index| found[index]).collect();
         // The list of hyperelastic materials keeps the places of the parts; lattices leave theirs to
@@ -257,7 +272,8 @@ impl Body {
             edges: Edges(edges),
             tets: Tets(tets),
             voxels,
-            bricks: Bricks::new(bricks, hyperelastic),
+            bricks: Bricks::new(bricks, hyperelastic, ties),
+            coarse,
             membranes,
             attachments,
             foreign: Vec::new(),
@@ -272,13 +288,15 @@ impl Body {
     /// Lets the free faces of hyperelastic voxels warp, but for those that are `held`: axes for each vertex. `pressed` are the
     /// triangles under pressure.
     pub(crate) fn warp_unless(&mut self, held: &[[bool; 3]], pressed: &[[u32; 3]]) {
-        let Bricks {
-            bricks, materials, ..
-        } = &self.bricks;
+        let (small, materials) = (self.small_bricks(), &self.bricks.materials);
         let membranes = &self.membranes.0;
-        let each = free_faces::warpings(bricks, materials, &self.voxels, membranes, held, pressed);
-        for (brick, warping) in self.bricks.bricks.iter_mut().zip(each) {
-            brick.warping = warping;
+        let mut faces =
+            free_faces::faces_of(small, materials, &self.voxels, membranes, held, pressed);
+        if !self.coarse.is_empty() {
+            faces = self.coarse.merged(&faces);
+        }
+        for (brick, faces) in self.bricks.bricks.iter_mut().zip(&faces) {
+            brick.warping = faces.as_ref().map_or(Warping::NONE, Warping::of);
         }
     }
 
@@ -369,6 +387,26 @@ impl Body {
     /// All hyperelastic voxels as one block.
     pub fn brick_term(&self) -> &Bricks {
         &self.bricks
+    }
+
+    /// Which vertices follow others.
+    pub fn ties(&self) -> &Ties {
+        &self.bricks.ties
+    }
+
+    /// The voxels of the mesh that are hyperelastic: those of [`Body::bricks`], but where eight of them are one element.
+    pub fn small_bricks(&self) -> &[Brick] {
+        if self.coarse.is_empty() {
+            &self.bricks.bricks
+        } else {
+            &self.coarse.small
+        }
+    }
+
+    /// The one of [`Body::bricks`] that a voxel of the mesh is, or is a part of.
+    pub fn element_of(&self, small: usize) -> usize {
+        let element = self.coarse.element.get(small);
+        element.map_or(small, |element| *element as usize)
     }
 
     /// All membranes as one block.

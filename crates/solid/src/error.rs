@@ -47,6 +47,24 @@ pub enum ProblemError {
         /// A tetrahedron of the block.
         tet: usize,
     },
+    /// Eight voxels that are to be one element are not.
+    #[error(
+        "group {index} of voxels to make one of twice the side: expected eight full ones of one rubber in a cube, on one lattice with the others"
+    )]
+    NotOneCube {
+        /// The group.
+        index: usize,
+    },
+    /// Something acts on a vertex that follows others.
+    #[error(
+        "{what} has vertex {vertex}, which follows the corners of a large voxel: voxels there must be small"
+    )]
+    OnTied {
+        /// What acts.
+        what: &'static str,
+        /// The vertex.
+        vertex: u32,
+    },
     /// A membrane's triangle has no area at rest.
     #[error("a membrane triangle at vertices {vertices:?} has no area at rest")]
     FlatMembrane {

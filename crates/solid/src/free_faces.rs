@@ -11,7 +11,7 @@
 use std::collections::HashSet;
 
 use crate::hyperelastic::HyperelasticMaterial;
-use crate::warping::{Faces, Warping};
+use crate::warping::Faces;
 use crate::{Brick, Filling, Membrane};
 
 /// How far the fraction and the places of the material may be from those of a full voxel: a voxel at the edge of a box
@@ -31,23 +31,23 @@ enum Behind {
 /// How many times as stiff another material must be to count as a clamp.
 const HOLDS: f64 = 2.0;
 
-/// How the faces of each voxel warp. `voxels` are all cubes of the body, `held` the axes that clamps hold of each vertex,
-/// `pressed` the triangles under pressure.
-pub(crate) fn warpings(
+/// The faces of each voxel, but of those that stay as they are. `voxels` are all cubes of the body, `held` the axes that clamps
+/// hold of each vertex, `pressed` the triangles under pressure.
+pub(crate) fn faces_of(
     bricks: &[Brick],
     materials: &[HyperelasticMaterial],
     voxels: &[[u32; 8]],
     membranes: &[Membrane],
     held: &[[bool; 3]],
     pressed: &[[u32; 3]],
-) -> Vec<Warping> {
+) -> Vec<Option<Faces>> {
     let behind = neighbors(bricks, materials, voxels, held.len());
     let pressed: HashSet<[u32; 3]> = pressed.iter().map(|&triangle| sorted(triangle)).collect();
     let layers: HashSet<[u32; 3]> = membranes.iter().map(|m| sorted(m.vertices())).collect();
     let each = |(brick, behind): (&Brick, &[[Behind; 2]; 3])| {
         let fibers = !materials[brick.material as usize].fibers().is_empty();
         if fibers || !is_full(brick) {
-            return Warping::NONE;
+            return None;
         }
         let mut faces = Faces::default();
         for axis in 0..3 {
@@ -66,7 +66,7 @@ pub(crate) fn warpings(
                 faces.stiff[axis][side] = held || matches!(what, Behind::Other | Behind::Stiff);
             }
         }
-        Warping::of(&faces)
+        Some(faces)
     };
     bricks.iter().zip(&behind).map(each).collect()
 }
@@ -133,7 +133,8 @@ fn face(vertices: [u32; 8], axis: usize, side: usize) -> [u32; 4] {
     [first, first + b, first + c, first + b + c].map(|corner| vertices[corner])
 }
 
-fn is_full(brick: &Brick) -> bool {
+/// Whether a voxel is full but for rounding.
+pub(crate) fn is_full(brick: &Brick) -> bool {
     let near = |value: f64, full: f64| (value - full).abs() < FULL_SLACK;
     let Filling {
         shift,

@@ -46,6 +46,7 @@ mod brick_thickness;
 mod clamp;
 mod clamp_drivers;
 mod clamped;
+mod coarse;
 mod color;
 pub mod conformance;
 mod contact;
@@ -76,6 +77,7 @@ mod state;
 mod stepper;
 pub mod strips;
 mod terms;
+mod ties;
 pub mod vector;
 mod warping;
 
@@ -108,3 +110,4 @@ pub use stepper::{Ask, Damping, LiveStatus, Look, Method, Stepper};
 pub use terms::{
     Attachment, Bricks, Edge, Edges, Membranes, Spring, Springs, Strain, Term, Tet, Tets,
 };
+pub use ties::Ties;

@@ -19,6 +19,9 @@ pub struct Problem {
     contact: Option<Arc<dyn Contact>>,
     fluid: Option<Fluid>,
     rigid: Vec<Rigid>,
+    /// By clamps.
+    clamped: Vec<[bool; 3]>,
+    /// By clamps, or as it follows others.
     held: Vec<[bool; 3]>,
     conservative: bool,
 }
@@ -45,6 +48,24 @@ impl Problem {
             load.kind.check(count)?;
         }
         body.warp_unless(&held, &pressed(&loads));
+        let clamped = held.clone();
+        let ties = body.ties();
+        for vertex in ties.vertices() {
+            held[vertex as usize] = [true; 3];
+            // It goes where its leaders go, so that a clamp that catches it must catch them.
+            for axis in 0..3 {
+                let leads = |leader: &u32| clamped[*leader as usize][axis];
+                if clamped[vertex as usize][axis] && !ties.leaders(&vertex).iter().all(leads) {
+                    return Err(ProblemError::OnTied {
+                        what: "a clamp",
+                        vertex,
+                    });
+                }
+            }
+        }
+        for term in body.terms() {
+            ties.check_free(term.name(), |found| term.visit_pattern(found))?;
+        }
         let conservative = loads.iter().all(|load| load.kind.is_conservative());
         Ok(Self {
             body,
@@ -54,6 +75,7 @@ impl Problem {
             contact: None,
             fluid: None,
             rigid: Vec::new(),
+            clamped,
             held,
             conservative,
         })
@@ -63,7 +85,7 @@ impl Problem {
     pub fn with_contact(self, contact: Arc<dyn Contact>) -> Result<Self, ProblemError> {
         let term = Arc::clone(&contact) as Arc<dyn Term>;
         let mut problem = self.with_term(term)?;
-        let mut joined = problem.held.clone();
+        let mut joined = problem.clamped.clone();
         contact.visit_bonded(&mut |vertex| joined[vertex as usize] = [true; 3]);
         let pressed = problem.pressed();
         problem.body.warp_unless(&joined, &pressed);
@@ -77,7 +99,7 @@ impl Problem {
         self.conservative &= fluid.is_conservative();
         self.fluid = Some(fluid);
         let pressed = self.pressed();
-        self.body.warp_unless(&self.held, &pressed);
+        self.body.warp_unless(&self.clamped, &pressed);
         Ok(self)
     }
 
@@ -95,6 +117,8 @@ impl Problem {
 
     /// The same with another term on its body.
     pub fn with_term(mut self, term: Arc<dyn Term>) -> Result<Self, ProblemError> {
+        let ties = self.body.ties();
+        ties.check_free(term.name(), |found| term.visit_pattern(found))?;
         self.body.attach(term)?;
         Ok(self)
     }
@@ -153,7 +177,7 @@ impl Problem {
         self.floor
     }
 
-    /// For every vertex, which axes a clamp holds.
+    /// For every vertex, which axes a clamp holds; all of one that follows others ([`Ties`]).
     pub fn held(&self) -> &[[bool; 3]] {
         &self.held
     }
@@ -165,10 +189,12 @@ impl Problem {
 
     /// The same without what holds a length: a motion that it prescribes would count as a vibration against its stiffness.
     pub fn add_soft_loads(&self, positions: &[Vec3], time: f64, forces: &mut [Vec3]) {
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         for load in self.loads.iter().filter(|load| !load.kind.holds_length()) {
             load.kind.add_forces(on, load.history.at(time), forces);
         }
+        self.body.ties().hand_over(forces);
     }
 
     /// Adds the external forces (N) with a factor of the caller's for each load.
@@ -178,6 +204,7 @@ impl Problem {
         factor_of: &dyn Fn(&Load) -> f64,
         forces: &mut [Vec3],
     ) {
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         for load in &self.loads {
             load.kind.add_forces(on, factor_of(load), forces);
@@ -185,6 +212,7 @@ impl Problem {
         if let Some(fluid) = &self.fluid {
             fluid.add_forces(positions, fluid.instant(factor_of), forces);
         }
+        self.body.ties().hand_over(forces);
     }
 
     /// Adds the derivative of the external forces (N) by a number, by which the factors of the loads change as `slope_of`
@@ -196,11 +224,13 @@ impl Problem {
         slope_of: &dyn Fn(&Load) -> f64,
         forces: &mut [Vec3],
     ) {
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         for load in &self.loads {
             let (factor, slope) = (factor_of(load), slope_of(load));
             load.kind.add_slopes(on, factor, slope, forces);
         }
+        self.body.ties().hand_over(forces);
     }
 
     /// Whether tendons pull.
@@ -236,6 +266,7 @@ impl Problem {
     /// Loads and what softens take `positions` as the state from which the way goes on.
     pub fn accept_loads(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) {
         self.body.accept(positions);
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         for load in &self.loads {
             load.kind.accept(on, factor_of(load));
@@ -269,6 +300,11 @@ impl Problem {
         self
     }
 
+    /// Positions with tied vertices where they belong.
+    fn seen<'a>(&self, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
+        self.body.ties().seen(positions)
+    }
+
     fn vertices<'a>(&'a self, positions: &'a [Vec3]) -> Vertices<'a> {
         Vertices {
             rest: self.body.rest(),
@@ -280,6 +316,7 @@ impl Problem {
     /// The potential (J) of the loads with a factor for each, zero for a body that has not moved in
     /// dead loads: its derivative is minus the force, if the loads are conservative.
     pub fn load_potential(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         let potential = |load: &Load| load.kind.potential(on, factor_of(load));
         let of_fluid = |fluid: &Fluid| fluid.potential(positions, fluid.instant(factor_of));
@@ -289,6 +326,7 @@ impl Problem {
 
     /// The work (J) of all pressures with a factor for each: what volume control prescribes.
     pub fn pressure_work(&self, positions: &[Vec3], factor_of: &dyn Fn(&Load) -> f64) -> f64 {
+        let positions = &*self.seen(positions);
         let on = self.vertices(positions);
         let pressures = self.loads.iter().filter(|load| load.kind.is_pressure());
         pressures
@@ -310,12 +348,14 @@ impl Problem {
         factor_of: &dyn Fn(&Load) -> f64,
         visit: Visitor<'_>,
     ) {
+        let (ties, positions) = (self.body.ties(), &*self.seen(positions));
+        let mut tied = |corners: &[u32], matrix: &[f64]| ties.visit(corners, matrix, visit);
         for load in self.loads.iter().filter(|load| load.kind.follows()) {
             let factor = factor_of(load);
-            load.kind.visit_stiffness(positions, factor, visit);
+            load.kind.visit_stiffness(positions, factor, &mut tied);
         }
         if let Some(fluid) = &self.fluid {
-            fluid.visit_stiffness(positions, fluid.instant(factor_of), visit);
+            fluid.visit_stiffness(positions, fluid.instant(factor_of), &mut tied);
         }
     }
 
@@ -338,15 +378,17 @@ impl Problem {
 
     /// That of the loads alone.
     pub fn visit_load_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
+        let ties = self.body.ties();
+        let mut tied = |corners: &[u32]| ties.visit_pattern(corners, visit);
         self.loads
             .iter()
-            .for_each(|load| load.kind.visit_pattern(visit));
+            .for_each(|load| load.kind.visit_pattern(&mut tied));
         self.fluid
             .iter()
-            .for_each(|fluid| fluid.visit_pattern(visit));
+            .for_each(|fluid| fluid.visit_pattern(&mut tied));
     }
 
-    /// Puts held vertices where their clamps want them at `time`, motions being scaled by `ramp`.
+    /// Puts held vertices where their clamps want them at `time`, motions being scaled by `ramp`, and tied ones where they belong.
     pub fn place_clamps(&self, time: f64, ramp: f64, positions: &mut [Vec3]) {
         for clamp in &self.clamps {
             for &vertex in &clamp.vertices {
@@ -359,6 +401,7 @@ impl Problem {
                 }
             }
         }
+        self.body.ties().follow(positions);
     }
 }
 

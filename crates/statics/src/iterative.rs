@@ -86,7 +86,7 @@ impl IterativeSystem {
         means: Means,
     ) -> Result<Option<Self>, FactorError> {
         let body = problem.body();
-        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.bricks().len();
+        let whole = 5 * body.voxels().len() == body.tets().len() + 5 * body.small_bricks().len();
         let loads = problem.loads().iter();
         let local = body.attached().all(Term::is_local)
             && loads.map(|load| &load.kind).all(|kind| kind.is_local());

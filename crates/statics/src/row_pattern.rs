@@ -1,6 +1,6 @@
 //! Which blocks the tangent of a large body has.
 
-use voxsoft_solid::Problem;
+use voxsoft_solid::{Problem, Term};
 
 use crate::multigrid::BlockMatrix;
 
@@ -28,7 +28,12 @@ pub(crate) fn pattern(problem: &Problem) -> BlockMatrix {
     let body = problem.body();
     let count = body.rest().len();
     let mut elements = Pieces::default();
-    body.voxels().iter().for_each(|v| elements.push(v));
+    if body.ties().is_empty() {
+        body.voxels().iter().for_each(|v| elements.push(v));
+    } else {
+        let bricks = body.brick_term();
+        bricks.visit_pattern(&mut |vertices| elements.push(vertices));
+    }
     for term in body.terms_beyond_voxels() {
         term.visit_pattern(&mut |vertices| elements.push(vertices));
     }

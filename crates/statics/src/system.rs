@@ -2,7 +2,7 @@
 
 use voxsoft_solid::mixed::Strains;
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Load, Problem};
+use voxsoft_solid::{Load, Problem, Ties};
 
 use crate::coupled::{Answers, Coupled};
 use crate::direct::{DirectFactor, DirectSystem};
@@ -19,6 +19,7 @@ const LARGE: usize = 4_000;
 pub(crate) struct System {
     tangent: Tangent,
     coupled: Option<Coupled>,
+    ties: Ties,
 }
 
 enum Tangent {
@@ -90,6 +91,7 @@ impl System {
         Ok(Self {
             tangent,
             coupled: None,
+            ties: problem.body().ties().clone(),
         })
     }
 
@@ -278,19 +280,30 @@ impl System {
         }
     }
 
-    /// The free coordinates of vectors on vertices.
+    /// The free coordinates of forces or slopes on vertices; those of tied vertices go to what they hang on.
     pub fn gather(&self, vectors: &[Vec3]) -> Vec<f64> {
+        if self.ties.is_empty() {
+            return self.gather_free(vectors);
+        }
+        let mut handed = vectors.to_vec();
+        self.ties.hand_over(&mut handed);
+        self.gather_free(&handed)
+    }
+
+    fn gather_free(&self, vectors: &[Vec3]) -> Vec<f64> {
         match &self.tangent {
             Tangent::Direct(system) => system.gather(vectors),
             Tangent::Iterative(system) => system.gather(vectors),
         }
     }
 
-    /// Free coordinates as vectors on vertices, zero where held.
+    /// Free coordinates as moves of vertices: zero where held, and tied vertices follow.
     pub fn spread(&self, free: &[f64]) -> Vec<Vec3> {
-        match &self.tangent {
+        let mut vectors = match &self.tangent {
             Tangent::Direct(system) => system.spread(free),
             Tangent::Iterative(system) => system.spread(free),
-        }
+        };
+        self.ties.follow(&mut vectors);
+        vectors
     }
 }

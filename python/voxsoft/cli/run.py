@@ -147,10 +147,20 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     for found in result.warnings:
         shade = "red" if found.severity == "error" else "yellow"
         say(f"[{shade}]{found.severity}[/{shade}]: {plain(str(found))}{_place(found)}")
-    say(f"{len(result.mesh.tets) // 5:,} voxels in {result.seconds:.2f} s")
+    say(f"{_voxels(result)} in {result.seconds:.2f} s")
     if bars is not None:
         say(_source(bars, asked=design.solver.error != "off"))
     say(f"wrote {plain(str(folder))}")
+
+
+def _voxels(result: Result) -> str:
+    """How many voxels there are, and how many of them stayed large beside refined ones."""
+    if not result.design.refine:
+        return f"{len(result.mesh.tets) // 5:,} voxels"
+    from voxsoft.simulation import Setup
+
+    setup = Setup(result.design, result.mesh)
+    return f"{setup.elements:,} voxels, {len(setup.large_voxels):,} of them large,"
 
 
 def _probe_rows(result: Result, bars: ErrorBars | None) -> Iterator[list[str]]:

@@ -25,7 +25,7 @@ from voxsoft.design.discretize import voxels_of
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.metrics import METRICS
-from voxsoft.simulation import Result, simulate
+from voxsoft.simulation import Result, Setup, simulate
 from voxsoft.simulation.choice import kind_of, settings_at_rest
 from voxsoft.simulation.touching import has_contact
 
@@ -151,7 +151,7 @@ class _Run:
 
     @cached_property
     def voxels(self) -> int:
-        return len(self.result.mesh.tets) // 5
+        return Setup(self.result.design, self.result.mesh).elements
 
     @cached_property
     def wall(self) -> int:

@@ -172,6 +172,9 @@ class BrickModel:
             raise SimulationError(
                 where, "cannot be given to an outside code", "compare the design without it"
             )
+        if setup.design.refine:
+            what, hint = "cannot be given to an outside code", "compare the design without it"
+            raise SimulationError("refine", what, hint)
         if setup.design.activations:
             raise SimulationError(
                 "activations", "cannot be given to an outside code", "compare without them"

@@ -17,6 +17,7 @@ from voxsoft.design.object import Object
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.profile import Profile
+from voxsoft.design.refinement import Refinement
 from voxsoft.design.region import Probe, Region
 from voxsoft.design.require import require_design
 from voxsoft.design.shape_memory import ShapeMemory
@@ -68,6 +69,7 @@ __all__ = [
     "Probe",
     "Profile",
     "Pump",
+    "Refinement",
     "Region",
     "Rotation",
     "ShapeMemory",

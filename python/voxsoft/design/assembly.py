@@ -419,6 +419,10 @@ class _Included:
             what = f'the {everywhere[0].kind} of "{self.inner.name}" is left out: it is that of all'
             hint = f'write [[loads]] kind = "{everywhere[0].kind}" in this design if it counts'
             yield ErrorDetail(name, what, hint)
+        if self.inner.refine:
+            what = f'the local refinement of "{self.inner.name}" is left out'
+            hint = "give the body a voxel_size: designs of several bodies do not know refine yet"
+            yield ErrorDetail(name, what, hint)
         if self.inner.objects:
             what = f'the objects of "{self.inner.name}" are left out'
             yield ErrorDetail(

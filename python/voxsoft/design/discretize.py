@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from voxsoft.design.cut_voxels import CutVoxels
 from voxsoft.design.joined import joined
 from voxsoft.design.model import Design
+from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.design.require import require_design
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
@@ -90,6 +91,8 @@ def filled(design: Design, refine: int = 1) -> Filled:
     """
     if require_design(design).bodies:
         return _filled_bodies(design.assembled, refine)
+    if design.refine:
+        refine *= TIMES_AS_SMALL
     if design.fill == "fraction":
         cut = CutVoxels.of(design, refine)
         return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)
@@ -150,6 +153,8 @@ def mesh_of(design: Design, refine: int = 1) -> Mesh:
     refine
         Cut every voxel into this many along each axis first. With ``fill = "binary"`` the body
         stays the same, stairs and all; with ``"fraction"`` the smaller cells are filled anew.
+        With local refinement (:class:`~voxsoft.design.Refinement`) the mesh has small voxels
+        everywhere, and the solver joins those that stay large.
 
     Examples
     --------

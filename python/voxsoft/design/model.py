@@ -46,6 +46,7 @@ from voxsoft.design.operands import MaterialName, Name, ParameterName
 from voxsoft.design.parameter import Parameter
 from voxsoft.design.part import Part
 from voxsoft.design.references import Included, dangling_references
+from voxsoft.design.refinement import Refinement, refinement_problems
 from voxsoft.design.region import Probe
 from voxsoft.design.resolution import Document, Resolution, formulas, with_parameter_values
 from voxsoft.design.schema import with_formulas
@@ -110,6 +111,8 @@ class Design(Record):
         Parts that are longer or shorter by themselves: swollen, warm, shrunk.
     clamps, loads, floor
         How it is held and loaded. There is no gravity without a :class:`Gravity` load.
+    refine
+        Where voxels are half as large as elsewhere.
     symmetry
         Planes of symmetry: a half, quarter or eighth of the body is solved.
     objects, contact
@@ -167,6 +170,7 @@ class Design(Record):
     clamps: tuple[Clamp, ...] = ()
     loads: tuple[AnyLoad, ...] = ()
     floor: Floor | None = None
+    refine: tuple[Refinement, ...] = Field((), max_length=250)
     symmetry: tuple[Symmetry, ...] = Field((), max_length=3)
     objects: tuple[Object, ...] = Field((), max_length=250)
     contact: Contact | None = None
@@ -291,6 +295,7 @@ class Design(Record):
             return []  # what contact and references lack is found in the whole
         floor = self.floor is not None
         wrong += symmetry_problems(self.symmetry)
+        wrong += refinement_problems(self.refine, self.bodies)
         wrong += contact_problems(self.objects, self.contact, floor, self.body_names)
         return wrong
 

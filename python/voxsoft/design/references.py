@@ -155,11 +155,12 @@ def _objects(document: Mapping[str, Any], included: Included) -> Iterator[ErrorD
 
 
 def _activations(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
-    """Parts that are to swell and are not there; designs of bodies look after their own."""
+    """Parts to swell or refine that are not there; designs of bodies look after their own."""
     names = [entry_of(part, "name") or entry_of(part, "shape") for _, part in _parts(document)]
     known = [name for name in names if isinstance(name, str)]
-    for path, activation in _list(document, "activations"):
-        name = entry_of(activation, "part")
+    of_parts = (*_list(document, "activations"), *_list(document, "refine"))
+    for path, table in of_parts:
+        name = entry_of(table, "part")
         if isinstance(name, str) and name not in known and "." not in name:
             yield _unknown((*path, "part"), "part", name, known)
 

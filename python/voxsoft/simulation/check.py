@@ -199,12 +199,13 @@ def examine(
     each = [
         _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ()) for of in mesh.each_body
     ]
-    is_held = False
+    is_held, elements = False, len(mesh.tets) // 5
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
             each = [one.closed(setup.layers) for one in each]
             setup.check()
+            elements = setup.elements
             is_held = setup.loose_piece is None
             mass = setup.problem.mass
             findings += weak_anchors(setup)
@@ -225,11 +226,13 @@ def examine(
     cost = None
     if isinstance(body, Design) and setup is not None:
         lengths = [thickness * one.voxels.voxel_size for thickness, one in walls]
-        cost = cost_of(body, setup.mesh, min(lengths, default=None), mass)
+        share = elements / (len(mesh.tets) // 5 or 1)
+        cost = cost_of(body, setup.mesh, min(lengths, default=None), mass, share)
     cavities = [cavity for one in each for cavity in one.cavities]
+    refined = isinstance(body, Design) and bool(body.refine)
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
-        voxels=sum(one.voxels.count for one in each),
+        voxels=elements if refined else sum(one.voxels.count for one in each),
         vertices=len(mesh.vertices),
         tets=len(mesh.tets),
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),

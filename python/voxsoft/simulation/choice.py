@@ -23,6 +23,7 @@ from voxsoft.simulation.equilibrium import (
     VolumeControl,
 )
 from voxsoft.simulation.fluids import has_supplies
+from voxsoft.simulation.large_voxels import unknown_with_refinement
 from voxsoft.simulation.method import Method
 from voxsoft.simulation.rest import QuickestRest, Relaxation
 from voxsoft.simulation.softening import softening_parts, unknown_with_softening
@@ -172,6 +173,11 @@ def unused_settings(
             hint = 'write method = "statics", follow a path, or leave mullins out'
             yield ErrorDetail(f"parts[{index}].material.mullins", what, hint)
     yield from unknown_with_softening(design)
+    if design.refine and kind not in STATICS:
+        what = f"is known to statics, and the settings mean {_explicit(kind)}"
+        hint = 'write method = "statics", or refine = 2 under [solver] in its place'
+        yield ErrorDetail("refine", what, hint)
+    yield from unknown_with_refinement(design)
     if has_contact(design):
         yield from _without_contact(design, solver, kind)
     elif design.assembled.tendons:

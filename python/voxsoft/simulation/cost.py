@@ -92,7 +92,9 @@ def _rounded(seconds: float) -> str:
     return f"{float(f'{seconds:.2g}'):.12g}"
 
 
-def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost:
+def cost_of(
+    design: Design, mesh: Mesh, wall: float | None, mass: float, share: float = 1.0
+) -> Cost:
     """Predict the time of one run as the design's solver asks for it.
 
     Parameters
@@ -105,6 +107,8 @@ def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost
         Thickness of the thinnest wall in m, if it has one.
     mass
         Of the body, in kg.
+    share
+        The voxels that it is solved on as a part of those of the mesh, with local refinement.
     """
     refine, method = design.solver.refine, method_of(design, design.solver)
     materials = [design.material_of(part) for part in design.parts]
@@ -112,7 +116,7 @@ def cost_of(design: Design, mesh: Mesh, wall: float | None, mass: float) -> Cost
     rubber = any(isinstance(each, Hyperelastic) for each in materials) or bool(design.layers)
     own = mesh.voxel_size if mesh.bodies and mesh.voxel_size else design.voxel_size
     cells, size = refine**3, own / refine
-    iteration = _ITERATION * (cells * len(mesh.vertices)) ** _GROWTH
+    iteration = _ITERATION * (cells * share * len(mesh.vertices)) ** _GROWTH
     iteration *= 1.0 if rubber else _OF_A_LATTICE
     iterations = newton_iterations(design, mesh, wall, mass)
     if isinstance(method, Statics):

@@ -11,6 +11,7 @@ import numpy as np
 from voxsoft import _core
 from voxsoft._core import Status as Ended
 from voxsoft.design import Design, Solver, require_design
+from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.errors import SimulationError
 from voxsoft.simulation.choice import check_solver, method_of
 from voxsoft.simulation.contact_field import ContactField
@@ -18,6 +19,7 @@ from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, senten
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.growth import at_time
+from voxsoft.simulation.large_voxels import refuse_refinement
 from voxsoft.simulation.method import Report, Watch
 from voxsoft.simulation.nested import nested
 from voxsoft.simulation.places import voxel_size
@@ -137,6 +139,7 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     refuse_contact(setup.design, "relaxation")
     refuse_supplies(setup.design, "relaxation")
     refuse_softening(setup.design, "relaxation")
+    refuse_refinement(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
     answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
@@ -167,7 +170,8 @@ def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
 def refinement(setup: Setup) -> int:
     """Into how many along each axis the voxels of a setup's design were cut."""
     first = setup.mesh.each_body[0]
-    return max(1, round(setup.design.alone(first.name).voxel_size / voxel_size(first.mesh)))
+    own = setup.design.alone(first.name).voxel_size / voxel_size(first.mesh)
+    return max(1, round(own / TIMES_AS_SMALL if setup.design.refine else own))
 
 
 def _check_refinement(setup: Setup, settings: dict[str, Any]) -> None:

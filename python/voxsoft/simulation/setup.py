@@ -36,6 +36,7 @@ from voxsoft.simulation.chambers import check_chambers, with_chamber_names
 from voxsoft.simulation.dielectrics import ResolvedDielectric, dielectrics_of
 from voxsoft.simulation.fiber_symmetry import check_fiber_symmetry
 from voxsoft.simulation.fluids import Fluids, has_supplies
+from voxsoft.simulation.large_voxels import check_refinement, large_voxels
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
@@ -143,11 +144,14 @@ class Setup:
         check_targets(self.design)
         check_chambers(self.design, self.mesh)
         check_windings(self.design, self.mesh)
+        check_refinement(self.design)
         self._check_cavities()
         timed = self.design.solver.is_timed
         if not (timed if allow_loose is None else allow_loose):
             self._check_support()
         _ = self.places, self.attached, self.tendons
+        if self.design.refine:
+            _ = self.large_voxels
         if self.fluids is not None:
             _ = self.fluids.network
         if self.touching is not None:
@@ -159,6 +163,23 @@ class Setup:
     def layers(self) -> tuple[LayerTriangles, ...]:
         """The triangles of each layer of the design."""
         return all_layer_triangles(self.design, self.mesh)
+
+    @cached_property
+    def large_voxels(self) -> NDArray[np.uint32]:
+        """Groups of eight voxels of the mesh that are one, with local refinement, (g, 8).
+
+        Raises
+        ------
+        DesignError
+            A refinement that catches nothing.
+        """
+        return large_voxels(self)
+
+    @property
+    def elements(self) -> int:
+        """How many voxels there are, large and small; five tetrahedra of another mesh are one."""
+        joined = 7 * len(self.large_voxels) if self.design.refine else 0
+        return len(self.mesh.tets) // 5 - joined
 
     @cached_property
     def other_split(self) -> OtherSplit:
@@ -300,6 +321,8 @@ class Setup:
             receiver = _CoreLoads(self.other_split, parts, times_and_factors(load.reading.history))
             for action in load.actions:
                 action.give_to(receiver)
+        if self.design.refine and isinstance(parts, _core.ProblemParts):
+            parts.coarse(self.large_voxels)
         if self.fluids is not None and isinstance(parts, _core.ProblemParts):
             self.fluids.give_to(parts)
         for term, elements in self.attached.items():

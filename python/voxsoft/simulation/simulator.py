@@ -16,6 +16,7 @@ from voxsoft.records import Record
 from voxsoft.simulation.commands import LoadCommands, LoadName, Value
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.fluids import refuse_supplies
+from voxsoft.simulation.large_voxels import refuse_refinement
 from voxsoft.simulation.observation import ChamberState, MotionStatus, Observation
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.softening import refuse_softening
@@ -97,6 +98,7 @@ class Simulator:
         refuse_contact(design, "the simulator")
         refuse_supplies(design, "the simulator")
         refuse_softening(design, "the simulator")
+        refuse_refinement(design, "the simulator")
         given: dict[str, Any] = {"damping": damping, "retardation": retardation}
         self._settings = _Settings(time_step=time_step, tolerance=tolerance, **given)
         self._commands = LoadCommands(design)

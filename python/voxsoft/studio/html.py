@@ -21,6 +21,7 @@ from voxsoft.files.designs import FilePath, load
 from voxsoft.simulation import Result
 from voxsoft.simulation.fluids import refuse_supplies
 from voxsoft.simulation.growth import refuse_growth_over_time, refuse_profiles
+from voxsoft.simulation.large_voxels import refuse_refinement
 from voxsoft.simulation.softening import refuse_softening
 from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.studio import events
@@ -124,6 +125,7 @@ def page_of_body(
     refuse_bodies(body.setup.design, "exported pages")
     refuse_supplies(body.setup.design, "exported pages")
     refuse_softening(body.setup.design, "exported pages")
+    refuse_refinement(body.setup.design, "exported pages")
     refuse_growth_over_time(body.setup.design, "exported pages")
     refuse_profiles(body.setup.design, "exported pages")
     body = replace(body, setup=body.under(factors)) if factors else body

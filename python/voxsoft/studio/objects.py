@@ -30,6 +30,7 @@ BONDED: Final = "Live motion does not know bonds yet: press Solve."
 #: The same for volumes of gas and liquid.
 SUPPLIED: Final = "Live motion does not know supplies yet: press Solve."
 #: The same for rubber that softens.
+REFINED: Final = "Live motion does not know local refinement yet: press Solve."
 SOFTENS: Final = "Live motion does not know softening yet: press Solve."
 #: The same for parts that grow by a history.
 GROWING: Final = "Live motion does not know histories of activations yet: press Solve."
@@ -62,6 +63,8 @@ def not_live(setup: Setup) -> str:
         return SUPPLIED
     if next(softening_parts(setup.design), None) is not None:
         return SOFTENS
+    if setup.design.refine:
+        return REFINED
     if grows_over_time(setup.design):
         return GROWING
     if not has_contact(setup.design):

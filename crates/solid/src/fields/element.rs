@@ -14,7 +14,8 @@ pub(super) struct Piece {
 
 #[derive(Debug, Clone)]
 pub(super) enum Element {
-    Brick(u32),
+    /// One of the body's elements, and the voxel of the mesh that it is or is a part of.
+    Brick(u32, u32),
     Lattice(Vec<Piece>),
 }
 
@@ -22,11 +23,12 @@ impl Element {
     /// Calls `found` with the corners, the rest volume in m³ and the element, for all of a body: first
     /// hyperelastic voxels, then those of lattices, then tetrahedra that are no part of a voxel.
     pub fn for_each(body: &Body, mut found: impl FnMut(&[u32], f64, &dyn Fn() -> Self)) {
-        for (index, brick) in body.bricks().iter().enumerate() {
+        for (index, brick) in body.small_bricks().iter().enumerate() {
+            let element = body.element_of(index) as u32;
             found(
                 &brick.vertices,
                 brick.volume(body.material_of(brick)),
-                &|| Self::Brick(index as u32),
+                &|| Self::Brick(element, index as u32),
             );
         }
         if body.tets().is_empty() {

@@ -57,7 +57,7 @@ impl Element {
     /// How the mean deformation gradient depends on each vertex: `F = Σ x ⊗ g`.
     pub fn gradients(&self, body: &Body) -> Vec<(u32, Vec3)> {
         let pieces = match self {
-            Self::Brick(index) => {
+            Self::Brick(index, _) => {
                 let brick = &body.bricks()[*index as usize];
                 return brick.gradients(body.material_of(brick)).to_vec();
             }
@@ -78,7 +78,7 @@ impl Element {
     /// The mean deformation gradient.
     pub fn deformation(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let mut sum = [[0.0; 3]; 3];
-        if let Self::Brick(index) = self {
+        if let Self::Brick(index, _) = self {
             let brick = &body.bricks()[*index as usize];
             return brick.deformation(body.material_of(brick), positions);
         }
@@ -91,7 +91,7 @@ impl Element {
     /// See [`Measure::volume_ratio`].
     pub fn volume_ratio(&self, body: &Body, positions: &[Vec3]) -> f64 {
         match self {
-            Self::Brick(index) => {
+            Self::Brick(index, _) => {
                 let brick = &body.bricks()[*index as usize];
                 brick.smallest_volume_ratio(body.material_of(brick), positions)
             }
@@ -108,7 +108,7 @@ impl Element {
     /// The Cauchy stress in Pa of an element that is not inverted.
     fn upright_stress(&self, body: &Body, positions: &[Vec3]) -> Mat3 {
         let pieces = match self {
-            Self::Brick(index) => {
+            Self::Brick(index, _) => {
                 let brick = body.brick_term().at(*index as usize);
                 return brick.cauchy_stress(body.material_of(&brick), positions);
             }
@@ -142,7 +142,7 @@ impl Element {
     /// See [`Measure::energy_density`].
     pub fn energy_density(&self, body: &Body, positions: &[Vec3]) -> f64 {
         let pieces = match self {
-            Self::Brick(index) => {
+            Self::Brick(index, _) => {
                 let brick = body.brick_term().at(*index as usize);
                 let material = body.material_of(&brick);
                 return brick.energy(material, positions) / brick.volume(material);

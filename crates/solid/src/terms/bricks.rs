@@ -5,6 +5,7 @@ use crate::batches::{groups_in_order, in_order};
 use crate::brick::{Brick, BrickMatrix, Carried, Tangent, Within};
 use crate::brick_lanes::{TOGETHER, Together};
 use crate::hyperelastic::HyperelasticMaterial;
+use crate::ties::Ties;
 use crate::vector::Vec3;
 
 /// Voxels whose forces, or stiffness matrices of 4.6 kB, are kept until they are added.
@@ -18,16 +19,23 @@ pub struct Bricks {
     pub bricks: Vec<Brick>,
     /// What the numbers of their materials stand for.
     pub materials: Vec<HyperelasticMaterial>,
+    /// Which of their vertices follow others.
+    pub(crate) ties: Ties,
     /// What they remember.
     peaks: Peaks,
 }
 
 impl Bricks {
     /// Voxels as they begin.
-    pub(crate) fn new(bricks: Vec<Brick>, materials: Vec<HyperelasticMaterial>) -> Self {
+    pub(crate) fn new(
+        bricks: Vec<Brick>,
+        materials: Vec<HyperelasticMaterial>,
+        ties: Ties,
+    ) -> Self {
         let mut all = Self {
             bricks,
             materials,
+            ties,
             peaks: Peaks::default(),
         };
         let soften = |brick: &Brick| all.material_of(brick).mullins().is_some();
@@ -75,6 +83,7 @@ impl Bricks {
         if !self.soften() {
             return;
         }
+        let positions = &*self.ties.seen(positions);
         self.each(
             FORCE_BATCH,
             |_, brick| brick.virgin_energy(self.material_of(brick), positions),
@@ -101,6 +110,7 @@ impl Bricks {
         forces: &mut [Vec3],
         pressures: &mut [f64],
     ) -> (f64, f64) {
+        let positions = &*self.ties.seen(positions);
         let (mut elastic, mut potential) = (0.0, 0.0);
         self.each(
             FORCE_BATCH,
@@ -112,6 +122,7 @@ impl Bricks {
                 brick.add_to(&response.forces, forces);
             },
         );
+        self.ties.hand_over(forces);
         (elastic, potential)
     }
 
@@ -123,18 +134,23 @@ impl Bricks {
         tangent: Tangent,
         visit: Visitor<'_>,
     ) {
+        let positions = &*self.ties.seen(positions);
         self.each(
             STIFFNESS_BATCH,
             |i, brick| {
                 let material = self.material_of(brick);
                 brick.stiffness_within(material, positions, None, &within[i], tangent)
             },
-            |_, brick, matrix| visit(&brick.vertices, matrix.as_flattened()),
+            |_, brick, matrix| {
+                self.ties
+                    .visit(&brick.vertices, matrix.as_flattened(), visit);
+            },
         );
     }
 
     /// The pressure in each voxel in Pa, positive in tension.
     pub fn pressures(&self, positions: &[Vec3]) -> Vec<f64> {
+        let positions = &*self.ties.seen(positions);
         let pressure = |brick: &Brick| {
             let material = self.material_of(brick);
             let within = Within::elastic(material);
@@ -150,6 +166,7 @@ impl Bricks {
         positions: &[Vec3],
         pressures: &[f64],
     ) -> Box<dyn Strain + 'a> {
+        let positions = &*self.ties.seen(positions);
         let pairs = self.bricks.iter().zip(pressures);
         let state = |(brick, &pressure): (&Brick, &f64)| {
             brick.with_pressure(self.material_of(brick), positions, pressure)
@@ -188,6 +205,7 @@ impl Bricks {
     }
 
     fn add_forces_of(&self, positions: &[Vec3], carried: Option<&[Carried]>, forces: &mut [Vec3]) {
+        let positions = &*self.ties.seen(positions);
         groups_in_order(
             self.bricks.len(),
             FORCE_BATCH,
@@ -204,6 +222,7 @@ impl Bricks {
                 }
             },
         );
+        self.ties.hand_over(forces);
     }
 
     /// In the order of the vertices, so that neighbors meet in the cache.
@@ -213,6 +232,7 @@ impl Bricks {
         carried: Option<&[Carried]>,
         visit: ElementsVisitor<'_>,
     ) {
+        let positions = &*self.ties.seen(positions);
         let mut order: Vec<u32> = (0..self.bricks.len() as u32).collect();
         order.sort_by_key(|&index| self.bricks[index as usize].vertices[0]);
         let empty: BrickMatrix = [[0.0; 24]; 24];
@@ -241,11 +261,12 @@ impl Bricks {
                 for &index in &order[first..first + matrices.len()] {
                     vertices.extend_from_slice(&self.bricks[index as usize].vertices);
                 }
-                visit(Elements {
+                let elements = Elements {
                     width: 8,
                     vertices: &vertices,
                     matrices: matrices.as_flattened().as_flattened(),
-                });
+                };
+                self.ties.visit_elements(elements, visit);
             },
         );
     }
@@ -257,6 +278,7 @@ impl Bricks {
         before: Option<&[Carried]>,
         moves: &[Vec3],
     ) -> Vec<Carried> {
+        let (positions, moves) = (&*self.ties.seen(positions), &*self.ties.seen(moves));
         let mut states = Vec::with_capacity(self.bricks.len());
         groups_in_order(
             self.bricks.len(),
@@ -295,10 +317,13 @@ impl Term for Bricks {
     }
 
     fn visit_pattern(&self, visit: &mut dyn FnMut(&[u32])) {
-        self.bricks.iter().for_each(|brick| visit(&brick.vertices));
+        for brick in &self.bricks {
+            self.ties.visit_pattern(&brick.vertices, visit);
+        }
     }
 
     fn energy(&self, positions: &[Vec3]) -> f64 {
+        let positions = &*self.ties.seen(positions);
         let energy = |brick: Brick| brick.energy(self.material_of(&brick), positions);
         let bricks = (0..self.bricks.len()).map(|index| self.at(index));
         bricks.map(energy).sum()

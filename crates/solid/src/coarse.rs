@@ -1,0 +1,173 @@
+//! Voxels that eight smaller ones make together, where nothing asks for smaller ones.
+//!
+//! The mesh is that of the small voxels, so that all that looks for places finds them as ever. A cube of `2 × 2 × 2` full ones
+//! of one material is one element with the eight outer corners; the vertices between these are tied to them
+//! ([`crate::ties`]), in the cube and where it meets small voxels. Masses go from tied vertices to what they hang on: the mass and its
+//! center are kept.
+
+use std::collections::HashSet;
+
+use crate::free_faces::is_full;
+use crate::ties::Ties;
+use crate::warping::Faces;
+use crate::{Brick, Filling, ProblemError};
+
+/// The corner across from a corner.
+const ACROSS: usize = 7;
+
+/// All small voxels, and which of them are one element.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Coarse {
+    /// The small voxels; empty where each is an element of its own.
+    pub small: Vec<Brick>,
+    /// The element of each.
+    pub element: Vec<u32>,
+    /// By element: the small voxel, or the eight in the order of corners, that it is made of.
+    members: Vec<Members>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Members {
+    One(u32),
+    Eight([u32; 8]),
+}
+
+impl Coarse {
+    /// Elements and ties of small voxels, of which those of each group make one cube together.
+    pub fn of(
+        small: Vec<Brick>,
+        groups: &[[u32; 8]],
+        vertices: usize,
+    ) -> Result<(Self, Vec<Brick>, Ties), ProblemError> {
+        let mut group_of: Vec<Option<usize>> = vec![None; small.len()];
+        let mut cubes = Vec::with_capacity(groups.len());
+        for (index, group) in groups.iter().enumerate() {
+            let members = in_order(&small, group).ok_or(ProblemError::NotOneCube { index })?;
+            for member in members {
+                if group_of[member as usize].replace(index).is_some() {
+                    return Err(ProblemError::NotOneCube { index });
+                }
+            }
+            cubes.push(members);
+        }
+        let each = |members: &[u32; 8]| ties_of(members.map(|member| small[member as usize]));
+        let ties = Ties::new(vertices, cubes.iter().flat_map(each));
+        let outer = |members: &[u32; 8]| {
+            std::array::from_fn(|corner| small[members[corner] as usize].vertices[corner])
+        };
+        // Cubes that are not on one lattice of large voxels would hang on each other.
+        let hangs = |members: &[u32; 8]| {
+            let outer: [u32; 8] = outer(members);
+            outer.iter().any(|vertex| ties.has(*vertex))
+        };
+        if let Some(index) = cubes.iter().position(hangs) {
+            return Err(ProblemError::NotOneCube { index });
+        }
+        let (mut elements, mut members) = (Vec::new(), Vec::new());
+        let mut element = vec![u32::MAX; small.len()];
+        for (index, brick) in small.iter().enumerate() {
+            if element[index] != u32::MAX {
+                continue;
+            }
+            let own = elements.len() as u32;
+            if let Some(group) = group_of[index] {
+                let cube = cubes[group];
+                cube.iter()
+                    .for_each(|member| element[*member as usize] = own);
+                let fraction = cube.map(|member| small[member as usize].fraction);
+                elements.push(Brick {
+                    vertices: outer(&cube),
+                    side: 2.0 * brick.side,
+                    fraction: fraction.iter().sum::<f64>() / 8.0,
+                    filling: Filling::FULL,
+                    ..*brick
+                });
+                members.push(Members::Eight(cube));
+            } else {
+                element[index] = own;
+                elements.push(*brick);
+                members.push(Members::One(index as u32));
+            }
+        }
+        let own = Self {
+            small,
+            element,
+            members,
+        };
+        Ok((own, elements, ties))
+    }
+
+    /// Whether there is no such cube.
+    pub fn is_empty(&self) -> bool {
+        self.small.is_empty()
+    }
+
+    /// The faces of each element by those of the small voxels.
+    pub fn merged(&self, faces: &[Option<Faces>]) -> Vec<Option<Faces>> {
+        let each = self.members.iter().map(|members| match members {
+            Members::One(index) => faces[*index as usize],
+            Members::Eight(cube) => {
+                let all: Option<Vec<Faces>> =
+                    cube.iter().map(|index| faces[*index as usize]).collect();
+                all.map(|all| face_of_cube(&all))
+            }
+        });
+        each.collect()
+    }
+}
+
+/// A face is free, or held in full, where its four parts are; it is stiff or under pressure where one of them is.
+fn face_of_cube(all: &[Faces]) -> Faces {
+    let mut own = Faces::default();
+    for axis in 0..3 {
+        for side in 0..2 {
+            let on_face = |corner: &usize| corner >> (2 - axis) & 1 == side;
+            let parts = || (0..8).filter(on_face).map(|corner| &all[corner]);
+            own.free[axis][side] = parts().all(|faces| faces.free[axis][side]);
+            own.held[axis][side] = parts().all(|faces| faces.held[axis][side]);
+            own.stiff[axis][side] = parts().any(|faces| faces.stiff[axis][side]);
+            own.pressed[axis][side] = parts().any(|faces| faces.pressed[axis][side]);
+        }
+    }
+    own
+}
+
+/// The voxels of a group by the corners of their cube at which they are; `None` where they do not make one, full and of one material.
+fn in_order(small: &[Brick], group: &[u32; 8]) -> Option<[u32; 8]> {
+    let first = small.get(group[0] as usize)?;
+    let bricks = group.map(|index| small.get(index as usize));
+    let alike = |brick: &&Brick| brick.material == first.material && is_full(brick);
+    if !bricks.iter().all(|brick| brick.as_ref().is_some_and(alike)) {
+        return None;
+    }
+    let each = || bricks.iter().flatten();
+    // The vertex in the middle is a corner of all of them.
+    let is_middle = |vertex: &u32| each().all(|brick| brick.vertices.contains(vertex));
+    let middle = *first.vertices.iter().find(|vertex| is_middle(vertex))?;
+    let mut found = [u32::MAX; 8];
+    for (brick, index) in each().zip(group) {
+        let at_middle = brick.vertices.iter().position(|v| *v == middle)?;
+        found[ACROSS - at_middle] = *index;
+    }
+    let nodes: HashSet<u32> = each().flat_map(|brick| brick.vertices).collect();
+    (!found.contains(&u32::MAX) && nodes.len() == 27).then_some(found)
+}
+
+/// What the vertices of a cube that are not its corners hang on.
+fn ties_of(members: [Brick; 8]) -> Vec<(u32, Vec<u32>)> {
+    let corner = |c: usize| members[c].vertices[c];
+    let mut found = Vec::with_capacity(19);
+    let mut seen = HashSet::new();
+    for (at, member) in members.iter().enumerate() {
+        for (own, &vertex) in member.vertices.iter().enumerate() {
+            // Along an axis where the two differ it is half way, elsewhere at the side of both.
+            let between = at ^ own;
+            if between != 0 && seen.insert(vertex) {
+                let fixed = at & !between;
+                let leads = |c: &usize| c & !between == fixed;
+                found.push((vertex, (0..8).filter(leads).map(corner).collect()));
+            }
+        }
+    }
+    found
+}
