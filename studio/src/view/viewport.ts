@@ -743,6 +743,11 @@ export class Viewport {
 
   // ---- what buttons and keys ask for ----
 
+  /** Take the body that comes next in whole: what was asked for makes it larger. */
+  fitSoon(): void {
+    this.fitNext = true;
+  }
+
   fit(): void {
     const mesh = this.shownMesh();
     const box = mesh?.box(useView.getState().exaggeration).clone();
