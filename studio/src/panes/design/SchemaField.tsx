@@ -4,10 +4,12 @@ import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
+import { toast } from "../../store/studio";
 import { CavityField } from "./CavityField";
-import { edit, type Path, problemsAt, problemText } from "./edits";
+import { edit, editAll, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
+import { isNumber, promoted } from "./promote";
 import {
   type Control,
   controlOf,
@@ -214,7 +216,7 @@ function QuantityField(
     onRefusal?: (problem: string | null) => void;
   },
 ) {
-  const { root, design, amounts } = useForm();
+  const { root, source, design, amounts } = useForm();
   const { control, path, value } = props;
   const usual = resolve(root, props.schema).default;
   const kind = control.is === "quantity" ? control.kind : null;
@@ -234,6 +236,31 @@ function QuantityField(
       changed={usual !== undefined && usual !== null && value !== undefined && value !== usual}
       onDefault={props.onRemove}
       onNudge={kind === null || formula ? undefined : (count) => nudge(path, value, count)}
+      tool={
+        kind !== null &&
+        !formula &&
+        isNumber(value) && (
+          <button
+            type="button"
+            className="promote"
+            aria-label={`Make a parameter of ${props.label}`}
+            title="Make a parameter of it, which can be slid and varied by a study"
+            onClick={() => {
+              const changes = promoted(path, value, source);
+              editAll(changes);
+              const name = String(changes[0]?.path[1] ?? "");
+              toast({
+                level: "good",
+                what: `${name} is a parameter of the design`,
+                hint: "It stands at the top of the form, with bounds of ± 50 %. Ctrl+Z takes it back.",
+                about: "design",
+              });
+            }}
+          >
+            <Glyph name="sweep" />
+          </button>
+        )
+      }
       onCommit={(typed) => {
         if (control.is === "text") {
           edit(path, typed);
