@@ -132,6 +132,8 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
     }
     case "table":
     case "variant":
+      // Histories may be called by a name, which the text puts in their place.
+      if (typeof value === "string") return <NamedHistory {...props} name={value} />;
       return (
         <Nested label={label} help={props.help} onRemove={props.onRemove}>
           <TableFields path={path} schema={props.schema} value={value} />
@@ -166,6 +168,26 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
       );
     }
   }
+}
+
+/** The name of a history of the design, in place of one of its own. */
+function NamedHistory(props: SchemaFieldProps & { name: string }) {
+  const { source, diagnostics } = useForm();
+  const { name, path, label } = props;
+  const known = Object.keys((source.histories as object | undefined) ?? {});
+  const problem = problemText(problemsAt(diagnostics, path));
+  return (
+    <Removable onRemove={props.onRemove} label={label}>
+      <Select
+        label={label}
+        title={props.help}
+        value={name}
+        options={known.includes(name) ? known : [name, ...known]}
+        onChange={(next) => edit(path, next)}
+      />
+      {problem && <span className="field-note">{problem}</span>}
+    </Removable>
+  );
 }
 
 function Removable(props: {
