@@ -44,9 +44,13 @@ def test_what_stands_on_the_floor_between_smooth_pads_is_touched():
 
 def test_what_nothing_presses_is_lost():
     clamps = [clamp.model_copy(update={"motion": None}) for clamp in PINCH.clamps]
-    (grip,) = grips_of(pinched(clamps=clamps, floor=FLOOR))
+    lost = pinched(clamps=clamps, floor=FLOOR)
+    (grip,) = grips_of(lost)
     assert (grip.verdict, grip.pressed, grip.margin) == ("lost", 0.0, None)
     assert grip.sentence == "plate: not held."
+    # What lies on the floor is not gripped by it: a study would else drop what it should hold.
+    assert lost.metric("grip_force", object="plate") == 0.0
+    assert lost.metric("hold_margin", object="plate") == 0.0
 
 
 def test_what_goes_up_with_its_clamps_is_held_above_where_it_began():
