@@ -5,11 +5,12 @@ The solutions take minutes; that the same design is built is quick to see.
 
 import re
 
+import numpy as np
 import pytest
 from hands import Hand, first_shape, renewed, saved
 
 import voxsoft as vs
-from voxsoft.files import read_mesh
+from voxsoft.shapes import TriangleMesh
 
 pytestmark = pytest.mark.browser
 
@@ -87,7 +88,7 @@ method = "dynamics"
 time_step = "20 ms"
 end_time = "1 s"
 """
-LIFT = 0.04
+LIFT, BEGAN = 0.04, 0.013  # how far the ball goes up, and from where, m
 #: Two busy cores solve one such design in minutes.
 SOLVED = 900
 
@@ -253,9 +254,15 @@ def test_its_study_for_grip_force_and_what_is_taken_away(serving, open_tab, alon
         server.stop()
     print("actions", hand.actions)
     assert hand.actions <= 25
-    surface = read_mesh(files["stl"])
-    print(surface)
+    # Two fingers as they were built, in millimeters: 40 mm of room, and 30 mm to each side.
+    low, high = TriangleMesh(path=str(files["stl"]), unit="mm").bounds()
+    assert np.ptp([low, high], axis=0) == pytest.approx([0.1, 0.04, 0.1], abs=1e-6)
+    # The page alone opens with the ball lifted, and has the time before.
     away = alone(files["html"].as_uri())
     away.until("window.voxsoft !== undefined && voxsoft.objectPosition('ball') !== null")
+    lifted = away.page.evaluate("voxsoft.objectPosition('ball')[2]")
+    assert lifted > BEGAN + 0.8 * LIFT
     away.shot("study-5-page")
+    away.page.keyboard.press("0")
+    away.until(f"Math.abs(voxsoft.objectPosition('ball')[2] - {BEGAN}) < 1e-3")
     assert away.errors == []
