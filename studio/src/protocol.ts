@@ -951,6 +951,24 @@ export interface Summarized {
 }
 
 /**
+ * Whether a free object is held at the end of a run, also in a sentence.
+ *
+ * `held` only by what moves or is soft; `slips` where more slips than sticks; `touched` while it
+ * still stands on something fixed; `lost` where nothing presses it. `rise` is how far it went up
+ * in m, `pressed` what presses it in N, `weight` its weight in N, null without gravity, and
+ * `margin` the friction that there can be over that which there is, null without any.
+ */
+export interface Grip {
+  name: string;
+  verdict: "held" | "lost" | "slips" | "touched";
+  sentence: string;
+  rise: number;
+  pressed: number;
+  weight: number | null;
+  margin: number | null;
+}
+
+/**
  * The numbers of the state that `frame` shows, and what is doubtful about it.
  *
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
@@ -972,6 +990,7 @@ export interface EquilibriumEvent {
   warnings: Finding[];
   tendons: Summarized[];
   supplies: Summarized[];
+  grips: Grip[];
   error_bars: string;
 }
 

@@ -51,6 +51,15 @@ const length = (name: string, value: number) => ({ name, value, kind: "length" }
 describe("the face that is pressed", () => {
   const one = boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] });
 
+  it("knows how far it is to what lies straight opposite", () => {
+    const two = boxes(
+      { low: [0, 0, 0], high: [0.04, 0.01, 0.01] },
+      { low: [0.07, 0, 0], high: [0.08, 0.01, 0.01] },
+    );
+    expect(faceAt(two, 2).opposite).toBeCloseTo(0.03, 7);
+    expect(faceAt(one, 2).opposite).toBeNull();
+  });
+
   it("is all of its plane, and nothing around the corner", () => {
     const face = faceAt(one, 2); // the first of the two at the largest x
     expect(face.axis).toBe(0);

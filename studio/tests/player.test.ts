@@ -4,7 +4,7 @@ import { Core } from "../src/engine/core";
 import type { Draft } from "../src/engine/engine";
 import { decode, type Frame, positionIn } from "../src/engine/frames";
 import { type Notes, Player } from "../src/engine/player";
-import type { AnyEvent, BodyEvent, OverlapEvent, StatEvent } from "../src/protocol";
+import type { AnyEvent, BodyEvent, Moment, OverlapEvent, StatEvent, Triple } from "../src/protocol";
 
 const file = (name: string) => new Uint8Array(readFileSync(new URL(name, import.meta.url)));
 
@@ -260,4 +260,24 @@ it("tells where the body is in itself as it is shown first, until it moves", asy
   }
   expect(told()).toHaveLength(2);
   expect(told()[1]).toMatchObject({ topology: 4, sentence: "", places: [] });
+});
+
+it("tells where objects are as the body is shown first, until time runs or goes back", async () => {
+  const pose = { position: [0, 0, 0.04] as Triple, rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1] };
+  const moment: Moment = {
+    ...{ frame: 0, time: 1, poses: [pose], contacts: [], fields: false, depth: null },
+  };
+  const run = await Core.open(file("../public/voxsoft.wasm"), file("beam.scene"));
+  const heard: AnyEvent[] = [];
+  const notes = { ...NOTES, moment };
+  const shown = new Player(run, notes, { event: (one) => heard.push(one), binary() {} });
+  const told = () => heard.filter((one) => one.t === "moment");
+  shown.greet();
+  expect(told()).toEqual([{ t: "moment", topology: 4, moment }]);
+  shown.take({ t: "pick", vertex: 57, seq: 1 });
+  expect(told()).toHaveLength(1);
+  shown.take({ t: "reset", seq: 2 });
+  shown.take({ t: "reset", seq: 3 });
+  expect(told()).toHaveLength(2);
+  expect(told()[1]).toMatchObject({ moment: { frame: 0, poses: [] } });
 });

@@ -30,6 +30,14 @@ describe("messages", () => {
     ]);
   });
 
+  it("give way to a newer one about the same", () => {
+    for (const what of ["Clamp", "Layer"]) {
+      toast({ level: "good", what, hint: "", about: "design" });
+    }
+    toast({ level: "good", what: "Saved", hint: "" });
+    expect(useStudio.getState().toasts.map((one) => one.what)).toEqual(["Layer", "Saved"]);
+  });
+
   it("are kept in the log as well where the page itself tells of an error", () => {
     toast({ level: "error", what: "No picture was made", hint: "" });
     expect(useStudio.getState().log).toMatchObject([{ text: "No picture was made" }]);

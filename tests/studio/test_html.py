@@ -144,3 +144,13 @@ def test_a_page_knows_where_the_body_is_in_itself_at_first():
     assert notes_of(pushed.show().text)["overlap"] is None
     apart = vs.simulate(pushed.with_values("push=9 mm"))
     assert notes_of(apart.show().text)["overlap"] is None
+
+
+def test_a_page_of_a_result_knows_where_its_objects_are_at_first():
+    pinch = vs.load(Path(__file__).parents[2] / "examples" / "pinch.toml")
+    result = vs.simulate(pinch.replace(solver={"method": "dynamics", "end_time": "0.1 s"}))
+    moment = notes_of(result.show().text)["moment"]
+    assert moment["frame"] == 0
+    assert moment["poses"][0]["position"] == list(result.objects["plate"].position)
+    assert moment["contacts"][0]["of"] == ["body", "plate"]
+    assert notes_of(pinch.show().text)["moment"] is None

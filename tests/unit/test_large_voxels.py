@@ -115,6 +115,16 @@ def test_nothing_is_caught():
         {"contact": {}},
         {"tendons": [{"through": [[1e-3, 5e-3, 5e-3], [3e-2, 5e-3, 5e-3]], "tension": 0.1}]},
         {"parts": [vs.Part(shape="left", material="ecoflex-00-30-lattice")]},
+        {
+            "activations": [
+                {
+                    "part": "middle",
+                    "kind": "strain",
+                    "value": 0.01,
+                    "profile": {"expression": "x"},
+                }
+            ]
+        },
     ],
     ids=lambda changes: next(iter(changes)),
 )

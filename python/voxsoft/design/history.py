@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import ConfigDict, Field, model_validator
 
 from voxsoft import _core
 from voxsoft.errors import DesignError, ErrorDetail, ShapeError
@@ -91,6 +91,10 @@ class History(Record):
     >>> round(charge.at("0.5 s"), 2)
     0.63
     """
+
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"time": ["0 s", "1 s"], "factor": [0, 1]}]}
+    )
 
     time: tuple[Time, ...] = Field((), max_length=_MOST)
     factor: tuple[Dimensionless, ...] = Field((), max_length=_MOST)

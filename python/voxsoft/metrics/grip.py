@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft.design.contact import FLOOR
 from voxsoft.errors import DesignError
 from voxsoft.metrics.contact import object_of_target
 from voxsoft.metrics.definition import Metric, State, Target, Touch
@@ -18,12 +19,17 @@ _LARGEST_MARGIN: Final = 1e9
 
 
 def _contacts(metric: Metric, state: State, target: Target) -> tuple[str, Sequence[Touch]]:
-    """The object that a target names, and all contacts with it."""
+    """The object that a target names, and all contacts with it but that with the floor."""
     name = object_of_target(metric, target, state.design)
     if all(each.name != name for each in state.design.objects):
         what = f'"{name}" is no object, and {metric.name} asks how something is held'
         raise DesignError("object", what, "name one of [[objects]]")
-    return name, [each for each in state.contacts if name in each.of]
+    return name, [each for each in state.contacts if name in each.of and FLOOR not in each.of]
+
+
+def _stands(name: str, state: State) -> bool:
+    """Whether the floor carries some of an object."""
+    return any({name, FLOOR} == set(each.of) and each.pressure > 0.0 for each in state.contacts)
 
 
 def _on(name: str, contact: Touch, force: tuple[float, float, float]) -> NDArray[np.float64]:
@@ -39,7 +45,8 @@ def _grip(state: State, target: Target) -> float:
 def _margin(state: State, target: Target) -> float:
     name, contacts = _contacts(HOLD_MARGIN, state, target)
     bound = sum(each.bound for each in contacts)
-    if bound == 0.0:  # apart, or without friction: nothing is held
+    # Apart, without friction, or on the floor: a study would else drop it to hold it best.
+    if bound == 0.0 or _stands(name, state):
         return 0.0
     friction = sum((_on(name, each, each.friction) for each in contacts), np.zeros(3))
     carried = float(np.linalg.norm(friction))

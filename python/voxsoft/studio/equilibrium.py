@@ -11,6 +11,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
 from voxsoft.studio import events
+from voxsoft.studio.grips import grips_of
 from voxsoft.units import format_percent
 
 
@@ -111,6 +112,7 @@ def equilibrium_of(
         supplies=[
             events.Summarized(name=supply.name, words=supply.words) for supply in result.supplies
         ],
+        grips=grips_of(result),
     )
 
 

@@ -425,6 +425,24 @@ class Summarized(Entry):
     words: str
 
 
+class Grip(Entry):
+    """Whether a free object is held at the end of a run, also in a sentence.
+
+    `held` only by what moves or is soft; `slips` where more slips than sticks; `touched` while it
+    still stands on something fixed; `lost` where nothing presses it. `rise` is how far it went up
+    in m, `pressed` what presses it in N, `weight` its weight in N, null without gravity, and
+    `margin` the friction that there can be over that which there is, null without any.
+    """
+
+    name: str
+    verdict: Literal["held", "slips", "touched", "lost"]
+    sentence: str
+    rise: float
+    pressed: float
+    weight: float | None
+    margin: float | None
+
+
 class Equilibrium(Event):
     """The numbers of the state that `frame` shows, and what is doubtful about it.
 
@@ -446,6 +464,7 @@ class Equilibrium(Event):
     warnings: list[Finding]
     tendons: list[Summarized]
     supplies: list[Summarized]
+    grips: list[Grip]
     error_bars: str = ""
 
 

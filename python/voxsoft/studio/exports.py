@@ -20,6 +20,7 @@ from voxsoft.files.atomic import write_atomically
 from voxsoft.simulation import Result, named_regions
 from voxsoft.simulation.result import Status
 from voxsoft.simulation.state import result_at
+from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState
 from voxsoft.studio.html import export_page, page_of_body
@@ -57,6 +58,8 @@ class Shown:
         The springs that pull by hand.
     status, sentence, time
         How the simulation stands, and at what time [s].
+    moment
+        Where objects are, and what touches, as far as that is known.
     """
 
     name: str
@@ -72,6 +75,7 @@ class Shown:
     status: Status = "not-at-rest"
     sentence: str = ""
     time: float = 0.0
+    moment: events.Moment | None = None
 
     def measured(self) -> Result:
         """The state as a result: the solver's where one found it, else measured as it stands.
@@ -141,7 +145,11 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
         _draw(shown, target, options.get("scale", 1))
     elif format == "html":
         page = page_of_body(
-            shown.body, factors=shown.factors, positions=shown.positions, text=shown.text
+            shown.body,
+            factors=shown.factors,
+            positions=shown.positions,
+            moment=shown.moment,
+            text=shown.text,
         )
         page.save(target)
     else:

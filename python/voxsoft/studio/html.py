@@ -27,6 +27,7 @@ from voxsoft.simulation.touching import refuse_bodies, refuse_contact
 from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import FIELDS
+from voxsoft.studio.objects import moments_of
 from voxsoft.studio.overlap_event import overlap_of
 from voxsoft.studio.page import page_file
 from voxsoft.studio.scene import scene_of
@@ -49,6 +50,8 @@ class Notes(msgspec.Struct):
     body: events.Body
     #: Where the body is in itself as it is shown first; None: nowhere, or unloaded.
     overlap: events.Overlap | None = None
+    #: Where objects are as they are shown first, and what touches then; None: nowhere, or unloaded.
+    moment: events.Moment | None = None
 
 
 @dataclass(frozen=True)
@@ -89,6 +92,7 @@ def page_of_body(
     *,
     factors: Sequence[float] = (),
     positions: NDArray[np.float64] | None = None,
+    moment: events.Moment | None = None,
     text: str = "",
     sentence: str = "",
 ) -> LivePage:
@@ -103,6 +107,8 @@ def page_of_body(
     positions
         Where the page shows the vertices first [m], (n, 3); default: unloaded. Play shows the way
         from the unloaded shape.
+    moment
+        Where objects are then, and what touches; default: where they are unloaded.
     text
         The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
     sentence
@@ -138,6 +144,8 @@ def page_of_body(
         fields=list(FIELDS),
         body=body.event(),
         overlap=None if positions is None else _overlap(body, design, positions),
+        # The page shows first what it calls frame 0.
+        moment=moment and msgspec.structs.replace(moment, frame=0, fields=False),
     )
     scene = scene_of(body).pack(msgspec.json.encode(notes).decode(), positions)
     return LivePage(_filled(scene, design.name))
@@ -163,7 +171,9 @@ def page_of(shown: Design | Result) -> LivePage:
     if not isinstance(shown, Result):
         return page_of_body(body)
     sentence = f"{shown.message[:1].upper()}{shown.message[1:]}."
-    return page_of_body(body, positions=shown.positions, sentence=sentence)
+    moments = moments_of(shown, 0)
+    moment = moments[-1] if moments else None
+    return page_of_body(body, positions=shown.positions, moment=moment, sentence=sentence)
 
 
 def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] = ()) -> None:

@@ -316,7 +316,14 @@ class Playback:
             status=_KEPT.get(self.state, "not-at-rest"),
             sentence=self._standing(0.0 if shown is None else shown.time),
             time=0.0 if shown is None else shown.time,
+            moment=None if shown is None else self._moment_of(shown.frame),
         )
+
+    def _moment_of(self, frame: int) -> events.Moment | None:
+        """Where objects are in a frame, and what touches, as far as that is known."""
+        newest = self.newest_moment()
+        known = [*self.moments, *([] if newest is None else [newest.moment])]
+        return next((moment for moment in known if moment.frame == frame), None)
 
     def _standing(self, time: float) -> str:
         """How the shown state came about, in words."""

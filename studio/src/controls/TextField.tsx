@@ -1,4 +1,4 @@
-import { useId, useState } from "react";
+import { type ReactNode, useId, useState } from "react";
 
 export interface TextFieldProps {
   label: string;
@@ -21,6 +21,8 @@ export interface TextFieldProps {
   onDefault?: (() => void) | undefined;
   /** Up and down arrows. */
   onNudge?: ((count: number) => void) | undefined;
+  /** What is done with the value by a press within the field, while the pointer or the keyboard is there. */
+  tool?: ReactNode;
 }
 
 /** A field that takes its text with Enter or on leaving it; Escape gives the old one back. */
@@ -82,6 +84,7 @@ export function TextField(props: TextFieldProps) {
           ))}
         </datalist>
       )}
+      {props.tool}
     </span>
   );
   if (props.bare) return input;

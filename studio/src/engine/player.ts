@@ -1,6 +1,6 @@
 // A scene that plays without a server: the core's player, told of commands and of time, as one tab sees it.
 // Nothing here knows whether it runs in a worker; time is handed in.
-import type { AnyEvent, BodyEvent, Field, OverlapEvent, StatEvent } from "../protocol";
+import type { AnyEvent, BodyEvent, Field, Moment, OverlapEvent, StatEvent } from "../protocol";
 import { CREDITS, PROTOCOL } from "../protocol";
 import type { Core, Told } from "./core";
 import type { Draft } from "./engine";
@@ -18,6 +18,8 @@ export interface Notes {
   readonly body: BodyEvent;
   /** Where the body is in itself as it is shown first. */
   readonly overlap?: OverlapEvent | null;
+  /** Where objects are then, and what touches. */
+  readonly moment?: Moment | null;
 }
 
 export interface Audience {
@@ -36,6 +38,9 @@ const PLAYED: ReadonlySet<string> = new Set([
   ...["seek", "live", "pick", "probe"],
 ]);
 
+/** Commands after which the first frame is that of the unloaded shape. */
+const LEAVE: ReadonlySet<string> = new Set(["play", "step", "reset", "grab"]);
+
 export class Player {
   private credits = CREDITS;
   private fresh = true;
@@ -43,6 +48,7 @@ export class Player {
   private seq = 0;
   private lastTurn: number | null = null;
   private overlapForgotten = false;
+  private momentForgotten = false;
   private playing = false;
 
   constructor(
@@ -89,6 +95,7 @@ export class Player {
     this.audience.event({ ...notes.body, smooth: false });
     this.audience.binary(this.run.topology());
     if (notes.overlap) this.audience.event(notes.overlap);
+    if (notes.moment) this.tellMoment(notes.moment);
     this.audience.event({ t: "log", level: "info", text: notes.sentence });
     this.tell([this.run.stat]);
   }
@@ -129,6 +136,7 @@ export class Player {
 
   private play(command: Draft): void {
     const before = this.playing;
+    if (LEAVE.has(command.t)) this.forgetMoment();
     this.tell(this.run.command(command));
     if (!before) this.lastTurn = null;
   }
@@ -155,6 +163,17 @@ export class Player {
     this.audience.event({ ...stat, sentence, solver: "xpbd", progress: null });
   }
 
+  private tellMoment(moment: Moment): void {
+    this.audience.event({ t: "moment", topology: this.notes.body.topology, moment });
+  }
+
+  // What is known of objects is of the shape that is shown first as well.
+  private forgetMoment(): void {
+    if (!this.notes.moment || this.momentForgotten) return;
+    this.momentForgotten = true;
+    this.tellMoment(NOWHERE);
+  }
+
   // What is known of overlaps is of the shape that is shown first alone.
   private forgetOverlap(stat: StatEvent): void {
     const { overlap } = this.notes;
@@ -163,6 +182,11 @@ export class Player {
     this.audience.event({ ...overlap, depth: 0, sentence: "", places: [] });
   }
 }
+
+/** Nothing is known any more of where objects were. */
+const NOWHERE: Moment = {
+  ...{ frame: 0, time: 0, poses: [], contacts: [], fields: false, depth: null },
+};
 
 /** What a page without panes says where the core has nothing to say. */
 function hint(state: StatEvent["state"]): string {

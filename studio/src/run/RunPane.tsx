@@ -10,6 +10,7 @@ import { viewport } from "../view/instance";
 import { useOverlap } from "../view/overlap";
 import { ContactCard } from "./ContactCard";
 import { EquilibriumCard, useEquilibrium } from "./EquilibriumCard";
+import { GripCard } from "./GripCard";
 import { VibrationCard } from "./VibrationCard";
 import "./run.css";
 
@@ -35,6 +36,7 @@ export default function RunPane() {
   return (
     <div className="pane">
       <State />
+      <GripCard />
       <ContactCard />
       <EquilibriumCard />
       <VibrationCard />

@@ -37,6 +37,8 @@ export interface Toast {
   readonly what: string;
   readonly hint: string;
   readonly action?: { readonly label: string; run(): void };
+  /** What it is about, where a newer message about the same takes its place. */
+  readonly about?: string;
 }
 
 export interface LogLine extends Pick<LogEvent, "level" | "text"> {
@@ -137,7 +139,10 @@ const STAYS = { plain: 5_000, action: 10_000, error: 20_000 };
 export function toast(message: Omit<Toast, "id">): number {
   const id = nextId++;
   useStudio.setState((state) => {
-    const others = state.toasts.filter((one) => one.what !== message.what);
+    const { what, about } = message;
+    const others = state.toasts.filter(
+      (one) => one.what !== what && (about === undefined || one.about !== about),
+    );
     return { toasts: [...others, { ...message, id }].slice(-MOST_TOASTS) };
   });
   const { level, what, hint, action } = message;

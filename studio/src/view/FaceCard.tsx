@@ -1,12 +1,19 @@
 // What can be done at the face that was pressed.
-import { useState } from "react";
+import { type ReactNode, useState } from "react";
 import { Button, Select } from "../controls/Choice";
 import { formatNumber } from "../controls/units";
 import { editAll } from "../panes/design/edits";
+import { gripHere, nameOf } from "../panes/design/gripHere";
+import { PRIMITIVES, type Primitive } from "../panes/design/gripped";
 import { regionAround, regionOfFace, type Verb, verbsAt, verbsIn } from "../panes/design/here";
+import { canMirror, mirrored } from "../panes/design/mirrored";
+import { sideFor, surroundingsOf } from "../panes/design/placing";
+import type { BodyEvent, DocumentEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
 import { toast, useStudio } from "../store/studio";
+import { setView } from "../store/view";
 import type { Face } from "./face";
+import { viewport } from "./instance";
 
 export function FaceCard() {
   const face = useFace((state) => state.face);
@@ -38,12 +45,64 @@ export function FaceCard() {
           onChange={(value) => setAround(value === "around")}
         />
       )}
-      <Verbs title="Here" verbs={verbsAt(region, face.normal, source)} />
+      <Verbs
+        title="Here"
+        verbs={[...verbsAt(region, face.normal, source), ...mirrorVerb(face, document, body)]}
+      >
+        <Gripping face={face} document={document} body={body} />
+      </Verbs>
     </>
   );
 }
 
-function Verbs(props: { title: string; verbs: readonly Verb[] }) {
+/** The mirror image of all, where there is room for it in front of the face. */
+function mirrorVerb(face: Face, document: DocumentEvent, body: BodyEvent): Verb[] {
+  const { source, parameters } = document;
+  if (!source || face.axis === null || face.opposite !== null || !canMirror(source)) return [];
+  const [low, high] = body.bounds;
+  const size = [0, 1, 2].map((i) => high[i]! - low[i]!) as [number, number, number];
+  return [
+    {
+      id: "mirror",
+      label: "Mirror",
+      title: "Another one opposite this face: shapes, clamps, layers, chambers, loads and probes",
+      grows: true,
+      changes: mirrored(face, size, body.cavities.length, source, parameters),
+    },
+  ];
+}
+
+/** Something to grip, in the middle between the face and what is opposite, or in front of it. */
+function Gripping(props: { face: Face; document: DocumentEvent; body: BodyEvent }) {
+  const { face, document, body } = props;
+  const { source, design } = document;
+  if (!source) return null;
+  const add = (kind: Primitive) => {
+    const alone = sideFor(surroundingsOf(body, null));
+    const { name, changes } = gripHere(kind, face, alone, source, design);
+    run({ label: name, changes });
+    setView({ chosen: name });
+  };
+  return (
+    <select
+      className="select"
+      aria-label="An object to grip here"
+      title="An object to grip: free, between this face and what is opposite"
+      data-testid="here-grip"
+      value=""
+      onChange={(event) => add(event.target.value as Primitive)}
+    >
+      <option value="">To grip…</option>
+      {PRIMITIVES.map((kind) => (
+        <option key={kind} value={kind}>
+          {nameOf(kind)}
+        </option>
+      ))}
+    </select>
+  );
+}
+
+function Verbs(props: { title: string; verbs: readonly Verb[]; children?: ReactNode }) {
   return (
     <div className="face-verbs" role="group" aria-label={props.title} data-testid="face-verbs">
       {props.verbs.map((verb) => (
@@ -56,11 +115,13 @@ function Verbs(props: { title: string; verbs: readonly Verb[] }) {
           {verb.label}
         </Button>
       ))}
+      {props.children}
     </div>
   );
 }
 
-function run(verb: Verb): void {
+function run(verb: Pick<Verb, "label" | "changes" | "grows">): void {
+  if (verb.grows) viewport().fitSoon();
   editAll(verb.changes);
   chooseFace(null);
   useStudio.setState({ picked: null });
@@ -68,6 +129,7 @@ function run(verb: Verb): void {
     level: "good",
     what: `${verb.label}: added to the design`,
     hint: "Ctrl+Z takes it back.",
+    about: "design",
   });
 }
 

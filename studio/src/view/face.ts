@@ -1,6 +1,8 @@
 // The flat face of the unloaded body that was pressed: its triangles, its plane, what else lies there.
+import { Ray, Vector3 } from "three";
 import type { Topology } from "../engine/frames";
 import { CAVITY } from "../protocol";
+import { pick } from "./pick";
 
 export type Axis = 0 | 1 | 2;
 type Triple = readonly [number, number, number];
@@ -27,6 +29,8 @@ export interface Face {
   readonly cavity: number | null;
   /** The middle of the triangle that was pressed, m. */
   readonly point: Triple;
+  /** How far it is from there to what lies straight opposite, m; null where nothing does. */
+  readonly opposite: number | null;
   readonly voxelSize: number;
 }
 
@@ -116,6 +120,11 @@ export function faceAt(topology: Topology, triangle: number): Face {
   }
   const corners = [0, 1, 2].map((i) => vertexOf(rest, triangles[3 * triangle + i]!));
   const point = [0, 1, 2].map((i) => corners.reduce((sum, one) => sum + one[i]! / 3, 0));
+  // From a little off the face, which is not opposite itself.
+  const off = 1e-3 * voxelSize;
+  const from = new Vector3(...(point as [number, number, number]));
+  const way = new Vector3(...normal);
+  const hit = pick(new Ray(from.addScaledVector(way, off), way), rest, triangles);
   return {
     topology: topology.id,
     triangles: vertices,
@@ -126,6 +135,7 @@ export function faceAt(topology: Topology, triangle: number): Face {
     shared,
     cavity: inside ? owners[triangle]! & ~CAVITY : null,
     point: point as unknown as Triple,
+    opposite: hit && hit.distance + off,
     voxelSize,
   };
 }

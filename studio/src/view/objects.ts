@@ -98,6 +98,8 @@ export class RigidObjects {
   readonly group = new Group();
   private drawn: Drawn[] = [];
   private built: readonly BodyObject[] = [];
+  /** One that is drawn some times as large, while it is sized. */
+  sized: { readonly name: string; readonly factor: number } | null = null;
 
   constructor(private readonly section: { plane: IUniform<Vector4>; on: IUniform<number> }) {}
 
@@ -147,6 +149,12 @@ export class RigidObjects {
   ): void {
     for (const [i, { object, mesh, middle }] of this.drawn.entries()) {
       placedBy(moment?.poses[i], object.middle, exaggeration, mesh.matrix);
+      if (object.name === this.sized?.name) {
+        const about = new Matrix4().makeTranslation(...object.middle);
+        const { factor } = this.sized;
+        mesh.matrix.multiply(about).scale(new Vector3(factor, factor, factor));
+        mesh.matrix.multiply(about.invert());
+      }
       mesh.matrixWorldNeedsUpdate = true;
       middle.set(...object.middle).applyMatrix4(mesh.matrix);
       const { uniforms } = mesh.material;

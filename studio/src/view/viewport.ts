@@ -11,6 +11,8 @@ import {
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
+import { editAll } from "../panes/design/edits";
+import { resized } from "../panes/design/gripped";
 import { BODY, roomOf } from "../panes/design/several";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
@@ -39,6 +41,7 @@ import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
 import { SectionHandle } from "./sectionHandle";
 import { partColors, Several } from "./several";
+import { SizeHandle } from "./sizeHandle";
 import { SmoothMesh } from "./smooth";
 import { Spot } from "./spot";
 import { Stopwatch } from "./stopwatch";
@@ -81,6 +84,15 @@ export class Viewport {
     (by) => {
       const { chosen } = useView.getState();
       if (chosen) send({ t: "move", name: chosen, by });
+    },
+  );
+  private readonly sizer = new SizeHandle(
+    this.rig,
+    () => this.request(),
+    (factor) => {
+      const sized = this.objectToSize(useView.getState());
+      const shape = sized && resized(sized.shape, factor);
+      if (shape) editAll([{ path: ["objects", sized.index, "shape"], value: shape }]);
     },
   );
   private readonly attachments = new Attachments();
@@ -138,6 +150,7 @@ export class Viewport {
       this.labels.element,
       this.sectionHandle.element,
       this.mover.element,
+      this.sizer.element,
     );
     this.scene.add(
       this.section.group,
@@ -403,10 +416,14 @@ export class Viewport {
     this.labels.set(labels);
     const { clientWidth: width, clientHeight: height } = this.element;
     this.sectionHandle.place(width, height);
-    this.mover.place(this.middleToMove(view), width, height);
+    const middle = this.middleToMove(view);
+    this.mover.place(middle, width, height);
+    const sized = this.objectToSize(view);
+    this.sizer.place(sized ? middle : null, sized?.half ?? 0, width, height);
     const pressed = [
       ...this.sectionHandle.grips,
       ...this.mover.grips,
+      ...this.sizer.grips,
       ...(this.legend ? [this.legend] : []),
     ];
     this.labels.place(this.rig.camera, width, height, pressed);
@@ -443,6 +460,23 @@ export class Viewport {
     if (body.bodies.length === 0 && view.chosen === BODY) return null;
     const room = roomOf(view.chosen, body);
     return room && new Vector3(...room.low).add(new Vector3(...room.high)).multiplyScalar(0.5);
+  }
+
+  // The chosen object, where its shape can be sized: its place in the design, its shape, half its size in m.
+  private objectToSize(view: View): { index: number; shape: unknown; half: number } | null {
+    const { body, document } = useStudio.getState();
+    const objects = (document?.source?.objects ?? []) as readonly {
+      name?: unknown;
+      shape?: unknown;
+    }[];
+    const index = Array.isArray(objects)
+      ? objects.findIndex((one) => one.name === view.chosen)
+      : -1;
+    const shape = objects[index]?.shape;
+    if (!body || !view.chosen || !resized(shape, 1)) return null;
+    const room = roomOf(view.chosen, body);
+    if (!room) return null;
+    return { index, shape, half: Math.max(...room.low.map((x, i) => room.high[i]! - x)) / 2 };
   }
 
   // What is recorded is whole, however long it takes.
@@ -509,6 +543,8 @@ export class Viewport {
     const { body, moments } = useStudio.getState();
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
     const moment = moments.get(this.latest?.number ?? 0);
+    const { factor } = this.sizer;
+    this.objects.sized = view.chosen && factor !== 1 ? { name: view.chosen, factor } : null;
     this.objects.place(moment, view.exaggeration, view.chosen, this.ofContact);
     this.forces.group.visible = view.forces;
     if (view.forces)
@@ -742,6 +778,11 @@ export class Viewport {
   }
 
   // ---- what buttons and keys ask for ----
+
+  /** Take the body that comes next in whole: what was asked for makes it larger. */
+  fitSoon(): void {
+    this.fitNext = true;
+  }
 
   fit(): void {
     const mesh = this.shownMesh();

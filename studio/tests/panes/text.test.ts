@@ -85,6 +85,12 @@ describe("renamed", () => {
     );
     expect(after).toContain('shape = "wall"');
   });
+  it("renames a history where loads and motions call it", () => {
+    const text = '[histories]\nlift = { time = [0] }\n[[loads]]\nhistory = "lift" # lift';
+    expect(renamed(text, "histories", "lift", "rise")).toBe(
+      '[histories]\nrise = { time = [0] }\n[[loads]]\nhistory = "rise" # lift',
+    );
+  });
   it("renames a shape where shapes are named, not what is only called alike", () => {
     const after = renamed(text, "shapes", "wall", "hull");
     expect(after).toContain('hull = { kind = "box", size = ["= wall"');

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
+from hands import Hand
 from waiting import until
 
 # Software rendering, so that the tests run where there is no graphics card.
@@ -263,3 +264,20 @@ OUTSIDE = re.compile(r"^(?:https?|wss?)://(?!127\.0\.0\.1[:/])")
 def outside():
     """Requests that leave this machine."""
     return lambda tab: [url for url in tab.requests if OUTSIDE.match(url)]
+
+
+@pytest.fixture
+def empty(serving, tmp_path, open_tab):
+    """An empty design in the mode Design, and the hand that opened it."""
+    server = serving(tmp_path)
+    try:
+        tab = open_tab(server.address, mode="design", symbols=False)
+        tab.page.wait_for_selector("[data-testid='design-form']")
+        hand = Hand(tab)
+        hand.press(test_id="templates")
+        hand.press(test_id="template-empty")
+        tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
+        yield tab, hand
+        assert tab.errors == []
+    finally:
+        server.stop()

@@ -1,117 +1,11 @@
 """Robots built from nothing by the mouse alone, with no text: how many actions it takes."""
 
 import pytest
-from waiting import until
+from hands import drawn, first_shape, renewed, saved
 
 import voxsoft as vs
 
 pytestmark = pytest.mark.browser
-
-
-class Hand:
-    """Counts what a person does: presses, choices and numbers that are typed."""
-
-    def __init__(self, tab):
-        self.tab, self.actions = tab, 0
-
-    def press(self, *, name=None, test_id=None, then=None):
-        """A button, and then an entry of the menu that it opens."""
-        page = self.tab.page
-        (
-            self.tab.find(test_id) if test_id else page.get_by_role("button", name=name, exact=True)
-        ).click()
-        self.actions += 1
-        if then:
-            page.get_by_role("menuitem", name=then, exact=True).click()
-            self.actions += 1
-
-    def choose(self, label, value):
-        self.tab.page.get_by_label(label, exact=True).select_option(value)
-        self.actions += 1
-
-    def number(self, field, text):
-        field.fill(text)
-        field.press("Enter")
-        self.actions += 1
-
-    def here(self, verb):
-        """What is offered at the face that was pressed; the body comes anew with it."""
-        renewed(self.tab, lambda: self.press(test_id=verb))
-
-    def key(self, key):
-        self.tab.page.locator(".viewport canvas").focus()
-        self.tab.page.keyboard.press(key)
-        drawn(self.tab)
-        self.actions += 1
-
-    def body(self, dx=0, dy=0):
-        x, y = self.tab.middle()
-        self.tab.page.mouse.click(x + dx, y + dy)
-        self.tab.find("face-verbs").wait_for()
-        self.actions += 1
-
-    def face(self, axis, side):
-        """Press the outermost face of the body along an axis, in its middle."""
-        x, y = self.tab.page.evaluate(MIDDLE_OF_FACE, [axis, side])
-        self.tab.page.mouse.click(x, y)
-        self.tab.find("face-verbs").wait_for()
-        self.actions += 1
-
-
-#: Where the middle of the outermost face along an axis is on the page.
-MIDDLE_OF_FACE = """([axis, side]) => {
-    const all = [];
-    for (let i = 0, at; (at = window.voxsoft.vertexPosition(i)) !== null; i++) all.push(at[axis]);
-    const far = Math.max(...all.map((x) => side * x));
-    const seen = [...all.keys()]
-        .filter((i) => side * all[i] > far - 1e-4)
-        .map((i) => window.voxsoft.screenOf(i));
-    return [0, 1].map((k) => seen.reduce((sum, at) => sum + at[k], 0) / seen.length);
-}"""
-
-
-def drawn(tab):
-    """The camera is where a key or a new body put it once it has been drawn."""
-    tab.page.evaluate(
-        "() => new Promise((drawn) => "
-        "requestAnimationFrame(() => requestAnimationFrame(() => drawn(null))))"
-    )
-
-
-def renewed(tab, change):
-    """Make a change, and wait until the body that comes of it is shown."""
-    topology = tab.page.evaluate("voxsoft.topology")
-    change()
-    tab.until(f"voxsoft.topology !== {topology} && voxsoft.vertexPosition(0) !== null")
-
-
-def first_shape(tab, hand, kind):
-    renewed(tab, lambda: hand.choose("Add a shape", kind))
-
-
-def saved(tab, file):
-    """The design, saved under its own name."""
-    tab.page.keyboard.press("Control+s")
-    tab.page.get_by_role("button", name="Save", exact=True).last.click()
-    until(file.exists)
-    return vs.load(file)
-
-
-@pytest.fixture
-def empty(serving, tmp_path, open_tab):
-    """An empty design in the mode Design, and the hand that opened it."""
-    server = serving(tmp_path)
-    try:
-        tab = open_tab(server.address, mode="design", symbols=False)
-        tab.page.wait_for_selector("[data-testid='design-form']")
-        hand = Hand(tab)
-        hand.press(test_id="templates")
-        hand.press(test_id="template-empty")
-        tab.page.get_by_text("None yet. Add a box or a cylinder").wait_for()
-        yield tab, hand
-        assert tab.errors == []
-    finally:
-        server.stop()
 
 
 def test_a_chamber_from_nothing_to_rest_under_pressure(empty, tmp_path):

@@ -219,3 +219,32 @@ def test_a_small_page_says_that_time_does_not_run_and_shows_the_film_of_a_soluti
     assert tab.page.evaluate("voxsoft.objectPosition('plate')[2]") < began
     tab.shot("objects_film")
     assert tab.errors == []
+
+
+def test_an_object_is_sized_by_its_grip(served, open_tab):
+    tab = open_tab(served.address, mode="design", symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("add-object").select_option("sphere")
+    tab.until("voxsoft.objectPosition('ball') !== null && voxsoft.vertexPosition(0) !== null")
+    radius = tab.find("objects-0").get_by_label("Radius", exact=True)
+    began = float(radius.input_value().removesuffix(" mm"))
+    grip = tab.find("size-object")
+    grip.press("ArrowUp")
+    value = "parseFloat(document.querySelector('[aria-label=\"Radius\"]').value)"
+    tab.until(f"Math.abs({value} - {began + 0.5}) < 1e-9")
+    tab.until("voxsoft.objectPosition('ball') !== null && voxsoft.vertexPosition(0) !== null")
+    box = grip.bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    tab.page.mouse.move(x, y)
+    tab.page.mouse.down()
+    tab.page.mouse.move(x - 30, y + 30, steps=4)
+    tab.shot("objects_sized")
+    tab.page.mouse.up()
+    tab.until(f"{value} > {began + 1}")
+    # Its middle stays, and one step takes it back.
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.until(f"Math.abs({value} - {began + 0.5}) < 1e-9")
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.page.get_by_role("button", name="Undo").click()
+    tab.find("objects-0").wait_for(state="detached")
+    assert tab.errors == []

@@ -82,6 +82,13 @@ export default function DesignPane() {
             what="a load"
             empty="None yet. Add pressure, gravity, a force or a traction."
           />
+          <EntryMap
+            section="histories"
+            title="Histories"
+            what="a history"
+            first="history"
+            empty="None. A history is a factor over time, by which loads, motions and tendons come and go."
+          />
           <Floor form={form} />
           <EntryMap
             section="chambers"

@@ -139,6 +139,7 @@ export function fittingKeys(
   metric: Metric | undefined,
   value: Table,
   probes: readonly string[],
+  objects: readonly string[] = [],
 ): Record<string, unknown> {
   const { probe: _p, base: _b, axis: _a, cavity: _c, percentile, object, ...kept } = value;
   if (metric?.needs_probe) {
@@ -152,7 +153,11 @@ export function fittingKeys(
     };
   }
   if (metric?.needs_cavity && value.cavity !== undefined) return { ...kept, cavity: value.cavity };
-  if (metric?.needs_object && object !== undefined) return { ...kept, object };
+  if (metric?.needs_object) {
+    // Of a design without objects the body is meant, which needs no name.
+    const named = object ?? objects[0];
+    return named === undefined ? kept : { ...kept, object: named };
+  }
   return metric?.takes_percentile && percentile !== undefined ? { ...kept, percentile } : kept;
 }
 
@@ -160,6 +165,9 @@ export function Goals() {
   const metrics = useStudio((state) => state.hello?.metrics);
   const { source, amounts } = useForm();
   const probes = Object.keys((source.probes as object | undefined) ?? {});
+  const objects = (Array.isArray(source.objects) ? source.objects : []).map((one) =>
+    String((one as Table).name ?? ""),
+  );
   const metricOf = (name: string) => metrics?.find((one) => one.name === name);
   return (
     <>
@@ -189,7 +197,7 @@ export function Goals() {
                 value={value}
                 onMetric={(next) =>
                   edit(path, {
-                    ...fittingKeys(metricOf(next), value, probes),
+                    ...fittingKeys(metricOf(next), value, probes, objects),
                     [direction]: next,
                   })
                 }
@@ -225,7 +233,7 @@ export function Goals() {
                 metric={String(value.metric ?? "")}
                 value={value}
                 onMetric={(next) => {
-                  const kept = fittingKeys(metricOf(next), value, probes);
+                  const kept = fittingKeys(metricOf(next), value, probes, objects);
                   // Bounds in the unit of another metric would be wrong.
                   if (metricOf(next)?.kind !== metric?.kind) {
                     delete kept.min;

@@ -1,13 +1,14 @@
 // Objects that the body touches: added beside it, with the few things that matter first.
 import { useRef } from "react";
-import { Section, Select } from "../../controls/Choice";
+import { Button, Section, Select } from "../../controls/Choice";
 import { NumberField } from "../../controls/NumberField";
+import { bytesOf } from "../../engine/base64";
 import { sendFile } from "../../shell/DropZone";
 import { toast, useStudio } from "../../store/studio";
 import { setView } from "../../store/view";
 import { CopyTools } from "./CopyTools";
 import { NameField, ThingEntry } from "./Entries";
-import { edit } from "./edits";
+import { edit, editAll } from "./edits";
 import { useForm } from "./form";
 import {
   frictionEdit,
@@ -21,7 +22,8 @@ import {
   type Table,
   withMotion,
 } from "./gripped";
-import { boxOf, type Surroundings, surroundingsOf } from "./placing";
+import { lifting, liftOf } from "./lifting";
+import { boxOf, type Surroundings, surroundingsOf, written } from "./placing";
 import { TableFields } from "./SchemaField";
 import { resolve, type Schema } from "./schema";
 import { bodyNames } from "./several";
@@ -171,6 +173,7 @@ function ObjectFields(props: {
           edit(path, withMotion(value, next as Motion, useStudio.getState().body))
         }
       />
+      {motion === "free" && <Lifting name={name} />}
       {motion === "moved" && (
         <TableFields
           path={[...path, "motion"]}
@@ -199,6 +202,38 @@ function ObjectFields(props: {
       <CopyTools name={name} />
       <TableFields path={path} schema={props.schema} value={value} without={["motion", "name"]} />
     </>
+  );
+}
+
+/** Grips and lifts an object by all that the design has, as entries of the text that can be changed. */
+function Lifting({ name }: { name: string }) {
+  const { source } = useForm();
+  const body = useStudio((state) => state.body);
+  const object = body?.objects.find((one) => one.name === name);
+  if (!body || !object || (source.solver as Table | undefined)?.end_time !== undefined) return null;
+  const room = boxOf(new Float32Array(bytesOf(object.vertices)));
+  const [low, high] = body.bounds;
+  const changes = lifting(source, room, { low, high }, body.voxel_size);
+  if (changes.length === 0) {
+    return <p className="muted">Clamp what is to grip it; then it can be lifted here.</p>;
+  }
+  return (
+    <Button
+      kind="primary"
+      testId="grip-and-lift"
+      title="Over time: pressures come on, then all clamps go up, with what is gripped"
+      onClick={() => {
+        editAll(changes);
+        toast({
+          level: "good",
+          what: `Grips ${name}, then lifts it by ${written(liftOf(room))}`,
+          hint: "Histories close, lift and weight of the design say when. Ctrl+Z takes it back.",
+          about: "design",
+        });
+      }}
+    >
+      Grip and lift it by {written(liftOf(room))}
+    </Button>
   );
 }
 

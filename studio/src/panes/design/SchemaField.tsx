@@ -4,10 +4,12 @@ import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
+import { toast } from "../../store/studio";
 import { CavityField } from "./CavityField";
-import { edit, type Path, problemsAt, problemText } from "./edits";
+import { edit, editAll, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
+import { isNumber, promoted } from "./promote";
 import {
   type Control,
   controlOf,
@@ -130,6 +132,8 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
     }
     case "table":
     case "variant":
+      // Histories may be called by a name, which the text puts in their place.
+      if (typeof value === "string") return <NamedHistory {...props} name={value} />;
       return (
         <Nested label={label} help={props.help} onRemove={props.onRemove}>
           <TableFields path={path} schema={props.schema} value={value} />
@@ -164,6 +168,26 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
       );
     }
   }
+}
+
+/** The name of a history of the design, in place of one of its own. */
+function NamedHistory(props: SchemaFieldProps & { name: string }) {
+  const { source, diagnostics } = useForm();
+  const { name, path, label } = props;
+  const known = Object.keys((source.histories as object | undefined) ?? {});
+  const problem = problemText(problemsAt(diagnostics, path));
+  return (
+    <Removable onRemove={props.onRemove} label={label}>
+      <Select
+        label={label}
+        title={props.help}
+        value={name}
+        options={known.includes(name) ? known : [name, ...known]}
+        onChange={(next) => edit(path, next)}
+      />
+      {problem && <span className="field-note">{problem}</span>}
+    </Removable>
+  );
 }
 
 function Removable(props: {
@@ -214,7 +238,7 @@ function QuantityField(
     onRefusal?: (problem: string | null) => void;
   },
 ) {
-  const { root, design, amounts } = useForm();
+  const { root, source, design, amounts } = useForm();
   const { control, path, value } = props;
   const usual = resolve(root, props.schema).default;
   const kind = control.is === "quantity" ? control.kind : null;
@@ -234,6 +258,31 @@ function QuantityField(
       changed={usual !== undefined && usual !== null && value !== undefined && value !== usual}
       onDefault={props.onRemove}
       onNudge={kind === null || formula ? undefined : (count) => nudge(path, value, count)}
+      tool={
+        kind !== null &&
+        !formula &&
+        isNumber(value) && (
+          <button
+            type="button"
+            className="promote"
+            aria-label={`Make a parameter of ${props.label}`}
+            title="Make a parameter of it, which can be slid and varied by a study"
+            onClick={() => {
+              const changes = promoted(path, value, source);
+              editAll(changes);
+              const name = String(changes[0]?.path[1] ?? "");
+              toast({
+                level: "good",
+                what: `${name} is a parameter of the design`,
+                hint: "It stands at the top of the form, with bounds of ± 50 %. Ctrl+Z takes it back.",
+                about: "design",
+              });
+            }}
+          >
+            <Glyph name="sweep" />
+          </button>
+        )
+      }
       onCommit={(typed) => {
         if (control.is === "text") {
           edit(path, typed);

@@ -1,4 +1,5 @@
 // Objects to grip: what is written of a new one, of another motion, and of its friction.
+import { parseQuantity } from "../../controls/units";
 import type { BodyEvent, Triple } from "../../protocol";
 import { type Surroundings, sideFor, spotFor, wayInto, written, writtenPlace } from "./placing";
 
@@ -43,6 +44,49 @@ export function meshShape(
     of: { kind: "mesh", path, unit: "mm" },
     by: writtenPlace(by as Triple),
   };
+}
+
+/** Lengths of a shape that is sized end at a tenth of a millimeter, m. */
+const SNAP = 1e-4;
+
+/**
+ * A sphere, box or cylinder some times as large about its middle; null where it is none of these, or a length is
+ * a formula, which sets the size.
+ */
+export function resized(shape: unknown, factor: number): Table | null {
+  if (typeof shape !== "object" || shape === null) return null;
+  const table = shape as Table;
+  const meters = (value: unknown): number => {
+    const read = String(value).trim().startsWith("=") ? null : parseQuantity(String(value), "m");
+    return read && "value" in read ? read.value : Number.NaN;
+  };
+  const larger = (value: unknown) =>
+    Math.max(Math.round((meters(value) * factor) / SNAP), 1) * SNAP;
+  const isNumber = (...lengths: unknown[]) => lengths.every((one) => Number.isFinite(meters(one)));
+  switch (table.kind) {
+    case "sphere":
+      return isNumber(table.radius) ? { ...table, radius: written(larger(table.radius)) } : null;
+    case "box": {
+      const { size, center } = table;
+      // One that is placed by its corner would grow to one side.
+      if (!Array.isArray(size) || !isNumber(...size) || center === undefined) return null;
+      return { ...table, size: size.map((side) => written(larger(side))) };
+    }
+    case "cylinder": {
+      const { radius, height, base, axis } = table;
+      if (!isNumber(radius, height) || !Array.isArray(base) || (axis ?? "z") !== "z") return null;
+      if (!isNumber(base[2])) return null;
+      const high = larger(height);
+      const low = meters(base[2]) - (high - meters(height)) / 2;
+      const [z] = writtenPlace([low, 0, 0]);
+      return {
+        ...table,
+        ...{ radius: written(larger(radius)), height: written(high), base: [base[0], base[1], z] },
+      };
+    }
+    default:
+      return null;
+  }
 }
 
 /** How an object moves as it is written. */

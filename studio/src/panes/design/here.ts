@@ -14,6 +14,8 @@ export interface Verb {
   readonly label: string;
   readonly title: string;
   readonly changes: readonly Change[];
+  /** Whether the body is larger afterwards, so that the picture takes it in anew. */
+  readonly grows?: boolean;
 }
 
 /** Voxels to each side of a point that a place around it holds. */

@@ -6,6 +6,7 @@ export type Named =
   | "parameters"
   | "shapes"
   | "materials"
+  | "histories"
   | "chambers"
   | "probes"
   | "objectives"
@@ -76,6 +77,7 @@ const SPEAKS: Readonly<Record<Named, RegExp | null>> = {
   parameters: /./,
   shapes: /\b(?:of|shape|by|base|inner|outer)\s*=/,
   materials: /\bmaterial\s*=/,
+  histories: /\bhistory\s*=/,
   chambers: /\bcavity\s*=/,
   probes: /\bprobe\s*=/,
   objectives: null,

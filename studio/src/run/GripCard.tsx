@@ -1,0 +1,28 @@
+import { Section } from "../controls/Choice";
+import type { Grip } from "../protocol";
+import { useEquilibrium } from "./EquilibriumCard";
+
+/** Whether it is as it should be, in doubt, or not: the colors of the whole page. */
+const TONES: Readonly<Record<Grip["verdict"], string>> = {
+  held: "is-good",
+  slips: "is-doubtful",
+  touched: "is-doubtful",
+  lost: "is-bad",
+};
+
+/** Whether what is free is held at the end of a run, by how much. */
+export function GripCard() {
+  const grips = useEquilibrium()?.grips ?? [];
+  if (grips.length === 0) return null;
+  return (
+    <Section title="Grip">
+      <div data-testid="grips">
+        {grips.map(({ name, verdict, sentence }) => (
+          <p key={name} className={`run-sentence ${TONES[verdict]}`} data-verdict={verdict}>
+            {sentence}
+          </p>
+        ))}
+      </div>
+    </Section>
+  );
+}
