@@ -108,6 +108,13 @@ function simple(): Action[] {
       run: () => useStudio.getState().document && openSheet("save"),
     },
     {
+      id: "start",
+      title: "Start screen: new, open, recent, finished robots",
+      group: "Document",
+      keys: ["Ctrl+O"],
+      run: () => openSheet("start"),
+    },
+    {
       id: "undo",
       title: "Undo",
       group: "Document",
@@ -272,7 +279,7 @@ export function actions(): Action[] {
 export function openDocument(draft: Pending): void {
   const edited = useStudio.getState().document?.dirty ?? false;
   // Runs and designs of studies are looked at one after the other: undo leads back from those.
-  const asks = draft.what === "template" || draft.what === "file" || draft.what === "upload";
+  const asks = ["template", "robot", "start", "file", "upload"].includes(draft.what);
   if (edited && asks) openSheet("discard", draft);
   else openNow(draft);
 }
