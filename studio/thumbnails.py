@@ -1,10 +1,11 @@
-"""Draw the pictures of the finished robots, as the studio shows them at rest under their loads.
+"""Draw the pictures of the finished robots, as the studio shows them at rest.
 
     python studio/thumbnails.py              # all of them, some ten minutes
     python studio/thumbnails.py bellows ...  # these alone
 
-They lie beside the designs, in python/voxsoft/design/robots: WebP, transparent around the robot, so that they stand on a
-dark page as on a light one. Chromium and Playwright draw them, Pillow packs them; those are needed for nothing else.
+They lie beside the designs, in python/voxsoft/design/robots, those of other examples in
+docs/images/gallery: WebP, transparent around the robot, so that they stand on a dark page as on a
+light one. Chromium and Playwright draw them, Pillow packs them.
 """
 
 from __future__ import annotations
@@ -26,12 +27,17 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from voxsoft.design.robots import ROBOTS, robot_text
+from voxsoft.files.designs import read_text
 from voxsoft.files.toml_edits import with_value
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-FOLDER: Final = Path(__file__).parents[1] / "python/voxsoft/design/robots"
+ROOT: Final = Path(__file__).parents[1]
+FOLDER: Final = ROOT / "python/voxsoft/design/robots"
+#: Examples that the gallery of the documentation shows too, and where their pictures are.
+OTHERS: Final = ("bender", "finger", "gripper_finger", "sphere")
+IMAGES: Final = ROOT / "docs/images/gallery"
 #: Size of a picture, and how many times larger it is drawn to be smooth.
 SIZE: Final = (480, 320)
 FINER: Final = 2
@@ -51,7 +57,12 @@ server.run_and_exit(lambda address: print(address, flush=True))
 """
 
 # As on the page's own tests: software draws where there is no graphics card.
-FLAGS: Final = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")  # fmt: skip
+FLAGS: Final = (
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+)
 
 #: The page without all that is no robot; the sky gets a color of its own.
 BARE: Final = """([color]) => {
@@ -102,6 +113,8 @@ BREATH: Final = (0.0, 0.1, 0.25, 0.45, 0.65, 0.85, 1.0)
 #: The load that breathes, and milliseconds for each picture.
 MOVING: Final = ("pneunet", ("loads", 0, "value"), 2000.0)
 EVERY: Final = 110
+#: How far its camera goes away, so that all of the way is in the picture [pixels of the wheel].
+AWAY: Final = 300
 
 
 @contextmanager
@@ -174,7 +187,7 @@ def framed(page: Page, shot: Shot) -> None:
 
 
 def drawn(page: Page) -> Image.Image:
-    """The view with what is behind it left out: the difference on black and on white says what is."""
+    """The body alone: what differs on black and on white is behind it."""
     black, white = (_on(page, color) for color in ("#000000", "#ffffff"))
     alpha = 1 - (white - black).mean(axis=2, keepdims=True).clip(0, 1)
     color = np.divide(black, alpha, out=np.zeros_like(black), where=alpha > 1 / 255)
@@ -208,14 +221,16 @@ def cut(images: Sequence[Image.Image]) -> list[Image.Image]:
 def picture(browser: Browser, name: str) -> None:
     """Draw a robot at rest."""
     shot = SHOTS.get(name, Shot())
-    text = robot_text(name)
+    is_other = name in OTHERS
+    text = read_text(ROOT / f"examples/{name}.toml") if is_other else robot_text(name)
     for place, value in shot.values.items():
         text = with_value(text, list(place), value)
     with tempfile.TemporaryDirectory() as folder, page_of(browser, text, Path(folder)) as page:
         rested(page)
         framed(page, shot)
         (image,) = cut([drawn(page)])
-    image.save(FOLDER / f"{name}.webp", quality=88, method=6)
+    folder = IMAGES if is_other else FOLDER
+    image.save(folder / f"{name}.webp", quality=88, method=6)
 
 
 def moving_picture(browser: Browser) -> None:
@@ -227,6 +242,8 @@ def moving_picture(browser: Browser) -> None:
         with tempfile.TemporaryDirectory() as folder, page_of(browser, text, Path(folder)) as page:
             # One camera for all, and colors that mean the same in all: those of the materials.
             page.get_by_label("Color by").select_option("parts")
+            page.locator(".viewport canvas").hover()
+            page.mouse.wheel(0, AWAY)  # a camera that was moved stays where it is
             if share > 0:
                 rested(page)
             images.append(drawn(page))
@@ -245,7 +262,7 @@ def moving_picture(browser: Browser) -> None:
 
 def main() -> int:
     """Draw what the command line names."""
-    known = [robot.name for robot in ROBOTS]
+    known = [*(robot.name for robot in ROBOTS), *OTHERS]
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("name", nargs="*", help=f"of {', '.join([*known, 'moving'])}")
     names = parser.parse_args().name or [*known, "moving"]

@@ -645,7 +645,7 @@ export interface HelloEvent {
   cores: number;
 }
 
-/** A finished robot to open; `picture` is an address, `moving` that of an animated one, or "". */
+/** A finished robot to open, and the addresses of its pictures; `moving` may be empty. */
 export interface Robot {
   name: string;
   title: string;

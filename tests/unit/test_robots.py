@@ -1,4 +1,4 @@
-"""Finished robots: each is an example of the repository, opens without a warning, and can be solved."""
+"""Finished robots: each is an example, opens without a warning, and can be solved."""
 
 import tomllib
 from io import BytesIO

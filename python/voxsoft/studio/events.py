@@ -108,7 +108,7 @@ class Hello(Event):
 
 
 class Robot(Entry):
-    """A finished robot to open; `picture` is an address, `moving` that of an animated one, or ""."""
+    """A finished robot to open, and the addresses of its pictures; `moving` may be empty."""
 
     name: str
     title: str

@@ -20,7 +20,7 @@ def test_a_robot_opens_smooth_and_moves(bare, open_tab):
         "|| (one.complete && one.naturalWidth > 0))"
     )
     assert robots.count() >= 7
-    assert tab.page.evaluate("document.querySelector('[data-testid=top-bar]').closest('[inert]') !== null")
+    assert tab.page.evaluate("document.querySelector('.top-bar').closest('[inert]') !== null")
     assert focused(tab) == "start-new"
     tab.shot("start")
     tab.find("robot-tendon_finger").click()

@@ -1,7 +1,8 @@
 """Finished robots: designs to open, look at and change, and the first steps to one of your own.
 
-Each is a TOML file beside this module, or a family of :mod:`voxsoft.design.families`, with its picture at rest under its
-loads (``python studio/thumbnails.py`` draws them). All can be solved, and open without a warning.
+Each is a TOML file beside this module, or a family of :mod:`voxsoft.design.families`, with its
+picture at rest under its loads (``python studio/thumbnails.py`` draws them). All can be solved, and
+open without a warning.
 """
 
 from __future__ import annotations
@@ -89,23 +90,104 @@ class Start:
 
 #: All that three answers may lead to; each combination once.
 STARTS: Final = (
-    Start("pressure", "finger", "bend", "pneunet", "Chambers push each other apart, the layer holds: it bends down."),
-    Start("pressure", "finger", "grip", "pumped_gripper", "Two fingers, a pump and two valves; they grip and lift a can."),
-    Start("pressure", "bellows", "extend", "bellows", "Three folds that unfold to about a third more of their height."),
-    Start("pressure", "bellows", "lift", "bellows", "Wider folds with a thicker wall: more area for the air to lift by.",
-          {"width": "26 mm", "waist": "14 mm", "wall": "4 mm"}),
-    Start("pressure", "cylinder", "extend", "wound_tube", "Thread wound steeply holds the width: the tube grows long.", {"wind": "75 deg"}),
-    Start("pressure", "cylinder", "lift", "wound_tube", "Thread wound along the tube: it shortens as McKibben's muscle does."),
-    Start("pressure", "cylinder", "bend", "wound_bender", "A line on one side keeps its length: the tube bends to that side."),
-    Start("tendon", "finger", "bend", "tendon_finger", "A tendon below two joints bends them, one above opens them."),
+    Start(
+        "pressure",
+        "finger",
+        "bend",
+        "pneunet",
+        "Chambers push each other apart, the layer holds: it bends down.",
+    ),
+    Start(
+        "pressure",
+        "finger",
+        "grip",
+        "pumped_gripper",
+        "Two fingers, a pump and two valves; they grip and lift a can.",
+    ),
+    Start(
+        "pressure",
+        "bellows",
+        "extend",
+        "bellows",
+        "Three folds that unfold to about a third more of their height.",
+    ),
+    Start(
+        "pressure",
+        "bellows",
+        "lift",
+        "bellows",
+        "Wider folds with a thicker wall: more area for the air to lift by.",
+        {"width": "26 mm", "waist": "14 mm", "wall": "4 mm"},
+    ),
+    Start(
+        "pressure",
+        "cylinder",
+        "extend",
+        "wound_tube",
+        "Thread wound steeply holds the width: the tube grows long.",
+        {"wind": "75 deg"},
+    ),
+    Start(
+        "pressure",
+        "cylinder",
+        "lift",
+        "wound_tube",
+        "Thread wound along the tube: it shortens as McKibben's muscle does.",
+    ),
+    Start(
+        "pressure",
+        "cylinder",
+        "bend",
+        "wound_bender",
+        "A line on one side keeps its length: the tube bends to that side.",
+    ),
+    Start(
+        "tendon",
+        "finger",
+        "bend",
+        "tendon_finger",
+        "A tendon below two joints bends them, one above opens them.",
+    ),
     Start("tendon", "finger", "grip", "starfish", "Five arms curl around what lies below them."),
-    Start("tendon", "trunk", "bend", "tendon_trunk", "One of four tendons is pulled: the trunk bends to its side."),
-    Start("tendon", "trunk", "lift", "tendon_trunk", "All four tendons are pulled alike: the trunk draws up its tip.",
-          {"left": "4 N", "right": "4 N", "front": "4 N", "back": "4 N"}),
-    Start("magnet", "finger", "bend", "magnetic_gripper", "Arms magnetized outward, which a weak field raises.", {"reach": "26 mm", "field": "6 mT"}),
-    Start("magnet", "finger", "grip", "magnetic_gripper", "Arms magnetized outward, which a field along z closes.", {"field": "16 mT"}),
-    Start("heat", "finger", "bend", "shape_memory_finger", "Fibers that shorten as they are warmed curl the finger."),
-)  # fmt: skip
+    Start(
+        "tendon",
+        "trunk",
+        "bend",
+        "tendon_trunk",
+        "One of four tendons is pulled: the trunk bends to its side.",
+    ),
+    Start(
+        "tendon",
+        "trunk",
+        "lift",
+        "tendon_trunk",
+        "All four tendons are pulled alike: the trunk draws up its tip.",
+        {"left": "4 N", "right": "4 N", "front": "4 N", "back": "4 N"},
+    ),
+    Start(
+        "magnet",
+        "finger",
+        "bend",
+        "magnetic_gripper",
+        "Arms magnetized outward, which a weak field raises.",
+        {"reach": "26 mm", "field": "6 mT"},
+    ),
+    Start(
+        "magnet",
+        "finger",
+        "grip",
+        "magnetic_gripper",
+        "Arms magnetized outward, which a field along z closes.",
+        {"field": "16 mT"},
+    ),
+    Start(
+        "heat",
+        "finger",
+        "bend",
+        "shape_memory_finger",
+        "Fibers that shorten as they are warmed curl the finger.",
+    ),
+)
 
 
 def robot(name: str) -> Robot:
@@ -199,7 +281,9 @@ def robot_picture(name: str, *, moving: bool = False) -> bytes:
     """
     file = _file(f"{robot(name).name}{'-moving' if moving else ''}.webp")
     if not file.is_file():
-        raise DesignError("robot", f'there is no moving picture of "{name}"', f"see {ROBOTS[0].name}")
+        raise DesignError(
+            "robot", f'there is no moving picture of "{name}"', f"see {ROBOTS[0].name}"
+        )
     return file.read_bytes()
 
 
