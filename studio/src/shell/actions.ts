@@ -330,7 +330,7 @@ export function listenForKeys(): () => void {
   const onKey = (event: KeyboardEvent) => {
     const name = keyName(event);
     const owned = ownsKey(event.target, event.key);
-    const global = ["Ctrl+K", "Ctrl+S", "Ctrl+Shift+S", "Ctrl+Shift+P"].includes(name);
+    const global = ["Ctrl+K", "Ctrl+O", "Ctrl+S", "Ctrl+Shift+S", "Ctrl+Shift+P"].includes(name);
     if (owned && !global) return;
     if (usePage.getState().sheet !== null && !global) return;
     const action = actions().find((one) => one.keys?.includes(name));

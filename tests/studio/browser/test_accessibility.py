@@ -25,6 +25,12 @@ FOUND = """async () => {
       (node.any[0]?.message ?? node.all[0]?.message ?? node.none[0]?.message ?? "")));
 }"""
 
+#: Panes are loaded when they are first shown.
+LOADED = """(() => {
+  const panes = [...document.querySelectorAll(".pane-host")];
+  return panes.length > 0 && panes.every((one) => one.childElementCount > 0);
+})()"""
+
 
 class Audit:
     """Collects what is found in one page after the other."""
@@ -70,9 +76,7 @@ def test_every_mode_and_sheet_is_accessible(axe, served, open_tab, scheme):
     audit, page = Audit(tab), tab.page
     for mode in MODES:
         tab.find(f"mode-{mode}").click()
-        # Panes that are loaded when they are first shown.
-        tab.until("document.querySelectorAll('.dv-content-container > *').length > 0")
-        page.wait_for_timeout(400)
+        tab.until(LOADED)
         audit.look(mode)
     tab.find("mode-design").click()
     for keys, sheet in SHEETS.items():
