@@ -131,8 +131,8 @@ export function Start() {
           </span>
         </header>
         {asking && <NewRobot ways={start?.ways ?? []} robots={robots} />}
-        <section aria-labelledby="start-robots">
-          <h2 id="start-robots">Finished robots</h2>
+        <section aria-label="Finished robots">
+          <h2>Finished robots</h2>
           <ul className="robots">
             {robots.map((robot) => (
               <li key={robot.name}>
@@ -142,8 +142,8 @@ export function Start() {
           </ul>
         </section>
         <div className="start-columns">
-          <section aria-labelledby="start-recent">
-            <h2 id="start-recent">Recent</h2>
+          <section aria-label="Recent">
+            <h2>Recent</h2>
             {recent.length === 0 ? (
               <p className="muted">What you save or open is listed here.</p>
             ) : (
@@ -164,8 +164,8 @@ export function Start() {
               </ul>
             )}
           </section>
-          <section aria-labelledby="start-learn">
-            <h2 id="start-learn">Tutorials</h2>
+          <section aria-label="Tutorials">
+            <h2>Tutorials</h2>
             <ul className="start-list">
               {TUTORIALS.map((tutorial) => (
                 <li key={tutorial.page}>

@@ -12,7 +12,7 @@ pytestmark = pytest.mark.browser
 
 AXE = Path(__file__).parents[3] / "studio/node_modules/axe-core/axe.min.js"
 MODES = ("design", "simulate", "calibrate", "optimize", "runs")
-SHEETS = {"Control+k": "palette", "?": "shortcuts", "Control+Shift+S": "save-sheet"}
+KEYS = {"Control+k": "palette", "?": "shortcuts", "Control+Shift+S": "save-sheet"}
 SCHEMES = ("dark", "light")
 
 #: What axe found that is serious or critical, as lines that name the rule and the element.
@@ -79,7 +79,7 @@ def test_every_mode_and_sheet_is_accessible(axe, served, open_tab, scheme):
         tab.until(LOADED)
         audit.look(mode)
     tab.find("mode-design").click()
-    for keys, sheet in SHEETS.items():
+    for keys, sheet in KEYS.items():
         page.locator(".viewport canvas").focus()
         page.keyboard.press(keys)
         tab.find(sheet).wait_for()
