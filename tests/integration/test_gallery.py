@@ -1,6 +1,7 @@
 """The gallery of the documentation: at least twelve robots, each made by its command."""
 
 import importlib.util
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,10 @@ DOCS = Path(__file__).parents[2] / "docs"
 def gallery():
     spec = importlib.util.spec_from_file_location("gallery", DOCS / "gallery.py")
     module = importlib.util.module_from_spec(spec)
+    sys.modules["gallery"] = module  # where its dataclasses look for their types
     spec.loader.exec_module(module)
-    return module
+    yield module
+    del sys.modules["gallery"]
 
 
 @pytest.fixture
