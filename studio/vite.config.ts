@@ -62,6 +62,7 @@ export default defineConfig({
       "/upload": server,
       "/download": server,
       "/thumbnail": server,
+      "/robot": server,
       "/export": server,
       "/still": server,
     },

@@ -128,14 +128,15 @@ export interface HelloCommand {
 }
 
 /**
- * Open a document: a template, a file or run folder, an uploaded file, or a study's trial.
+ * Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
  *
- * A trial is named "ID/INDEX"; a run by its id in the list of runs.
+ * A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
+ * "pressure-finger-bend".
  */
 export interface OpenCommand {
   t: "open";
   seq: number;
-  what: "file" | "run" | "template" | "trial" | "upload";
+  what: "file" | "robot" | "run" | "start" | "template" | "trial" | "upload";
   name: string;
 }
 
@@ -642,6 +643,42 @@ export interface HelloEvent {
   fields: Field[];
   runs_folder: string;
   cores: number;
+}
+
+/** A finished robot to open, and the addresses of its pictures; `moving` may be empty. */
+export interface Robot {
+  name: string;
+  title: string;
+  sentence: string;
+  picture: string;
+  moving: string;
+}
+
+/** Where the three answers to New lead: a robot, with values of its own. */
+export interface Way {
+  name: string;
+  drive: string;
+  form: string;
+  task: string;
+  robot: string;
+  sentence: string;
+}
+
+/** A design file that was opened or saved; `when` is ISO 8601. */
+export interface RecentFile {
+  path: string;
+  name: string;
+  folder: string;
+  when: string;
+}
+
+/** What the start screen shows; `fresh` while nothing was opened or changed yet. */
+export interface StartEvent {
+  t: "start";
+  fresh: boolean;
+  robots: Robot[];
+  ways: Way[];
+  recent: RecentFile[];
 }
 
 /**
@@ -1437,6 +1474,7 @@ export type AnyCommand =
 
 export type AnyEvent =
   | HelloEvent
+  | StartEvent
   | DocumentEvent
   | DesignFilesEvent
   | BodyEvent

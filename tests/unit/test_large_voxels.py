@@ -118,7 +118,7 @@ def test_nothing_is_caught():
         {
             "activations": [
                 {
-                    "part": "middle",
+                    "part": "left",
                     "kind": "strain",
                     "value": 0.01,
                     "profile": {"expression": "x"},

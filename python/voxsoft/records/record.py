@@ -122,7 +122,7 @@ class Record(BaseModel, metaclass=RecordType):
             name = cls.__name__
             raise TypeError(f"{name}.model_construct() would leave out the checks; write {name}()")
 
-        construct = model_construct
+        construct: ClassVar[Any] = model_construct  # a bare name would be read as a field
 
     def __setattr__(self, name: str, value: Any) -> None:  # noqa: ANN401
         if name.startswith("_"):

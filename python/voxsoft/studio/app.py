@@ -17,6 +17,7 @@ from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Respon
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from voxsoft.design.robots import robot_picture
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.studio import commands, events
 from voxsoft.studio.page import page_file
@@ -60,6 +61,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
         Route("/", pages.index),
         Route("/assets/{path:path}", pages.asset),
         Route("/still", pages.still),
+        Route("/robot/{name}", pages.robot),
         Route("/{name}", pages.file),
         Route("/download/{id}", pages.download),
         Route("/thumbnail/{run:path}", pages.thumbnail),
@@ -120,6 +122,15 @@ class _Pages:
         if picture is None:
             return _problem(404, "thumbnail", "there is none")
         return FileResponse(picture, headers={"cache-control": "no-cache"})
+
+    async def robot(self, request: Request) -> Response:
+        """Answer with the picture of a finished robot."""
+        moving = "moving" in request.query_params
+        try:
+            picture = robot_picture(request.path_params["name"], moving=moving)
+        except VoxSoftError as error:
+            return _problem(404, error.where, error.what, error.hint)
+        return Response(picture, media_type="image/webp", headers={"cache-control": "no-cache"})
 
     async def still(self, request: Request) -> Response:
         """Answer with a body at rest; solving it ends when nobody waits for it any more."""

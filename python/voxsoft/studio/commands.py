@@ -33,12 +33,13 @@ class Hello(Command):
 
 
 class Open(Command):
-    """Open a document: a template, a file or run folder, an uploaded file, or a study's trial.
+    """Open a document: a template, a robot, a file or run folder, an upload, or a study's trial.
 
-    A trial is named "ID/INDEX"; a run by its id in the list of runs.
+    A trial is named "ID/INDEX"; a run by its id in the list of runs; a start by its three answers,
+    "pressure-finger-bend".
     """
 
-    what: Literal["template", "file", "run", "upload", "trial"]
+    what: Literal["template", "robot", "start", "file", "run", "upload", "trial"]
     name: ShortText
 
 

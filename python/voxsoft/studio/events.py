@@ -107,6 +107,45 @@ class Hello(Event):
     cores: int
 
 
+class Robot(Entry):
+    """A finished robot to open, and the addresses of its pictures; `moving` may be empty."""
+
+    name: str
+    title: str
+    sentence: str
+    picture: str
+    moving: str = ""
+
+
+class Way(Entry):
+    """Where the three answers to New lead: a robot, with values of its own."""
+
+    name: str
+    drive: str
+    form: str
+    task: str
+    robot: str
+    sentence: str
+
+
+class RecentFile(Entry):
+    """A design file that was opened or saved; `when` is ISO 8601."""
+
+    path: str
+    name: str
+    folder: str
+    when: str
+
+
+class Start(Event):
+    """What the start screen shows; `fresh` while nothing was opened or changed yet."""
+
+    fresh: bool
+    robots: list[Robot]
+    ways: list[Way]
+    recent: list[RecentFile]
+
+
 class Parameter(Entry):
     """A parameter of the document; numbers are SI, `text` is the value as it is written.
 
@@ -872,6 +911,7 @@ class Log(Event):
 
 AnyEvent = (
     Hello
+    | Start
     | Document
     | DesignFiles
     | Body

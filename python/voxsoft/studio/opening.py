@@ -6,7 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from voxsoft.design import families
+from voxsoft.design import families, robots
 from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import load
@@ -37,6 +37,32 @@ def template_document(name: str, home: Path) -> DesignDocument:
     if name == EMPTY:
         return DesignDocument(_NOTHING, "robot.toml", folder=home)
     return DesignDocument(families.family_text(name), f"{name}.toml", folder=home)
+
+
+def robot_document(name: str, home: Path) -> DesignDocument:
+    """A finished robot, as a new document that would be saved in the folder `home`.
+
+    Raises
+    ------
+    VoxSoftError
+        There is no such robot.
+    """
+    return DesignDocument(robots.robot_text(name), f"{name}.toml", folder=home)
+
+
+def started_document(name: str, home: Path) -> DesignDocument:
+    """The robot to which three answers lead, with its values, as a new document.
+
+    Raises
+    ------
+    VoxSoftError
+        No robot is made of these answers.
+    """
+    start = robots.start(name)
+    text = robots.robot_text(start.robot)
+    for parameter, value in start.parameters.items():
+        text = with_value(text, ["parameters", parameter, "value"], value)
+    return DesignDocument(text, f"{start.robot}.toml", folder=home)
 
 
 def document_at(path: Path, home: Path) -> DesignDocument:

@@ -40,11 +40,14 @@ from voxsoft.studio.kept import keep
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.opening import (
     document_at,
+    robot_document,
+    started_document,
     template_document,
     trial_document,
     uploaded_document,
 )
 from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.recent import RecentFiles
 from voxsoft.studio.recipes import recipe_of
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.several import (
@@ -55,6 +58,7 @@ from voxsoft.studio.several import (
     file_of_template,
     several_of,
 )
+from voxsoft.studio.starting import start_event
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
 from voxsoft.studio.tab import Tab
@@ -108,8 +112,12 @@ class Session:
         self._loaded_rev: int | None = None
         self._downloads: dict[str, Path] = {}
         self._drafts = Drafts(self.own)
+        self._recent = RecentFiles(self.own)
+        self._fresh = source is None and self._drafts.read() is None
         self._notes: list[str] = []
         self.document = self._first_document(source)
+        if self.document.path is not None:
+            self._recent.note(self.document.path)
 
     def start(self) -> None:
         """Start the threads, and mesh the document."""
@@ -129,6 +137,7 @@ class Session:
         """Tell a new tab all that it needs."""
         with self._lock:
             self.tabs.send_to(tab, hello(self.runs))
+            self.tabs.send_to(tab, start_event(self._recent.files(), fresh=self._fresh))
             self.tabs.send_to(tab, self.document.event())
             for note in self._notes:
                 self.tabs.send_to(tab, events.Log(level="info", text=note))
@@ -293,6 +302,7 @@ class Session:
                 return
         written = self.document.save(path)
         self._keep_draft(now=True)
+        self._begun()
         self.tabs.publish(self.document.event())
         self.tabs.publish(events.Saved(what="document", path=str(written)))
 
@@ -302,6 +312,10 @@ class Session:
         match command.what:
             case "template":
                 self._open(template_document(command.name, self._home))
+            case "robot":
+                self._open(robot_document(command.name, self._home))
+            case "start":
+                self._open(started_document(command.name, self._home))
             case "file":
                 self._open(document_at(Path(command.name), self._home))
             case "upload":
@@ -333,6 +347,16 @@ class Session:
         self.document = document
         self.engine.forget()
         self._announce()
+
+    def _begun(self) -> None:
+        """Note that there is work now, and the file that it is of where that is another one."""
+        path = self.document.path
+        another = path is not None and not self._recent.is_first(path)
+        if path is not None and another:
+            self._recent.note(path)
+        if self._fresh or another:
+            self._fresh = False
+            self.tabs.publish(start_event(self._recent.files(), fresh=False))
 
     def _upload(self, name: str) -> Path:
         file = self.own / "uploads" / safe_name(name)
@@ -495,6 +519,7 @@ class Session:
 
     def _announce(self) -> None:
         """Tell everyone of the document as it is now, and mesh it if it is good."""
+        self._begun()
         self.tabs.publish(self.document.event())
         self._mesh()
         self._keep_draft()

@@ -1,6 +1,7 @@
 import { useEffect } from "react";
 import { PANES } from "../panes/registry";
-import { openSheet } from "../store/page";
+import { Start } from "../start/Start";
+import { openSheet, usePage } from "../store/page";
 import { useStudio } from "../store/studio";
 import { finishTyping } from "../store/typing";
 import { listenForKeys, provideDock } from "./actions";
@@ -16,7 +17,13 @@ import "./shell.css";
 provideDock({ panes: PANES, show: showPane, reset: resetLayout });
 
 export function App() {
+  const starting = usePage((page) => page.sheet === "start");
+  const fresh = useStudio((state) => state.start?.fresh);
   useEffect(listenForKeys, []);
+  // With nothing to go on with the page begins with the start screen.
+  useEffect(() => {
+    if (fresh) openSheet("start");
+  }, [fresh]);
   useEffect(() => {
     if (wantsTour()) openSheet("tour");
     const warn = (event: BeforeUnloadEvent) => {
@@ -34,10 +41,13 @@ export function App() {
   }, []);
   return (
     <div className="app">
-      <TopBar />
-      <LinkBand />
-      <Dock />
-      <StatusLine />
+      <div className="app" inert={starting}>
+        <TopBar />
+        <LinkBand />
+        <Dock />
+        <StatusLine />
+      </div>
+      {starting && <Start />}
       <Sheets />
       <DropZone />
     </div>

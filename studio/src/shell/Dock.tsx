@@ -12,6 +12,7 @@ import { Suspense, useCallback, useEffect, useRef } from "react";
 import { PANES, paneById } from "../panes/registry";
 import { keepAs, kept, MODES, type Mode, usePage } from "../store/page";
 import { PaneFence } from "./Fence";
+import { Icon } from "./icons";
 import { add, build, holdsViews } from "./layouts";
 import "./dock.css";
 
@@ -86,8 +87,42 @@ function Pane(props: IDockviewPanelProps) {
 }
 
 function Tab(props: IDockviewPanelHeaderProps) {
-  return <DockviewDefaultTab {...props} hideClose={props.api.id === "view"} />;
+  const closes = props.api.id !== STAYS;
+  const close = () => props.api.close();
+  return (
+    <div className="tab">
+      <DockviewDefaultTab
+        {...props}
+        hideClose
+        onPointerUp={(event) => {
+          if (closes && event.button === 1) close();
+        }}
+      />
+      {/* A tab holds nothing else that takes the focus: the keyboard closes it with Delete. */}
+      {closes && (
+        <span
+          className="tab-close"
+          aria-hidden="true"
+          title="Close (Delete)"
+          onPointerDown={(event) => event.preventDefault()}
+          onClick={close}
+        >
+          <Icon name="close" />
+        </span>
+      )}
+    </div>
+  );
 }
+
+/** The dock closes the pane of a tab by Delete and Backspace; the view has no way to be closed. */
+function keepView(event: KeyboardEvent): void {
+  if (event.key !== "Delete" && event.key !== "Backspace") return;
+  const { target } = event;
+  if (target instanceof HTMLElement && target.dataset.tabPanelId === STAYS) event.stopPropagation();
+}
+
+/** The pane that every layout has. */
+const STAYS = "view";
 
 const COMPONENTS = { pane: Pane };
 const THEME = { name: "voxsoft", className: "dockview-theme-voxsoft", gap: 1 };
@@ -103,7 +138,9 @@ export function Dock() {
     keepAs(keyOf(shown.current), { edition: EDITION, panes: knownPanes(), layout });
   }, []);
   useEffect(() => {
+    addEventListener("keydown", keepView, true);
     return () => {
+      removeEventListener("keydown", keepView, true);
       dock = null;
     };
   }, []);

@@ -13,10 +13,16 @@ export function TopBar() {
   const document = useStudio((state) => state.document);
   return (
     <header className="top-bar" data-testid="top-bar">
-      <span className="brand">
+      <button
+        type="button"
+        className="brand"
+        title="Start screen (Ctrl+O)"
+        data-testid="brand"
+        onClick={() => openSheet("start")}
+      >
         <img src={icon} alt="" width="18" height="18" />
         VoxSoft
-      </span>
+      </button>
       <nav className="modes" aria-label="Modes">
         {MODES.map((one) => (
           <button

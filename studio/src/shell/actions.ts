@@ -108,6 +108,13 @@ function simple(): Action[] {
       run: () => useStudio.getState().document && openSheet("save"),
     },
     {
+      id: "start",
+      title: "Start screen: new, open, recent, finished robots",
+      group: "Document",
+      keys: ["Ctrl+O"],
+      run: () => openSheet("start"),
+    },
+    {
       id: "undo",
       title: "Undo",
       group: "Document",
@@ -272,7 +279,7 @@ export function actions(): Action[] {
 export function openDocument(draft: Pending): void {
   const edited = useStudio.getState().document?.dirty ?? false;
   // Runs and designs of studies are looked at one after the other: undo leads back from those.
-  const asks = draft.what === "template" || draft.what === "file" || draft.what === "upload";
+  const asks = ["template", "robot", "start", "file", "upload"].includes(draft.what);
   if (edited && asks) openSheet("discard", draft);
   else openNow(draft);
 }
@@ -323,7 +330,7 @@ export function listenForKeys(): () => void {
   const onKey = (event: KeyboardEvent) => {
     const name = keyName(event);
     const owned = ownsKey(event.target, event.key);
-    const global = ["Ctrl+K", "Ctrl+S", "Ctrl+Shift+S", "Ctrl+Shift+P"].includes(name);
+    const global = ["Ctrl+K", "Ctrl+O", "Ctrl+S", "Ctrl+Shift+S", "Ctrl+Shift+P"].includes(name);
     if (owned && !global) return;
     if (usePage.getState().sheet !== null && !global) return;
     const action = actions().find((one) => one.keys?.includes(name));

@@ -23,6 +23,7 @@ import type {
   RecipeEvent,
   RunsEvent,
   SavedEvent,
+  StartEvent,
   StatEvent,
   TrialEvent,
   TrialsEvent,
@@ -55,6 +56,8 @@ export interface AskedPace {
 export interface Studio {
   link: Link;
   hello: HelloEvent | null;
+  /** What the start screen shows. */
+  start: StartEvent | null;
   document: DocumentEvent | null;
   /** Design files beside it. */
   designs: DesignFilesEvent | null;
@@ -101,6 +104,7 @@ const MOST_MOMENTS = 2000;
 export const useStudio = create<Studio>(() => ({
   link: { state: "connecting", attempt: 0, retryAt: null, reason: "" },
   hello: null,
+  start: null,
   document: null,
   designs: null,
   body: null,
@@ -169,6 +173,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       // All jobs that this server knows are told anew; others are asked for (watchJob).
       // A pace that was asked for may have been lost with the connection.
       set({ hello: event, jobs: {}, askedPace: undefined });
+      break;
+    case "start":
+      set({ start: event });
       break;
     case "document":
       set({ document: event });

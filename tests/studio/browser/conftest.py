@@ -161,6 +161,15 @@ def own_server(tmp_path):
     server.stop()
 
 
+@pytest.fixture
+def bare(tmp_path):
+    """A server with no design given and nothing to go on with."""
+    server = Served(None, tmp_path / "runs", free_port())
+    server.start()
+    yield server
+    server.stop()
+
+
 @dataclass
 class Tab:
     """A page with what it logged and asked for."""

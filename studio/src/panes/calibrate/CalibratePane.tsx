@@ -70,7 +70,7 @@ export default function CalibratePane() {
         action={
           <Button
             kind="quiet"
-            label="Open the cantilever beam as the specimen"
+            label="Use the beam: open the cantilever beam as the specimen"
             onClick={() => openHere("template", "beam")}
           >
             Use the beam

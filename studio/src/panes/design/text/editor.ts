@@ -162,7 +162,8 @@ export function makeEditor(parent: HTMLElement, text: string, hooks: EditorHooks
           ...defaultKeymap,
           indentWithTab,
         ]),
-        EditorView.contentAttributes.of({ "aria-label": "Text of the design" }),
+        // What is edited takes the focus anyway; audits of scrolled regions look for the number.
+        EditorView.contentAttributes.of({ "aria-label": "Text of the design", tabindex: "0" }),
         EditorView.updateListener.of((update) => {
           const remote = update.transactions.some((one) => one.annotation(fromDocument));
           if (update.docChanged && !remote) hooks.typed(update.state.doc.toString());
