@@ -764,6 +764,14 @@ class Outline:
         voxel_size: float,
     ) -> Outline: ...
     @staticmethod
+    def solid(
+        vertices: NDArray[np.float64],
+        triangles: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxels: NDArray[np.uint32],
+        voxel_size: float,
+    ) -> Outline: ...
+    @staticmethod
     def tets(
         vertices: NDArray[np.float64],
         tets: NDArray[np.uint32],
@@ -797,6 +805,14 @@ class Display:
     @staticmethod
     def surface(
         problem: Problem, triangles: NDArray[np.uint32], tags: NDArray[np.uint8], voxel_size: float
+    ) -> Display: ...
+    @staticmethod
+    def solid(
+        problem: Problem,
+        triangles: NDArray[np.uint32],
+        tags: NDArray[np.uint8],
+        voxels: NDArray[np.uint32],
+        voxel_size: float,
     ) -> Display: ...
     @staticmethod
     def tets(

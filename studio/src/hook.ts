@@ -19,6 +19,8 @@ declare global {
       vertexPosition(vertex: number): [number, number, number] | null;
       objectPosition(name: string): [number, number, number] | null;
       screenOf(vertex: number): [number, number] | null;
+      /** How many triangles a section through the field has. */
+      cut(): number;
     };
   }
 }
@@ -57,6 +59,7 @@ export function provideHook(): void {
       vertexPosition: (vertex: number) => viewport().vertexPosition(vertex),
       objectPosition: (name: string) => viewport().objectPosition(name),
       screenOf: (vertex: number) => viewport().screenOf(vertex),
+      cut: () => viewport().cut,
     }),
   });
 }

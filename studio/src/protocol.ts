@@ -360,12 +360,16 @@ export interface VibrateCommand {
   mode?: number | null;
 }
 
-/** What this tab shows: the field, the surface or the tetrahedra, and whether it is visible. */
+/**
+ * What this tab shows: the field, the surface or the tetrahedra, and whether it is visible.
+ *
+ * Solid is the surface with the voxels behind it, which a section shows.
+ */
 export interface ViewCommand {
   t: "view";
   seq: number;
   field?: number;
-  mode?: "surface" | "tets";
+  mode?: "solid" | "surface" | "tets";
   visible?: boolean;
 }
 

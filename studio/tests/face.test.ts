@@ -42,6 +42,7 @@ function boxes(...all: { low: number[]; high: number[]; owner?: number }[]): Top
     rest: new Float32Array(rest),
     triangles: new Uint32Array(triangles),
     edges: new Uint32Array(),
+    voxels: new Uint32Array(0),
     owners: new Uint8Array(owners),
   };
 }

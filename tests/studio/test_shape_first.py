@@ -131,11 +131,12 @@ def drawn(packed):
     )
 
 
-@pytest.mark.parametrize("mode", ["surface", "tets"])
+@pytest.mark.parametrize("mode", ["surface", "solid", "tets"])
 def test_the_first_frame_equals_what_the_core_packs(body, mode, monkeypatch):
     canvas = Canvas(body)
     of_core = canvas.frame(Player(body), DISPLACEMENT, mode)
     monkeypatch.setattr(Canvas, "_surface", None)
+    monkeypatch.setattr(Canvas, "_solid", None)
     monkeypatch.setattr(Canvas, "_tets", None)
     points, _, span = drawn(Canvas(body).frame(None, DISPLACEMENT, mode))
     expected, step, expected_span = drawn(of_core)

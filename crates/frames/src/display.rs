@@ -24,6 +24,18 @@ impl Display {
         Ok(Self::of(body, outline))
     }
 
+    /// A surface with the voxels behind it; see [`Outline::solid`].
+    pub fn solid(
+        body: &Body,
+        triangles: &[[u32; 3]],
+        tags: &[u8],
+        voxels: &[[u32; 8]],
+        voxel_size: f64,
+    ) -> Result<Self, ProblemError> {
+        let outline = Outline::solid(body.rest(), triangles, tags, voxels, voxel_size)?;
+        Ok(Self::of(body, outline))
+    }
+
     /// Tetrahedra of body vertices; see [`Outline::tets`].
     pub fn tets(
         body: &Body,
@@ -40,7 +52,7 @@ impl Display {
         Self { outline, fields }
     }
 
-    /// The body vertices that are shown, in ascending order: those of the points of a surface.
+    /// The body vertices that are shown, as [`Outline::vertices`].
     pub fn vertices(&self) -> &[u32] {
         self.outline.vertices()
     }

@@ -16,12 +16,14 @@
 //! | 16 | f64 | voxel size in m | time in s |
 //! | 24 | u32 | points | points |
 //! | 28 | u32 | triangles | last input applied |
-//! | 32 | u32, f32×3 | edges | origin in m |
+//! | 32 | u32 | edges | origin in m, f32×3 |
+//! | 36 | u32 | voxels | |
 //! | 44 | f32×3 | 0 | scale in m |
 //! | 56 | f32×2 | 0 | smallest and largest value of the field |
 //!
-//! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, then one byte per
-//! triangle, its tag, padded to a multiple of four. Payload of a frame: u16×4 per point; a coordinate is
+//! Payload of a topology: f32×3 per point (m, at rest), u32×3 per triangle, u32×2 per edge, u32×8 per
+//! voxel, then one byte per triangle, its tag, padded to a multiple of four. Points of the surface come before those that voxels
+//! alone have. Payload of a frame: u16×4 per point; a coordinate is
 //! `origin + scale q / 65535`, the value `smallest + (largest − smallest) q / 65535`.
 
 mod display;

@@ -1,7 +1,7 @@
 use voxsoft_solid::ProblemError;
 use voxsoft_solid::vector::{Vec3, add, norm, scale, sub};
 
-use crate::pack::{FrameHead, TopologyFlag, pack_frame, pack_topology};
+use crate::pack::{FrameHead, Shape, TopologyFlag, pack_frame, pack_topology};
 
 /// Tetrahedra are drawn this much smaller, so that one sees between them.
 const SHRINK: f64 = 0.85;
@@ -15,13 +15,15 @@ const SHORTER: f64 = 0.8;
 /// What of a mesh is drawn, whatever it is made of.
 #[derive(Debug, Clone)]
 pub struct Outline {
-    /// The vertices of the mesh that are needed, in ascending order.
+    /// The vertices of the mesh that are needed: those of what is drawn in ascending order, then those within.
     vertices: Vec<u32>,
     /// For shrunk tetrahedra, the places of their corners; each corner is a point.
     tets: Option<Vec<[u32; 4]>>,
     triangles: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     tags: Vec<u8>,
+    /// Voxels by their corners `x, y, z` in bits 2, 1, 0, for sections; none unless they are asked for.
+    voxels: Vec<[u32; 8]>,
     voxel_size: f64,
 }
 
@@ -70,8 +72,30 @@ impl Outline {
             triangles,
             edges,
             tags: tags.to_vec(),
+            voxels: Vec::new(),
             voxel_size,
         })
+    }
+
+    /// The same with the voxels behind it, given by their corners: what a section shows of the inside.
+    pub fn solid(
+        rest: &[Vec3],
+        triangles: &[[u32; 3]],
+        tags: &[u8],
+        voxels: &[[u32; 8]],
+        voxel_size: f64,
+    ) -> Result<Self, ProblemError> {
+        let mut outline = Self::surface(rest, triangles, tags, voxel_size)?;
+        let corners = used(rest, voxels.as_flattened(), &[], 0)?;
+        let on_surface = |v: &u32| outline.vertices.binary_search(v).is_ok();
+        let within: Vec<u32> = corners.into_iter().filter(|v| !on_surface(v)).collect();
+        outline.vertices.extend(within);
+        let place = places(rest, &outline.vertices);
+        outline.voxels = voxels
+            .iter()
+            .map(|c| c.map(|v| place[v as usize]))
+            .collect();
+        Ok(outline)
     }
 
     /// Tetrahedra of a mesh, each shrunk toward its center and with a tag for the client.
@@ -90,13 +114,14 @@ impl Outline {
             triangles: (0..tets.len() as u32).flat_map(faces).collect(),
             edges: Vec::new(),
             tags: tags.iter().flat_map(|tag| [*tag; 4]).collect(),
+            voxels: Vec::new(),
             voxel_size,
             tets: Some(tets.iter().map(|t| t.map(|v| place[v as usize])).collect()),
             vertices,
         })
     }
 
-    /// The vertices of the mesh that are shown, in ascending order: those of the points of a surface.
+    /// The vertices of the mesh that are shown: those of the points of a surface in ascending order, then those within.
     pub fn vertices(&self) -> &[u32] {
         &self.vertices
     }
@@ -124,7 +149,12 @@ impl Outline {
             Some(_) => TopologyFlag::ShrunkTets,
             None => TopologyFlag::Surface,
         };
-        let shape = (&*self.triangles, &*self.edges, &*self.tags);
+        let shape = Shape {
+            triangles: &self.triangles,
+            edges: &self.edges,
+            voxels: &self.voxels,
+            tags: &self.tags,
+        };
         pack_topology(flag, number, self.voxel_size, &self.place(rest), shape)
     }
 

@@ -86,20 +86,40 @@ impl Bytes {
     }
 }
 
+/// What joins the points of a topology.
+pub(crate) struct Shape<'a> {
+    pub triangles: &'a [[u32; 3]],
+    pub edges: &'a [[u32; 2]],
+    pub voxels: &'a [[u32; 8]],
+    /// One for each triangle.
+    pub tags: &'a [u8],
+}
+
 pub(crate) fn pack_topology(
     flag: TopologyFlag,
     number: u32,
     voxel_size: f64,
     points: &[Vec3],
-    (triangles, edges, tags): (&[[u32; 3]], &[[u32; 2]], &[u8]),
+    shape: Shape<'_>,
 ) -> Vec<u8> {
-    let mut bytes = Bytes::new(12 * points.len() + 13 * triangles.len() + 8 * edges.len() + 4);
+    let Shape {
+        triangles,
+        edges,
+        voxels,
+        tags,
+    } = shape;
+    let corners = 12 * triangles.len() + 8 * edges.len() + 32 * voxels.len();
+    let mut bytes = Bytes::new(12 * points.len() + corners + tags.len() + 4);
     bytes.start(MessageKind::Topology, flag as u8, 0, number, 0);
     bytes.put(voxel_size.to_le_bytes());
-    for count in [points.len(), triangles.len(), edges.len()] {
+    for count in [points.len(), triangles.len(), edges.len(), voxels.len()] {
         bytes.put((count as u32).to_le_bytes());
     }
-    let corners = [triangles.as_flattened(), edges.as_flattened()];
+    let corners = [
+        triangles.as_flattened(),
+        edges.as_flattened(),
+        voxels.as_flattened(),
+    ];
     bytes.mesh(points, &corners, tags);
     bytes.0
 }

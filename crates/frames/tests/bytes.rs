@@ -1,7 +1,7 @@
 //! The bytes say what was packed.
 
 use proptest::prelude::*;
-use voxsoft_frames::{Display, Field, FrameHead, HEADER};
+use voxsoft_frames::{Display, Field, FrameHead, HEADER, Outline};
 use voxsoft_solid::{Body, LatticeMaterial, Mesh, State};
 use voxsoft_voxel::{Grid, tet_mesh};
 
@@ -88,6 +88,43 @@ fn the_topology_holds_points_triangles_voxel_edges_and_tags() {
     }
     assert_eq!(read.0, &tags);
     assert_eq!(tags.iter().filter(|&&t| t == 0x80).count(), 12);
+}
+
+#[test]
+fn a_solid_has_the_points_of_its_surface_first_and_then_those_within() {
+    let mut grid = Grid::empty([4; 3], [0.0; 3], SIDE, u64::MAX).unwrap();
+    grid.fill_box([0.0; 3], [4.0 * SIDE; 3], 1);
+    let tets = tet_mesh(&grid, u64::MAX).unwrap();
+    let unsigned = |t: &[i32; 3]| t.map(|v| v as u32);
+    let triangles: Vec<[u32; 3]> = tets.triangles.iter().map(unsigned).collect();
+    let rest = &tets.vertices;
+    let tags = vec![0; triangles.len()];
+    let at = |place: [usize; 3]| {
+        let point = place.map(|k| k as f64 * SIDE);
+        let near = |x: &[f64; 3]| (0..3).all(|k| (x[k] - point[k]).abs() < 1e-9);
+        rest.iter().position(near).unwrap() as u32
+    };
+    let voxels: Vec<[u32; 8]> = (0..64)
+        .map(|n| [n / 16, n / 4 % 4, n % 4])
+        .map(|[x, y, z]| std::array::from_fn(|c| at([x + (c >> 2), y + (c >> 1 & 1), z + (c & 1)])))
+        .collect();
+    let surface = Outline::surface(rest, &triangles, &tags, SIDE).unwrap();
+    let solid = Outline::solid(rest, &triangles, &tags, &voxels, SIDE).unwrap();
+    assert_eq!((surface.points(), solid.points()), (98, 125));
+    assert_eq!(&solid.vertices()[..98], surface.vertices());
+    assert_eq!(solid.triangles(), surface.triangles());
+    let bytes = solid.topology(rest, 1);
+    let mut read = Reader(&bytes[24..]);
+    let counts = [read.u32(), read.u32(), read.u32(), read.u32()];
+    assert_eq!(counts, [125, 192, surface.edges().len() as u32, 64]);
+    let before = 12 * 125 + 12 * 192 + 8 * surface.edges().len();
+    let mut read = Reader(&bytes[HEADER + before..]);
+    for voxel in &voxels {
+        for corner in voxel {
+            assert_eq!(solid.vertices()[read.u32() as usize], *corner);
+        }
+    }
+    assert_eq!(read.0, &tags);
 }
 
 #[test]

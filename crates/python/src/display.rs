@@ -54,6 +54,24 @@ impl PyOutline {
         Ok(Self { rest, outline })
     }
 
+    /// A surface with the voxels behind it, (k, 8), by their corners.
+    #[staticmethod]
+    fn solid(
+        vertices: PyReadonlyArray2<'_, f64>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxels: PyReadonlyArray2<'_, u32>,
+        voxel_size: f64,
+    ) -> PyResult<Self> {
+        let rest: Vec<Vec3> = rows("vertices", &vertices)?;
+        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
+        let voxels: Vec<[u32; 8]> = rows("voxels", &voxels)?;
+        let tags = tags.as_array().to_vec();
+        let outline = Outline::solid(&rest, &triangles, &tags, &voxels, voxel_size);
+        let outline = outline.map_err(to_python)?;
+        Ok(Self { rest, outline })
+    }
+
     #[staticmethod]
     fn tets(
         vertices: PyReadonlyArray2<'_, f64>,
@@ -69,7 +87,7 @@ impl PyOutline {
         Ok(Self { rest, outline })
     }
 
-    /// The vertices of the mesh that are shown, in ascending order.
+    /// The vertices of the mesh that are shown: those of a surface in ascending order, then those within.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, self.outline.vertices())
@@ -170,6 +188,24 @@ impl PyDisplay {
         Ok(Self { problem, display })
     }
 
+    /// A surface with the voxels behind it, (k, 8), by their corners.
+    #[staticmethod]
+    fn solid(
+        problem: PyRef<'_, PyProblem>,
+        triangles: PyReadonlyArray2<'_, u32>,
+        tags: PyReadonlyArray1<'_, u8>,
+        voxels: PyReadonlyArray2<'_, u32>,
+        voxel_size: f64,
+    ) -> PyResult<Self> {
+        let triangles: Vec<[u32; 3]> = rows("triangles", &triangles)?;
+        let voxels: Vec<[u32; 8]> = rows("voxels", &voxels)?;
+        let tags = tags.as_array().to_vec();
+        let problem = Arc::clone(&problem.problem);
+        let display = Display::solid(problem.body(), &triangles, &tags, &voxels, voxel_size);
+        let display = display.map_err(to_python)?;
+        Ok(Self { problem, display })
+    }
+
     /// Tetrahedra of vertices, drawn a little smaller than they are.
     #[staticmethod]
     fn tets(
@@ -186,7 +222,7 @@ impl PyDisplay {
         Ok(Self { problem, display })
     }
 
-    /// The body vertices that are shown, in ascending order: those of the points of a surface.
+    /// The body vertices that are shown: those of a surface in ascending order, then those within.
     #[getter]
     pub(crate) fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         PyArray1::from_slice(py, self.display.vertices())

@@ -15,7 +15,7 @@ from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS, contact_values
 from voxsoft.studio.message import Triple
 from voxsoft.studio.player import Player
-from voxsoft.studio.surface import tets_to_draw
+from voxsoft.studio.surface import tets_to_draw, voxels_to_cut
 from voxsoft.studio.wire import FrameFlag
 
 _STILL: Final = FrameFlag.PAUSED
@@ -40,9 +40,8 @@ class Canvas:
         self._body = body
 
     def topology(self, mode: str) -> bytes:
-        """The surface, or the tetrahedra, as the page reads them."""
-        outline = self._body.surface.outline if mode == "surface" else self._outline_of_tets
-        return outline.pack_topology(self._body.topology)
+        """The surface, alone or with the voxels behind it, or the tetrahedra: as the page reads."""
+        return self._outline(mode).pack_topology(self._body.topology)
 
     def frame(
         self,
@@ -56,20 +55,19 @@ class Canvas:
 
         Fields of contact are those of `contact`, and zero without one.
         """
-        body, tets = self._body, mode == "tets"
+        body = self._body
         values = contact_values(field, contact)
         if values is not None:
-            return self._touched(player, field, values, tets=tets, seq=seq & 0xFFFF_FFFF)
+            return self._touched(player, field, values, mode=mode, seq=seq & 0xFFFF_FFFF)
         if player is not None:
-            return player.packed(field, seq, self._tets if tets else None)
+            return player.packed(field, seq, None if mode == "surface" else self._display(mode))
         rest, topology, seq = body.mesh.vertices, body.topology, seq & 0xFFFF_FFFF
         if body.refusal is not None or field == DISPLACEMENT:
             # Nothing moves what cannot be solved, and the core holds no such problem. And a shape
             # that has only just come is shown before the core gets ready for its fields.
-            outline = self._outline_of_tets if tets else body.surface.outline
+            outline = self._outline(mode)
             return outline.pack_frame(rest, topology=topology, field=field, seq=seq, flags=_STILL)
-        display = self._tets if tets else self._surface
-        return display.pack_frame(
+        return self._display(mode).pack_frame(
             rest, topology=topology, frame=0, field=field, seq=seq, flags=_STILL
         )
 
@@ -77,8 +75,7 @@ class Canvas:
         self, positions: NDArray[np.float64], field: int, mode: str, seq: int, frame: int
     ) -> bytes:
         """A frame of an equilibrium that is drawn elsewhere, with a field of where it is drawn."""
-        display = self._tets if mode == "tets" else self._surface
-        return display.pack_frame(
+        return self._display(mode).pack_frame(
             positions,
             topology=self._body.topology,
             frame=frame,
@@ -93,11 +90,11 @@ class Canvas:
         field: int,
         values: NDArray[np.float64],
         *,
-        tets: bool,
+        mode: str,
         seq: int,
     ) -> bytes:
         """A frame with values of the mesh that the core does not know; none are zero."""
-        outline = self._outline_of_tets if tets else self._body.surface.outline
+        outline = self._outline(mode)
         flags, frame, time = _STILL, 0, 0.0
         if player is not None:
             shown = player.shown()
@@ -127,11 +124,35 @@ class Canvas:
         ]
         return events.Picked(vertex=shown, rest=at, position=at, values=values)
 
+    def _outline(self, mode: str) -> _core.Outline:
+        if mode == "tets":
+            return self._outline_of_tets
+        return self._outline_of_solid if mode == "solid" else self._body.surface.outline
+
+    def _display(self, mode: str) -> _core.Display:
+        if mode == "tets":
+            return self._tets
+        return self._solid if mode == "solid" else self._surface
+
     @cached_property
     def _surface(self) -> _core.Display:
         body = self._body
         triangles, size = body.mesh.triangles.astype(np.uint32), body.mesh.voxel_size or 0.0
         return _core.Display.surface(body.played, triangles, body.surface.tags, size)
+
+    @cached_property
+    def _outline_of_solid(self) -> _core.Outline:
+        body = self._body
+        mesh, tags, size = body.mesh, body.surface.tags, body.mesh.voxel_size or 0.0
+        triangles, voxels = mesh.triangles.astype(np.uint32), voxels_to_cut(mesh)
+        return _core.Outline.solid(mesh.vertices, triangles, tags, voxels, size)
+
+    @cached_property
+    def _solid(self) -> _core.Display:
+        body = self._body
+        mesh, tags, size = body.mesh, body.surface.tags, body.mesh.voxel_size or 0.0
+        triangles, voxels = mesh.triangles.astype(np.uint32), voxels_to_cut(mesh)
+        return _core.Display.solid(body.played, triangles, tags, voxels, size)
 
     @cached_property
     def _outline_of_tets(self) -> _core.Outline:

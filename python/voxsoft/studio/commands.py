@@ -229,10 +229,13 @@ class Live(Command):
 
 
 class View(Command):
-    """What this tab shows: the field, the surface or the tetrahedra, and whether it is visible."""
+    """What this tab shows: the field, the surface or the tetrahedra, and whether it is visible.
+
+    Solid is the surface with the voxels behind it, which a section shows.
+    """
 
     field: Annotated[int, Meta(ge=0, le=11)] = 0
-    mode: Literal["surface", "tets"] = "surface"
+    mode: Literal["surface", "solid", "tets"] = "surface"
     visible: bool = True
 
 

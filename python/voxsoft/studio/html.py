@@ -124,16 +124,16 @@ def page_of_body(
     """
     if body.refusal is not None:
         raise body.refusal
-    if body.not_live:
-        bonded = body.setup.touching is not None and body.setup.touching.bonds
-        what = "with bonds" if bonded else "of the lattice material"
-        refuse_contact(body.setup.design, f"exported pages {what}")
     refuse_bodies(body.setup.design, "exported pages")
     refuse_supplies(body.setup.design, "exported pages")
     refuse_softening(body.setup.design, "exported pages")
     refuse_refinement(body.setup.design, "exported pages")
     refuse_growth_over_time(body.setup.design, "exported pages")
     refuse_profiles(body.setup.design, "exported pages")
+    if body.not_live:
+        bonded = body.setup.touching is not None and body.setup.touching.bonds
+        what = "with bonds" if bonded else "of the lattice material"
+        refuse_contact(body.setup.design, f"exported pages {what}")
     body = replace(body, setup=body.under(factors)) if factors else body
     design = body.setup.design
     notes = Notes(

@@ -91,6 +91,20 @@ def tets_to_draw(mesh: Mesh, surface: Surface) -> tuple[Indices, NDArray[np.uint
     return mesh.tets[chosen].astype(np.uint32), (mesh.tet_part[chosen] - 1).astype(np.uint8)
 
 
+def voxels_to_cut(mesh: Mesh) -> Indices:
+    """The voxels that a section goes through, by their corners, (k, 8); none of other meshes."""
+    if mesh.voxel_size is None:
+        return np.zeros((0, 8), np.uint32)
+    # Turned voxels have their corners by the axes of their own body.
+    alone = [(body.mesh, body.first_vertex) for body in mesh.bodies] or [(mesh, 0)]
+    corners = [
+        each.voxel_corners(np.arange(len(each.tets) // 5)) + first
+        for each, first in alone
+        if each.voxel_size is not None
+    ]
+    return np.concatenate(corners).astype(np.uint32)
+
+
 def _tags(mesh: Mesh) -> NDArray[np.uint8]:
     """The part of the tetrahedron behind each triangle, or the cavity before it."""
     wanted = _keys(mesh.triangles)

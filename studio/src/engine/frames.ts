@@ -15,6 +15,8 @@ export interface Topology {
   readonly triangles: Uint32Array;
   /** Edges of voxels, without face diagonals. */
   readonly edges: Uint32Array;
+  /** The corners of each voxel, x, y, z in bits 2, 1, 0: what a section shows; empty unless asked for. */
+  readonly voxels: Uint32Array;
   /** Of each triangle the part's index, or CAVITY + the cavity's index. */
   readonly owners: Uint8Array;
 }
@@ -37,6 +39,13 @@ export interface Frame {
   readonly max: number;
   /** x, y, z, field of each vertex: position = origin + scale q / 65535. */
   readonly packed: Uint16Array;
+}
+
+/** How many points the surface has: they come before those that voxels alone have. */
+export function surfacePoints(topology: Topology): number {
+  let last = -1;
+  for (const point of topology.triangles) if (point > last) last = point;
+  return last + 1;
 }
 
 /** The smooth surface of the shapes, at rest. */
@@ -79,8 +88,9 @@ function lengthOf(message: Topology | Frame | Smooth): number {
   if (message.kind === "frame") return HEADER + message.packed.byteLength;
   if (message.kind === "smooth")
     return HEADER + message.vertices.byteLength + message.triangles.byteLength;
-  const { rest, triangles, edges, owners } = message;
-  const bytes = rest.byteLength + triangles.byteLength + edges.byteLength + owners.byteLength;
+  const { rest, triangles, edges, voxels, owners } = message;
+  const parts = [rest, triangles, edges, voxels, owners];
+  const bytes = parts.reduce((sum, part) => sum + part.byteLength, 0);
   return HEADER + bytes + (-bytes & 3);
 }
 
@@ -88,9 +98,11 @@ function topology(buffer: ArrayBuffer, view: DataView): Topology {
   const n = view.getUint32(24, true);
   const t = view.getUint32(28, true);
   const e = view.getUint32(32, true);
-  need(buffer, HEADER + 12 * n + 12 * t + 8 * e + t);
+  const v = view.getUint32(36, true);
+  need(buffer, HEADER + 12 * n + 12 * t + 8 * e + 32 * v + t);
   const trianglesAt = HEADER + 12 * n;
   const edgesAt = trianglesAt + 12 * t;
+  const voxelsAt = edgesAt + 8 * e;
   return {
     kind: "topology",
     id: view.getUint32(8, true),
@@ -99,7 +111,8 @@ function topology(buffer: ArrayBuffer, view: DataView): Topology {
     rest: new Float32Array(buffer, HEADER, 3 * n),
     triangles: new Uint32Array(buffer, trianglesAt, 3 * t),
     edges: new Uint32Array(buffer, edgesAt, 2 * e),
-    owners: new Uint8Array(buffer, edgesAt + 8 * e, t),
+    voxels: new Uint32Array(buffer, voxelsAt, 8 * v),
+    owners: new Uint8Array(buffer, voxelsAt + 32 * v, t),
   };
 }
 

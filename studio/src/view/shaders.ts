@@ -160,6 +160,25 @@ void main() {
 }
 `;
 
+export const FILL_VERTEX = /* glsl */ `
+in float field;
+out float vField;
+void main() {
+  vField = field;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}
+`;
+
+export const FILL_FRAGMENT = /* glsl */ `
+precision highp float;
+${COLORED}
+in float vField;
+out vec4 color;
+void main() {
+  color = vec4(stripedOf(shareOf(vField), gl_FragCoord.xy), 1.0);
+}
+`;
+
 export const SKY_VERTEX = /* glsl */ `
 out vec2 vAt;
 void main() {

@@ -13,7 +13,7 @@ import {
   Vector3,
   type Vector4,
 } from "three";
-import type { Frame, Smooth } from "../engine/frames";
+import { type Frame, type Smooth, surfacePoints } from "../engine/frames";
 import type { View } from "../store/view";
 import { type BodyMesh, rangesByOwner } from "./body";
 import { COLORED, CUT } from "./shaders";
@@ -139,9 +139,10 @@ export class SmoothMesh {
     const { frame, topology } = surface;
     if (this.followed?.frame === frame && this.followed.exaggeration === exaggeration) return;
     this.followed = { frame, exaggeration };
+    const skinned = topology.rest.subarray(0, 3 * surfacePoints(topology));
     this.skin ??= new Skin(
       { points: this.vertices, normals: normalsOf(this.vertices, this.triangles) },
-      { points: topology.rest, normals: normalsOf(topology.rest, topology.triangles) },
+      { points: skinned, normals: normalsOf(skinned, topology.triangles) },
       topology.voxelSize || 1e-3,
     );
     const moved = new Float32Array(topology.rest.length);

@@ -39,6 +39,7 @@ import { Painter } from "./painter";
 import { listen } from "./pointer";
 import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
+import { SectionFill } from "./sectionFill";
 import { SectionHandle } from "./sectionHandle";
 import { partColors, Several } from "./several";
 import { SizeHandle } from "./sizeHandle";
@@ -66,6 +67,13 @@ function nameOf(document: DocumentEvent | null): string | null {
   return document && `${document.path} ${document.name}`;
 }
 
+/** What the engine packs for a view: with a section through a field also what is behind the surface. */
+function modeOf(view: View): "surface" | "solid" | "tets" {
+  if (view.appearance === "tets") return "tets";
+  const opened = view.section !== "off" && view.coloring === "field";
+  return opened && view.appearance !== "wireframe" && !view.cavities ? "solid" : "surface";
+}
+
 export class Viewport {
   readonly element = document.createElement("div");
   readonly rig = new CameraRig();
@@ -77,6 +85,7 @@ export class Viewport {
   private readonly stopwatch: Stopwatch;
   private readonly scene = new Scene();
   private readonly section = new Section();
+  private readonly fill = new SectionFill();
   private readonly sectionHandle = new SectionHandle(this.section, this.rig);
   private readonly mover = new MoveHandle(
     this.rig,
@@ -110,6 +119,8 @@ export class Viewport {
   private readonly raycaster = new Raycaster();
   private surface: BodyMesh | null = null;
   private tets: BodyMesh | null = null;
+  /** What takes the place of the surface with its first frame. */
+  private coming: BodyMesh | null = null;
   private smooth: SmoothMesh | null = null;
   private tetPlaces: TetPlaces | null = null;
   private latest: Frame | null = null;
@@ -154,6 +165,7 @@ export class Viewport {
     );
     this.scene.add(
       this.section.group,
+      this.fill.mesh,
       this.symbols.group,
       this.objects.group,
       this.several.group,
@@ -204,12 +216,18 @@ export class Viewport {
     const current = this.surface ?? this.tets;
     const fresh = current?.topology.id !== topology.id;
     // A change from tetrahedra back to the surface sends again what is known already.
-    if (!fresh && !topology.tets && this.surface) return;
+    const surface = this.surface?.topology;
+    if (!fresh && !topology.tets && surface?.rest.length === topology.rest.length) return;
     const mesh = new BodyMesh(topology, { plane: this.section.plane, section: this.section.on });
     if (fresh) this.clearBody(mesh.box(1), topology.id);
     if (topology.tets) {
       this.drop(this.tets);
       this.tets = mesh;
+    } else if (surface && !fresh) {
+      // The same surface with what is behind it, or without: drawn once it knows where it is.
+      this.coming?.dispose();
+      this.coming = mesh;
+      return;
     } else this.surface = mesh;
     this.scene.add(mesh.group);
     this.coverSurface();
@@ -222,7 +240,8 @@ export class Viewport {
   private clearBody(box: Box3, id: number): void {
     this.drop(this.surface);
     this.drop(this.tets);
-    this.surface = this.tets = null;
+    this.coming?.dispose();
+    this.surface = this.tets = this.coming = null;
     this.smooth?.dispose();
     this.smooth = null;
     this.latest = null;
@@ -253,6 +272,14 @@ export class Viewport {
     this.smooth = new SmoothMesh(smooth, { plane: this.section.plane, section: this.section.on });
     this.scene.add(this.smooth.group);
     this.request();
+  }
+
+  private exchange(mesh: BodyMesh): void {
+    this.drop(this.surface);
+    this.surface = mesh;
+    this.coming = null;
+    this.scene.add(mesh.group);
+    this.coverSurface();
   }
 
   // Springs that pull on a body which comes anew: they were there before it was meshed again.
@@ -305,8 +332,7 @@ export class Viewport {
   }
 
   private viewChanged(now: View, before: View): void {
-    const mode = (view: View) => (view.appearance === "tets" ? "tets" : "surface");
-    if (now.field !== before.field || mode(now) !== mode(before)) this.tellView();
+    if (now.field !== before.field || modeOf(now) !== modeOf(before)) this.tellView();
     if (!now.tape && before.tape) this.tape.clear();
     this.rig.flat = now.orthographic;
     this.stir(performance.now());
@@ -320,7 +346,7 @@ export class Viewport {
       send({
         t: "view",
         field: view.field,
-        mode: view.appearance === "tets" ? "tets" : "surface",
+        mode: modeOf(view),
         visible,
       });
     }
@@ -490,6 +516,7 @@ export class Viewport {
     if (!taken) return false;
     const fields = useStudio.getState().hello?.fields;
     const frame = withoutDust(taken, fields?.find((one) => one.id === taken.field)?.unit);
+    if (this.coming?.suits(frame)) this.exchange(this.coming);
     const wanted = useView.getState().appearance === "tets";
     const meshes = wanted ? [this.tets, this.surface] : [this.surface, this.tets];
     const mesh = meshes.find((one) => one?.suits(frame));
@@ -539,6 +566,8 @@ export class Viewport {
       box,
       view.appearance !== "wireframe" && !view.cavities && !mesh?.topology.tets,
     );
+    const filled = modeOf(view) === "solid" ? this.surface : null;
+    this.fill.update(filled, this.section.plane.value, view.exaggeration);
     this.painter.backdrop.ground.mesh.visible = view.grid && mesh !== null;
     const { body, moments } = useStudio.getState();
     this.objects.group.visible = body !== null && body.topology === mesh?.topology.id;
@@ -858,6 +887,11 @@ export class Viewport {
   /** Where the middle of a rigid object is drawn, m. */
   objectPosition(name: string): [number, number, number] | null {
     return this.objects.middleOf(name);
+  }
+
+  /** How many triangles of a section through the field are drawn. */
+  get cut(): number {
+    return this.fill.triangles;
   }
 
   /** Where a vertex is on the page, in CSS pixels. */

@@ -1,5 +1,5 @@
 import { describe, expect, it } from "vitest";
-import { placeText, problemsAt } from "../../src/panes/design/edits";
+import { changesOf, placeText, problemsAt } from "../../src/panes/design/edits";
 import { renamed } from "../../src/panes/design/rename";
 import { shapeTree } from "../../src/panes/design/shapeTree";
 import { tableAt, valueOffers } from "../../src/panes/design/text/complete";
@@ -179,4 +179,20 @@ it("tells rows of the tree apart where a shape is used several times", () => {
   const rows = shapeTree(shapes).filter((node) => node.again);
   expect(rows).toHaveLength(3);
   expect(new Set(rows.map((row) => row.within)).size).toBe(3);
+});
+
+describe("changes of a table", () => {
+  const path = ["objectives", "goal"];
+  it("are those of keys, and leave what is the same alone", () => {
+    const before = { maximize: "mass", probe: "tip", axis: "z" };
+    const after = { minimize: "mass", probe: "tip", axis: "x" };
+    expect(changesOf(path, before, after)).toEqual([
+      { path: [...path, "maximize"], value: null },
+      { path: [...path, "minimize"], value: "mass" },
+      { path: [...path, "axis"], value: "x" },
+    ]);
+  });
+  it("are none between equal tables", () => {
+    expect(changesOf(path, { list: [1, 2] }, { list: [1, 2] })).toEqual([]);
+  });
 });

@@ -135,6 +135,28 @@ def test_the_section_follows_its_handle_and_stays_capped(tab):
     assert tab.errors == []
 
 
+def test_a_section_shows_the_field_inside(tab):
+    tab.find("section").click()
+    tab.find("section-move").wait_for()
+    hatched = share_of_color(tab, CUT)
+    assert hatched > 0.002  # nothing moves yet, and a map would tell nothing
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.02 && voxsoft.cut() > 100")
+    tab.find("play").click()
+    tab.until("voxsoft.state !== 'playing'")
+    assert share_of_color(tab, CUT) < 0.1 * hatched
+    tab.shot("section-field")
+    # Also of the smooth shape, whose own cut is filled as far as voxels reach.
+    tab.page.get_by_label("Show as").select_option("smooth")
+    tab.until("voxsoft.cut() > 100")
+    assert share_of_color(tab, CUT) < 0.5 * hatched
+    tab.shot("section-field-smooth")
+    # By parts, and without a section, only the surface comes.
+    tab.find("section").click()
+    tab.until("voxsoft.cut() === 0")
+    assert tab.errors == []
+
+
 def test_the_mouse_steers_as_in_the_scheme_that_is_chosen(tab):
     far = 20
 

@@ -6,7 +6,7 @@ import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { CavityField } from "./CavityField";
 import { EntryMap, type Table } from "./Entries";
-import { edit } from "./edits";
+import { changesOf, edit, editAll } from "./edits";
 import { useForm } from "./form";
 import { labelOf } from "./schema";
 import { bodyNames } from "./several";
@@ -189,17 +189,20 @@ export function Goals() {
                 options={["maximize", "minimize"]}
                 onChange={(next) => {
                   const { maximize, minimize, ...others } = value;
-                  edit(path, { [next]: maximize ?? minimize ?? "mass", ...others });
+                  const turned = { [next]: maximize ?? minimize ?? "mass", ...others };
+                  editAll(changesOf(path, value, turned));
                 }}
               />
               <MetricFields
                 metric={String(value[direction] ?? "")}
                 value={value}
                 onMetric={(next) =>
-                  edit(path, {
-                    ...fittingKeys(metricOf(next), value, probes, objects),
-                    [direction]: next,
-                  })
+                  editAll(
+                    changesOf(path, value, {
+                      ...fittingKeys(metricOf(next), value, probes, objects),
+                      [direction]: next,
+                    }),
+                  )
                 }
                 onKey={(key, next) => edit([...path, key], next)}
               />
@@ -239,7 +242,7 @@ export function Goals() {
                     delete kept.min;
                     delete kept.max;
                   }
-                  edit(path, { ...kept, metric: next });
+                  editAll(changesOf(path, value, { ...kept, metric: next }));
                 }}
                 onKey={(key, next) => edit([...path, key], next)}
               />

@@ -32,6 +32,20 @@ export function editAll(changes: readonly Change[]): void {
   });
 }
 
+type Table = Readonly<Record<string, unknown>>;
+
+/** What makes a table another one: keys alone, so that a change of another key that is under way stays. */
+export function changesOf(path: Path, before: Table, after: Table): readonly Change[] {
+  const gone = Object.keys(before).filter((key) => !(key in after));
+  const other = Object.entries(after).filter(
+    ([key, value]) => JSON.stringify(before[key]) !== JSON.stringify(value),
+  );
+  return [
+    ...gone.map((key) => ({ path: [...path, key], value: null })),
+    ...other.map(([key, value]) => ({ path: [...path, key], value })),
+  ];
+}
+
 /** Replace the text of the document. */
 export function replaceText(text: string): void {
   flushText();
