@@ -15,8 +15,11 @@ from voxsoft.files.calibrations import NOT_CARDS
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.records import place
 
-#: What differs from one time to the next and is no result: times, places and versions.
-_NO_RESULT: Final = frozenset({"seconds", "written", "versions", "version", "folder", "report"})
+#: What differs from one time to the next and is no result: times, places and versions, and what to
+#: try, which says how long that takes.
+_NO_RESULT: Final = frozenset(
+    {"seconds", "hint", "written", "versions", "version", "folder", "report"}
+)
 _ABSENT: Final = "absent"
 
 
