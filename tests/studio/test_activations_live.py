@@ -3,7 +3,7 @@
 import pytest
 
 import voxsoft as vs
-from voxsoft.design import Dielectric, Swelling
+from voxsoft.design import Dielectric, Profile, Swelling
 from voxsoft.errors import DesignError, SimulationError
 from voxsoft.studio import commands
 from voxsoft.studio.body import StudioBody
@@ -41,3 +41,12 @@ def test_time_runs_for_what_has_grown_and_for_fields():
     assert StudioBody.of(block(Swelling(part="gel", value=0.1)), 1, 1).not_live == ""
     sheet = Dielectric(part="gel", value=1e6, permittivity=2.8, normal=(0, 0, 1), history=RAMP)
     assert StudioBody.of(block(sheet), 1, 1).not_live == ""
+
+
+def test_time_runs_for_a_profile_but_not_beside_contact_and_no_page_has_it():
+    bent = block(Swelling(part="gel", value=0.1, profile=Profile(expression="z / 0.005")))
+    assert StudioBody.of(bent, 1, 1).not_live == ""
+    on_floor = bent.replace(floor={"z": -0.001}, contact={})
+    assert "profiles" in StudioBody.of(on_floor, 1, 1).not_live
+    with pytest.raises(DesignError, match=r"activations\[0\].profile: is not known to exported"):
+        page_of(bent)

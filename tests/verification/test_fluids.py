@@ -552,6 +552,8 @@ def test_supplies_follow_their_histories_along_time():
         now = simulate(pair(*(each.replace(value=part * each.value) for each in (pushed, held))))
         assert found.positions == pytest.approx(now.positions, abs=1e-8)
         assert found.supplies[1].pressure == pytest.approx(part * 6 * kPa)
+        # What a state says of its design is that instant alone: run again it is the same state.
+        assert simulate(found.design).positions == pytest.approx(now.positions, abs=1e-8)
 
 
 def test_a_valve_that_opens_over_time_is_refused_along_time():

@@ -111,6 +111,12 @@ def grows_over_time(design: Design) -> bool:
     return any(activation.growth is not None for activation in timed)
 
 
+def has_profiles(design: Design) -> bool:
+    """Whether a part of a design grows differently from place to place."""
+    growths = [activation.growth for activation in design.activations]
+    return any(growth is not None and growth.profile is not None for growth in growths)
+
+
 def refuse_profiles(design: Design, who: str) -> None:
     """Raise where an activation has a profile and someone knows one growth for each part.
 

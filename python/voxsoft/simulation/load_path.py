@@ -212,7 +212,7 @@ def follow(
         designs = _remembering(designs)
     timed, instants = _joined(designs, asked, given)
     setup = Setup.of(timed, refine=solver.refine)
-    if any(each.supplies != timed.supplies for each in designs):
+    if asked.key != TIME and any(each.supplies != timed.supplies for each in designs):
         _check_supplies(given, over_time=False)
         fluids = FluidPath(
             timed,
@@ -354,7 +354,9 @@ def _at_instant(design: Design, instant: float) -> Design:
         return own if own is None else History(time=(0.0,), factor=(own.at(instant),))
 
     activations = tuple(each.at(instant) for each in design.activations)
-    return _with_histories(design, history, history).replace(activations=activations)
+    supplies = tuple(each.replace(history=history(each.history)) for each in design.supplies)
+    changed = _with_histories(design, history, history)
+    return changed.replace(activations=activations, supplies=supplies)
 
 
 def _with_histories(

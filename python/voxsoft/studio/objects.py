@@ -15,7 +15,7 @@ from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.growth import grows_over_time
+from voxsoft.simulation.growth import grows_over_time, has_profiles
 from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import ContactState, Pose, has_contact
 from voxsoft.studio import events
@@ -34,6 +34,8 @@ REFINED: Final = "Live motion does not know local refinement yet: press Solve."
 SOFTENS: Final = "Live motion does not know softening yet: press Solve."
 #: The same for parts that grow by a history.
 GROWING: Final = "Live motion does not know histories of activations yet: press Solve."
+#: The same for parts that grow differently from place to place, beside contact.
+PROFILED: Final = "Live motion does not know profiles beside contact yet: press Solve."
 
 
 def objects_of(setup: Setup) -> list[events.BodyObject]:
@@ -69,6 +71,8 @@ def not_live(setup: Setup) -> str:
         return GROWING
     if not has_contact(setup.design):
         return ""
+    if has_profiles(setup.design):
+        return PROFILED
     if setup.design.bodies:
         return SEVERAL
     if setup.touching is not None and setup.touching.bonds:

@@ -36,7 +36,7 @@ it("keeps an object only where the next metric asks of one", () => {
   const value = { object: "plate", max: "2 N" };
   expect(fittingKeys(metric({ needs_object: true }), value, [])).toEqual(value);
   expect(fittingKeys(metric({}), value, [])).toEqual({ max: "2 N" });
-  // It is the first object where none was named, so that a choice stands where one is due.
+  // It is the first object where none was named, so that the form shows a choice.
   const needs = metric({ needs_object: true });
   expect(fittingKeys(needs, {}, [], ["ball", "plate"])).toEqual({ object: "ball" });
   expect(fittingKeys(needs, {}, [])).toEqual({});
