@@ -15,6 +15,7 @@ from voxsoft.cli.export import export
 from voxsoft.cli.material import material
 from voxsoft.cli.mesh import mesh
 from voxsoft.cli.new import new
+from voxsoft.cli.refine import refine
 from voxsoft.cli.run import run
 from voxsoft.cli.studio import studio
 from voxsoft.cli.study import optimize, sweep
@@ -31,7 +32,7 @@ app = typer.Typer(
     pretty_exceptions_show_locals=False,
 )
 _COMMANDS = (
-    *(new, check, mesh, run, workspace, calibrate, sweep, optimize),
+    *(new, check, mesh, run, refine, workspace, calibrate, sweep, optimize),
     *(compare, verify, again, export, studio),
 )
 for command in _COMMANDS:

@@ -11,7 +11,9 @@ if TYPE_CHECKING:
     from voxsoft.comparison.comparison import Comparison, Run
     from voxsoft.comparison.confirmation import Confirmation, confirm
     from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
+    from voxsoft.comparison.local_error import local_errors
     from voxsoft.comparison.path_bars import path_error_bars
+    from voxsoft.comparison.refining import refined
     from voxsoft.comparison.richardson import Estimate, discretization_error
     from voxsoft.comparison.run import compare
     from voxsoft.comparison.workspace_bars import line_error
@@ -28,7 +30,9 @@ __all__ = [
     "discretization_error",
     "error_bars",
     "line_error",
+    "local_errors",
     "path_error_bars",
+    "refined",
 ]
 
 # Loaded when first used: a job knows what a comparison is asked without its solvers.
@@ -44,6 +48,8 @@ _HOMES = {
     "discretization_error": "voxsoft.comparison.richardson",
     "error_bars": "voxsoft.comparison.bars",
     "line_error": "voxsoft.comparison.workspace_bars",
+    "local_errors": "voxsoft.comparison.local_error",
     "path_error_bars": "voxsoft.comparison.path_bars",
+    "refined": "voxsoft.comparison.refining",
 }
 __getattr__, __dir__ = lazy_names(__name__, _HOMES)
