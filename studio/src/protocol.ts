@@ -239,6 +239,12 @@ export interface DesignsCommand {
   seq: number;
 }
 
+/** Ask for the materials that a part can have. */
+export interface MaterialsCommand {
+  t: "materials";
+  seq: number;
+}
+
 /** Take back the last change of the document. */
 export interface UndoCommand {
   t: "undo";
@@ -755,6 +761,49 @@ export interface DesignFilesEvent {
   t: "design_files";
   folder: string;
   files: DesignFile[];
+}
+
+/**
+ * What is known of a material, SI; null and "" where nobody stated it.
+ *
+ * `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
+ * and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
+ * nominal stress at 100 % strain. `stretches` and `stresses` are the curve of the model itself in
+ * uniaxial tension; empty where it has none. `table` is the material as a design writes it.
+ */
+export interface MaterialFacts {
+  name: string;
+  title: string;
+  origin: "card" | "design" | "file";
+  same_as: string;
+  choice: string;
+  model: string;
+  live: "explicit" | "implicit" | "none";
+  shore: string;
+  young: number | null;
+  density: number | null;
+  tested_from: number | null;
+  tested_to: number | null;
+  elongation_at_break: number | null;
+  stress_at_double: number | null;
+  source: string;
+  caution: string;
+  license: string;
+  stretches: number[];
+  stresses: (number | null)[];
+  table: Record<string, unknown>;
+}
+
+/**
+ * All materials that a part can have: those of the design at `rev`, then the cards.
+ *
+ * `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+ */
+export interface MaterialsEvent {
+  t: "materials";
+  rev: number;
+  materials: MaterialFacts[];
+  mixed: string;
 }
 
 /** An enclosed space: its name or an empty text, volume in m³, area in m². */
@@ -1441,6 +1490,7 @@ export type AnyCommand =
   | RemoveCommand
   | AddBodyCommand
   | DesignsCommand
+  | MaterialsCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
@@ -1481,6 +1531,7 @@ export type AnyEvent =
   | StartEvent
   | DocumentEvent
   | DesignFilesEvent
+  | MaterialsEvent
   | BodyEvent
   | StatEvent
   | EquilibriumEvent

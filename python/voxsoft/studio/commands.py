@@ -132,6 +132,10 @@ class Designs(Command):
     """Ask for the design files beside the document."""
 
 
+class Materials(Command):
+    """Ask for the materials that a part can have."""
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -430,6 +434,7 @@ AnyCommand = (
     | Remove
     | AddBody
     | Designs
+    | Materials
     | Undo
     | Redo
     | Save

@@ -12,6 +12,12 @@ from msgspec import field
 from voxsoft.studio.message import Entry, Json, Message, Triple
 
 Severity = Literal["error", "warning", "note"]
+#: Where a material is written: a card of VoxSoft, the design, or a card's file.
+Origin = Literal["card", "design", "file"]
+#: How a body of one material moves live: in quick explicit substeps, in implicit steps, not at all.
+LiveMotion = Literal["explicit", "implicit", "none"]
+#: How a history is written: points, a sine, an expression of time, a table in a file, not at all.
+HistoryWay = Literal["points", "sine", "expression", "table", "none"]
 JobKind = Literal["run", "study", "calibrate"]
 JobState = Literal[
     "running", "pausing", "paused", "stopping", "stopped", "done", "failed", "interrupted"
@@ -41,6 +47,37 @@ class MaterialCard(Entry):
     source: str
     model: str
     young: float | None = None
+
+
+class MaterialFacts(Entry):
+    """What is known of a material, SI; null and "" where nobody stated it.
+
+    `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
+    and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
+    nominal stress at 100 % strain. `stretches` and `stresses` are the curve of the model itself in
+    uniaxial tension; empty where it has none. `table` is the material as a design writes it.
+    """
+
+    name: str
+    title: str
+    origin: Origin
+    same_as: str
+    choice: str
+    model: str
+    live: LiveMotion
+    shore: str
+    young: float | None
+    density: float | None
+    tested_from: float | None
+    tested_to: float | None
+    elongation_at_break: float | None
+    stress_at_double: float | None
+    source: str
+    caution: str
+    license: str
+    stretches: list[float]
+    stresses: list[float | None]
+    table: dict[str, Json]
 
 
 class Sampler(Entry):
@@ -216,6 +253,17 @@ class DesignFiles(Event):
 
     folder: str
     files: list[DesignFile]
+
+
+class Materials(Event):
+    """All materials that a part can have: those of the design at `rev`, then the cards.
+
+    `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+    """
+
+    rev: int
+    materials: list[MaterialFacts]
+    mixed: str
 
 
 class Cavity(Entry):
@@ -914,6 +962,7 @@ AnyEvent = (
     | Start
     | Document
     | DesignFiles
+    | Materials
     | Body
     | Stat
     | Equilibrium

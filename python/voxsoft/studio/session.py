@@ -37,6 +37,7 @@ from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
+from voxsoft.studio.materials import materials_of
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.opening import (
     document_at,
@@ -249,6 +250,10 @@ class Session:
     @_execute.register
     def _on_designs(self, command: commands.Designs, tab: Tab) -> None:
         self.tabs.send_to(tab, design_files(self.document))
+
+    @_execute.register
+    def _on_materials(self, command: commands.Materials, tab: Tab) -> None:
+        self.tabs.send_to(tab, materials_of(self.document))
 
     def _of_several(self, name: str) -> tuple[DesignDocument, str]:
         """A document in which bodies have names, and what there is called by a name."""

@@ -38,6 +38,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("runs", "Runs", () => import("./runs/RunsPane")),
   pane("compare", "Compare", () => import("./runs/ComparePane")),
   pane("export", "Export", () => import("./export/ExportPane")),
+  pane("materials", "Materials", () => import("./materials/MaterialsPane")),
   pane("body", "Body", () => import("./body/BodyPane")),
   pane("log", "Log", () => import("./log/LogPane")),
 ];

@@ -20,7 +20,7 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     left: [["design"], ["text"]],
     main: ["view"],
     bottom: [],
-    right: [["body", "export", "log"]],
+    right: [["body", "materials", "export", "log"]],
     leftShare: 0.25,
   },
   simulate: {

@@ -14,6 +14,7 @@ import type {
   HelloEvent,
   JobEvent,
   LogEvent,
+  MaterialsEvent,
   MeasuredEvent,
   Moment,
   OverlapEvent,
@@ -61,6 +62,8 @@ export interface Studio {
   document: DocumentEvent | null;
   /** Design files beside it. */
   designs: DesignFilesEvent | null;
+  /** What is known of all materials, once a pane asked for it. */
+  materials: MaterialsEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
   /** The last pace that was asked for and is not confirmed yet. */
@@ -107,6 +110,7 @@ export const useStudio = create<Studio>(() => ({
   start: null,
   document: null,
   designs: null,
+  materials: null,
   body: null,
   stat: null,
   askedPace: undefined,
@@ -182,6 +186,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "design_files":
       set({ designs: event });
+      break;
+    case "materials":
+      set({ materials: event });
       break;
     case "body":
       set(({ body, moments, askedPace, picked }) => ({
