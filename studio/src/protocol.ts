@@ -300,6 +300,18 @@ export interface RestCommand {
   seq: number;
 }
 
+/** Look for the error bars of the equilibrium that is shown on voxels half as large. */
+export interface EstimateCommand {
+  t: "estimate";
+  seq: number;
+}
+
+/** Ask what voxels half as large would cost the equilibrium that is shown. */
+export interface FinenessCommand {
+  t: "fineness";
+  seq: number;
+}
+
 /** Choose the solver of `rest`. */
 export interface SolverCommand {
   t: "solver";
@@ -1010,28 +1022,43 @@ export interface StatEvent {
   grabs: GrabState[];
 }
 
-/** A probe and how far it moved, m; `estimate` is that with its error bars in words. */
+/**
+ * A probe and how far it moved, m; `estimate` is that with its error bars in words.
+ *
+ * `share` is the error as a part of the displacement; null where it is not known.
+ */
 export interface MovedProbe {
   name: string;
   displacement: Triple;
   estimate: string;
+  share: number | null;
 }
 
-/** A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar. */
+/**
+ * A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar.
+ *
+ * `share` is the error as a part of the value; null where it is not known.
+ */
 export interface MetricValue {
   name: string;
   value: number | null;
   kind: string;
   estimate: string;
+  share: number | null;
 }
 
-/** A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar. */
+/**
+ * A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar.
+ *
+ * `share` is the error as a part of how far the volume grew; null where it is not known.
+ */
 export interface Chamber {
   name: string;
   rest_volume: number;
   volume: number;
   pressure: number;
   estimate: string;
+  share: number | null;
 }
 
 /** Something by its name, and its state in words. */
@@ -1063,7 +1090,8 @@ export interface Grip {
  *
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
  * `error_bars` says where error bars come from, or why there are none; told a second time once
- * they are known.
+ * they are known. `looking` while they are being looked for, and `askable` where none were found
+ * and smaller voxels could still give them.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -1082,6 +1110,40 @@ export interface EquilibriumEvent {
   supplies: Summarized[];
   grips: Grip[];
   error_bars: string;
+  looking: boolean;
+  askable: boolean;
+}
+
+/** A value of the document at a path, as an edit of it. */
+export interface TextChange {
+  path: (string | number)[];
+  value: unknown;
+}
+
+/**
+ * What voxels half as large would cost the equilibrium that is shown, and how to have them.
+ *
+ * Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
+ * `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
+ * `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
+ * how many there are.
+ */
+export interface FinenessEvent {
+  t: "fineness";
+  topology: number;
+  voxel_size: number;
+  voxels: number;
+  memory: number;
+  seconds: number | null;
+  half_voxels: number;
+  half_memory: number;
+  half_seconds: number | null;
+  free_memory: number;
+  halving: TextChange[];
+  not_halved: string;
+  refinable: string[];
+  not_refined: string;
+  refinements: number;
 }
 
 /**
@@ -1499,6 +1561,8 @@ export type AnyCommand =
   | StepCommand
   | ResetCommand
   | RestCommand
+  | EstimateCommand
+  | FinenessCommand
   | SolverCommand
   | LoadCommand
   | GrabCommand
@@ -1535,6 +1599,7 @@ export type AnyEvent =
   | BodyEvent
   | StatEvent
   | EquilibriumEvent
+  | FinenessEvent
   | VibrationEvent
   | ChambersEvent
   | OverlapEvent

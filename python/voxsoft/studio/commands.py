@@ -176,6 +176,14 @@ class Rest(Command):
     """Solve for the state at rest with the chosen solver."""
 
 
+class Estimate(Command):
+    """Look for the error bars of the equilibrium that is shown on voxels half as large."""
+
+
+class Fineness(Command):
+    """Ask what voxels half as large would cost the equilibrium that is shown."""
+
+
 class Solver(Command):
     """Choose the solver of `rest`."""
 
@@ -443,6 +451,8 @@ AnyCommand = (
     | Step
     | Reset
     | Rest
+    | Estimate
+    | Fineness
     | Solver
     | Load
     | Grab

@@ -479,30 +479,42 @@ class Stat(Event):
 
 
 class MovedProbe(Entry):
-    """A probe and how far it moved, m; `estimate` is that with its error bars in words."""
+    """A probe and how far it moved, m; `estimate` is that with its error bars in words.
+
+    `share` is the error as a part of the displacement; null where it is not known.
+    """
 
     name: str
     displacement: Triple
     estimate: str = ""
+    share: float | None = None
 
 
 class MetricValue(Entry):
-    """A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar."""
+    """A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar.
+
+    `share` is the error as a part of the value; null where it is not known.
+    """
 
     name: str
     value: float | None
     kind: str
     estimate: str = ""
+    share: float | None = None
 
 
 class Chamber(Entry):
-    """A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar."""
+    """A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar.
+
+    `share` is the error as a part of how far the volume grew; null where it is not known.
+    """
 
     name: str
     rest_volume: float
     volume: float
     pressure: float
     estimate: str = ""
+    share: float | None = None
 
 
 class Summarized(Entry):
@@ -535,7 +547,8 @@ class Equilibrium(Event):
 
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
     `error_bars` says where error bars come from, or why there are none; told a second time once
-    they are known.
+    they are known. `looking` while they are being looked for, and `askable` where none were found
+    and smaller voxels could still give them.
     """
 
     topology: int
@@ -553,6 +566,40 @@ class Equilibrium(Event):
     supplies: list[Summarized]
     grips: list[Grip]
     error_bars: str = ""
+    looking: bool = False
+    askable: bool = False
+
+
+class TextChange(Entry):
+    """A value of the document at a path, as an edit of it."""
+
+    path: list[str | int]
+    value: Json
+
+
+class Fineness(Event):
+    """What voxels half as large would cost the equilibrium that is shown, and how to have them.
+
+    Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
+    `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
+    `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
+    how many there are.
+    """
+
+    topology: int
+    voxel_size: float
+    voxels: int
+    memory: float
+    seconds: float | None
+    half_voxels: int
+    half_memory: float
+    half_seconds: float | None
+    free_memory: float
+    halving: list[TextChange]
+    not_halved: str
+    refinable: list[str]
+    not_refined: str
+    refinements: int
 
 
 class Vibration(Event):
@@ -966,6 +1013,7 @@ AnyEvent = (
     | Body
     | Stat
     | Equilibrium
+    | Fineness
     | Vibration
     | Chambers
     | Overlap

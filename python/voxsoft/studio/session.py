@@ -35,6 +35,7 @@ from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
 from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.exports import Shown, export_run, export_shown
+from voxsoft.studio.fineness import fineness_of
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
 from voxsoft.studio.materials import materials_of
@@ -408,6 +409,10 @@ class Session:
         with suppress(VoxSoftError, OSError):
             save_thumbnail(shown.measured(), folder)
             self._runs_changed()
+
+    @_execute.register
+    def _on_fineness(self, command: commands.Fineness, tab: Tab) -> None:
+        self.tabs.send_to(tab, fineness_of(self._shown(), self.document))
 
     @_execute.register
     def _on_job_start(self, command: commands.JobStart, tab: Tab) -> None:

@@ -4,6 +4,7 @@ import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { Findings } from "../panes/body/Findings";
 import type { EquilibriumEvent } from "../protocol";
 import { useStudio } from "../store/studio";
+import { FinenessCheck } from "./FinenessCheck";
 
 /** The numbers of the state that is shown, or null where it is no equilibrium, or not yet told. */
 export function useEquilibrium(): EquilibriumEvent | null {
@@ -77,6 +78,7 @@ export function EquilibriumCard() {
             {found.error_bars}
           </p>
         )}
+        <FinenessCheck of={found} />
       </div>
     </Section>
   );

@@ -10,6 +10,7 @@ import type {
   DesignFilesEvent,
   DocumentEvent,
   EquilibriumEvent,
+  FinenessEvent,
   GenerationEvent,
   HelloEvent,
   JobEvent,
@@ -71,6 +72,8 @@ export interface Studio {
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
+  /** What finer voxels would cost, once it was asked. */
+  fineness: FinenessEvent | null;
   vibration: VibrationEvent | null;
   /** What supplies did in the motion that is shown. */
   chambers: ChambersEvent | null;
@@ -116,6 +119,7 @@ export const useStudio = create<Studio>(() => ({
   askedPace: undefined,
   overlap: null,
   equilibrium: null,
+  fineness: null,
   vibration: null,
   chambers: null,
   moments: new Map(),
@@ -208,6 +212,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "equilibrium":
       set({ equilibrium: event });
+      break;
+    case "fineness":
+      set({ fineness: event });
       break;
     case "vibration":
       set({ vibration: event });
