@@ -735,10 +735,36 @@ export interface Diagnostic {
   hint: string;
 }
 
+/** What follows a history, and what a factor of 1 is of it, such as "30 kPa". */
+export interface HistoryUse {
+  title: string;
+  amount: string;
+}
+
+/**
+ * A history over time, or a place that has none.
+ *
+ * `path` is where it is written. Points can be moved; `words` is the text of the other ways.
+ * `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+ */
+export interface HistoryLine {
+  path: (string | number)[];
+  title: string;
+  used_by: HistoryUse[];
+  way: "expression" | "none" | "points" | "sine" | "table";
+  words: string;
+  times: number[];
+  factors: number[];
+  repeat: number;
+  low: number | null;
+  high: number | null;
+}
+
 /**
  * The document as it stands; `design` is that of the last text that was good (or null).
  *
  * `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+ * `histories` are those of the last text that was good.
  */
 export interface DocumentEvent {
   t: "document";
@@ -755,6 +781,7 @@ export interface DocumentEvent {
   diagnostics: Diagnostic[];
   can_undo: boolean;
   can_redo: boolean;
+  histories: HistoryLine[];
 }
 
 /**

@@ -216,10 +216,37 @@ class Diagnostic(Entry):
     hint: str = ""
 
 
+class HistoryUse(Entry):
+    """What follows a history, and what a factor of 1 is of it, such as "30 kPa"."""
+
+    title: str
+    amount: str
+
+
+class HistoryLine(Entry):
+    """A history over time, or a place that has none.
+
+    `path` is where it is written. Points can be moved; `words` is the text of the other ways.
+    `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+    """
+
+    path: list[str | int]
+    title: str
+    used_by: list[HistoryUse]
+    way: HistoryWay
+    words: str = ""
+    times: list[float] = field(default_factory=list)
+    factors: list[float] = field(default_factory=list)
+    repeat: int = 1
+    low: float | None = None
+    high: float | None = None
+
+
 class Document(Event):
     """The document as it stands; `design` is that of the last text that was good (or null).
 
     `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+    `histories` are those of the last text that was good.
     """
 
     rev: int
@@ -235,6 +262,7 @@ class Document(Event):
     diagnostics: list[Diagnostic]
     can_undo: bool
     can_redo: bool
+    histories: list[HistoryLine] = field(default_factory=list)
 
 
 class DesignFile(Entry):

@@ -24,7 +24,7 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     leftShare: 0.25,
   },
   simulate: {
-    left: [["run", "path", "design"]],
+    left: [["run", "path", "timeline", "design"]],
     main: ["view"],
     bottom: [
       ["probes", "chambers"],
