@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
+from own_loop import run
 
 import voxsoft as vs
 from voxsoft.comparison import error_bars
@@ -170,3 +171,32 @@ def test_error_bars_can_be_asked_for_where_there_are_none() -> None:
     assert not found.askable
     assert not found.looking
     assert all(probe.share is not None and probe.share > 0.0 for probe in found.probes)
+
+
+def test_a_tab_asks_for_the_cost_and_for_the_errors(fresh_studio: Any) -> None:
+    lattice = BEAM.replace('"ecoflex-00-30"', '"ecoflex-00-30-lattice"')
+
+    async def scenario() -> None:
+        async with fresh_studio.page() as page:
+            await page.send("estimate")
+            refused = await page.until("error")
+            assert "equilibrium" in refused.what
+            await page.send("text", rev=page.rev, text=lattice)
+            await page.until("body", lambda b: b.voxels == 32)
+            await page.send("rest")
+            first = await page.until("equilibrium", lambda e: not e.looking)
+            assert first.askable
+            await page.send("fineness")
+            cost = await page.until("fineness")
+            assert (cost.topology, cost.voxels, cost.half_voxels) == (first.topology, 32, 256)
+            await page.send("estimate")
+            await page.until("equilibrium", lambda e: e.looking)
+            found = await page.until("equilibrium", lambda e: not e.looking)
+            assert found.metrics[0]["share"] > 0.0
+            rev = page.rev
+            await page.send("edits", rev=rev, changes=cost.halving)
+            await page.until("body", lambda b: b.voxels == 256)
+            await page.send("undo")
+            await page.until("body", lambda b: b.voxels == 32)
+
+    run(scenario())

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+from own_loop import run
 
 from voxsoft.design import families
 from voxsoft.files.cards import save_card
@@ -70,3 +73,14 @@ def test_a_card_that_is_copied_is_the_same_material() -> None:
     design = DesignDocument(text, "beam.toml").design
     assert design is not None
     assert design.materials["copy"] == load_card("ecoflex-00-30-epfl").material
+
+
+def test_a_tab_asks_for_the_materials(fresh_studio: Any) -> None:
+    async def scenario() -> None:
+        async with fresh_studio.page() as page:
+            await page.send("materials")
+            found = await page.until("materials")
+            assert found.rev == page.rev
+            assert {"ecoflex-00-30", "dragon-skin-10"} <= {one["name"] for one in found.materials}
+
+    run(scenario())

@@ -133,7 +133,7 @@ def test_materials_timeline_and_fineness_are_accessible(
         tab.page.get_by_role("tab", name="Timeline").click()
         tab.find("timeline-pane").get_by_role("slider").first.focus()
         audit.look("timeline")
-        tab.page.get_by_role("tab", name="Run").click()
+        tab.page.get_by_role("tab", name="Run", exact=True).click()
         tab.page.keyboard.press("r")
         tab.find("fineness-open").click()
         tab.find("halve").wait_for()

@@ -33,10 +33,12 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
   const [draft, setDraft] = useState<readonly Point[] | null>(null);
   const [chosen, choose] = useState<number | null>(null);
   const dragged = useRef<number | null>(null);
+  /** Whether arrow keys moved a point that the text does not have yet. */
+  const nudged = useRef(false);
   const points = draft ?? kept;
   // The text that was asked for has come, or another one.
   useEffect(() => {
-    if (dragged.current === null) setDraft(null);
+    if (dragged.current === null && !nudged.current) setDraft(null);
   }, [line]);
 
   const range = rangeOf(line.factors);
@@ -52,6 +54,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
 
   const commit = (next: readonly Point[]) => {
     if (!kept) return;
+    nudged.current = false;
     setDraft(next);
     editAll(written(line, kept, next));
   };
@@ -95,6 +98,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
       const time = point.time + by(steps[0], axis.end);
       const factor = point.factor + by(steps[1], range[1] - range[0]);
       const round = (x: number) => Number(x.toPrecision(12));
+      nudged.current = true;
       setDraft(moved(points, index, round(time), round(factor), line));
     } else if (event.key === "Delete" || event.key === "Backspace") remove(index);
     else if (event.key === "Enter" || event.key === "Insert") add(...beside(points, index, axis));
@@ -103,8 +107,8 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
     event.stopPropagation();
   };
   // Holding an arrow key is one change of the text.
-  const onKeyUp = (event: KeyboardEvent) => {
-    if (draft && event.key in KEYS) commit(draft);
+  const settle = () => {
+    if (nudged.current && draft) commit(draft);
   };
 
   return (
@@ -143,7 +147,9 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
             aria-valuetext={`${formatNumber(time, 5)} s, factor ${formatNumber(factor, 5)}`}
             onFocus={() => choose(index)}
             onKeyDown={(event) => onKeyDown(event, index)}
-            onKeyUp={onKeyUp}
+            onKeyUp={settle}
+            onBlur={settle}
+            onDoubleClick={(event) => event.stopPropagation()}
             onPointerDown={(event) => {
               if (event.button !== 0) return;
               choose(index);
