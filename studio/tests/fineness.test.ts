@@ -30,9 +30,18 @@ describe("whether a mesh is fine enough", () => {
     expect(verdict(rated(found(0.01)))?.tone).toBe("good");
     expect(verdict(rated(found(0.01, 0.03)))?.tone).toBe("warn");
     expect(verdict(rated(found(0.01, 0.06)))?.words).toBe(
-      "No: 1 of 2 numbers is more than 5 % off.",
+      "No: 1 of 2 numbers may be more than 5 % off.",
     );
-    expect(verdict(rated(found(0.06, 0.07)))?.words).toBe("No: every number is more than 5 % off.");
+    expect(verdict(rated(found(0.06, 0.07)))?.words).toBe(
+      "No: every number may be more than 5 % off.",
+    );
+  });
+
+  it("leaves out what is zero up to rounding", () => {
+    const metric = { name: "reaction", kind: "force", estimate: "", share: 1.5 };
+    const some = { ...found(0.01), metrics: [{ ...metric, value: 8e-11 }] };
+    expect(rated(some).beyond).toEqual([]);
+    expect(rated({ ...some, metrics: [{ ...metric, value: 0.1 }] }).beyond).toHaveLength(1);
   });
 
   it("has no answer where no error is known", () => {

@@ -28,11 +28,10 @@ export function EquilibriumCard() {
       moved(probe),
       probe.estimate,
     ]),
-    ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => [
-      name.replaceAll("_", " "),
-      formatKind(value === null ? null : cleaned(value, siUnit(kind)), kind),
-      estimate,
-    ]),
+    ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => {
+      const shown = value === null ? null : cleaned(value, siUnit(kind));
+      return [name.replaceAll("_", " "), formatKind(shown, kind), shown === 0 ? "" : estimate];
+    }),
     ...found.tendons.map(({ name, words }): [string, string, string] => [
       `Tendon ${name}`,
       words,

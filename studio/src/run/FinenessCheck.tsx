@@ -54,8 +54,8 @@ function Answer({ of: found }: { of: EquilibriumEvent }) {
                 </div>
               ))}
             <div>
-              <dt>Not known</dt>
-              <dd className="muted">{rating.unknown.join(", ")}: these have no error bar</dd>
+              <dt>No error bar</dt>
+              <dd className="muted">{rating.unknown.join(", ")}</dd>
             </div>
           </dl>
         </>

@@ -1,5 +1,6 @@
 // What the errors of an equilibrium come to: which numbers the mesh is fine enough for.
-import { formatNumber } from "../controls/units";
+import { siUnit } from "../controls/kinds";
+import { cleaned, formatNumber } from "../controls/units";
 import type { EquilibriumEvent } from "../protocol";
 
 /** Errors up to these parts of a number count as small and as fair. */
@@ -24,7 +25,10 @@ export interface Rating {
 export function rated(found: EquilibriumEvent): Rating {
   const all = [
     ...found.probes.map(({ name, share }) => ({ name: `probe ${name}`, share })),
-    ...found.metrics.map(({ name, share }) => ({ name: name.replaceAll("_", " "), share })),
+    // Of what is zero up to rounding there is no part.
+    ...found.metrics
+      .filter(({ value, kind }) => value !== null && cleaned(value, siUnit(kind)) !== 0)
+      .map(({ name, share }) => ({ name: name.replaceAll("_", " "), share })),
     ...found.chambers.map(({ name, share }) => ({ name: `growth of ${name}`, share })),
   ];
   const known = all
@@ -52,9 +56,7 @@ export function verdict({ small, fair, beyond }: Rating): Verdict | null {
   if (count === 0) return null;
   if (beyond.length > 0) {
     const many = beyond.length === count ? "every number" : `${beyond.length} of ${count} numbers`;
-    const is = beyond.length === 1 ? "is" : "are";
-    const verb = beyond.length === count ? "is" : is;
-    return { tone: "bad", words: `No: ${many} ${verb} more than 5 % off.` };
+    return { tone: "bad", words: `No: ${many} may be more than 5 % off.` };
   }
   if (fair.length > 0)
     return { tone: "warn", words: "Nearly: every number is within 5 %, not all within 2 %." };

@@ -83,18 +83,22 @@ describe("points of a history", () => {
 describe("the text of a history", () => {
   it("keeps what was not touched, and the unit of what was", () => {
     const next = moved(points, 1, 0.3, 0.5, line);
-    expect(written(line, points, next)).toEqual([
+    expect(written(line, next)).toEqual([
       { path: ["loads", 0, "history", "time"], value: ["0 s", "300 ms", "= long"] },
       { path: ["loads", 0, "history", "factor"], value: [0, 0.5, 0] },
     ]);
   });
 
-  it("writes seconds where numbers had no unit", () => {
-    const bare = pointsOf(line, {
-      loads: [{ history: { time: [0, 0.2, 0.6], factor: [0, 1, 0] } }],
-    })!;
-    const [time] = written(line, bare, moved(bare, 1, 0.3, 1, line));
-    expect(time?.value).toEqual([0, "0.3 s", 0.6]);
+  it("gives a zero the unit of the others, and a new point that of the one before", () => {
+    const zero = {
+      loads: [{ history: { time: [0, "200 ms", "600 ms"], factor: [0, "50 %", 0] } }],
+    };
+    const some = pointsOf({ ...line, factors: [0, 0.5, 0] }, zero)!;
+    const [times, factors] = written(line, moved(moved(some, 0, 0.1, 0, line), 1, 0.2, 0.6, line));
+    expect(times?.value).toEqual(["100 ms", "200 ms", "600 ms"]);
+    expect(factors?.value).toEqual([0, "60 %", 0]);
+    const more = added(points, 0.4, 1, line)!.points;
+    expect(written(line, more)[0]?.value).toEqual(["0 s", "200 ms", "400 ms", "= long"]);
   });
 });
 

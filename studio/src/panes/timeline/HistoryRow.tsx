@@ -56,7 +56,7 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
     if (!kept) return;
     nudged.current = false;
     setDraft(next);
-    editAll(written(line, kept, next));
+    editAll(written(line, next));
   };
   const place = (event: { clientX: number; clientY: number }, svg: Element, fine: boolean) => {
     const { left, top } = svg.getBoundingClientRect();
@@ -191,11 +191,16 @@ function beside(points: readonly Point[], index: number, axis: Axis): [number, n
   return [(here.time + next.time) / 2, (here.factor + next.factor) / 2];
 }
 
+/** An amount with its exponents raised. */
+export function setInType(amount: string): string {
+  return amount.replaceAll("^2", "²").replaceAll("^3", "³");
+}
+
 /** What follows it, and the text of what is no list of points. */
 function about(line: HistoryLine): string {
   const named = line.path[0] === "histories";
   const users = line.used_by.map(({ title, amount }) => {
-    const one = amount && `1 is ${amount}`;
+    const one = amount && `1 is ${setInType(amount)}`;
     return named ? [title, one && `(${one})`].filter(Boolean).join(" ") : one;
   });
   const followed = named && users.length === 0 ? "nothing follows it" : users.join(", ");

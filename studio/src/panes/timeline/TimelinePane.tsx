@@ -7,7 +7,7 @@ import { edit } from "../design/edits";
 import { inside } from "../design/schema";
 import { ticks } from "../study/chart/ticks";
 import { useSize } from "../study/chart/useSize";
-import { HistoryRow } from "./HistoryRow";
+import { HistoryRow, setInType } from "./HistoryRow";
 import { endOf } from "./points";
 import { type Axis, MARGIN, xOf } from "./scale";
 import "./timeline.css";
@@ -72,7 +72,7 @@ export default function TimelinePane() {
 /** A place that has no history, with the button that gives it one. */
 function Constant(props: { line: HistoryLine; endTime: number | null; disabled: boolean }) {
   const { line, endTime } = props;
-  const amount = line.used_by[0]?.amount;
+  const amount = setInType(line.used_by[0]?.amount ?? "");
   const add = () => {
     const until = endTime === null ? 1 : endTime / 2;
     const time = ["0 s", `${Number(until.toPrecision(6))} s`];

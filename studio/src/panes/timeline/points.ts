@@ -16,6 +16,8 @@ export interface Point {
   readonly factor: number;
   /** The text's own entries; a number that was changed here has none. */
   readonly written: { readonly time?: unknown; readonly factor?: unknown };
+  /** The units that the text has for them, or "" for a bare factor. */
+  readonly units: { readonly time: string; readonly factor: string };
 }
 
 /** Between which values a point may be moved. */
@@ -32,10 +34,13 @@ export function pointsOf(line: HistoryLine, source: unknown): readonly Point[] |
   const factors = inside(table, "factor");
   if (!Array.isArray(times) || !Array.isArray(factors)) return null;
   if (times.length !== line.times.length || factors.length !== line.factors.length) return null;
+  // A zero has no unit of its own.
+  const unit = times.map(unitIn).find((one) => one !== "") ?? "s";
   return line.times.map((time, i) => ({
     time,
     factor: line.factors[i]!,
     written: { time: times[i], factor: factors[i] },
+    units: { time: unitIn(times[i]) || unit, factor: unitIn(factors[i]) },
   }));
 }
 
@@ -87,6 +92,7 @@ export function moved(
 
 function changed(point: Point, time: number, factor: number): Point {
   return {
+    ...point,
     time,
     factor,
     written: {
@@ -114,6 +120,7 @@ export function added(
     time,
     factor: within(factor, [line.low ?? Number.NEGATIVE_INFINITY, high]),
     written: {},
+    units: points[Math.max(index - 1, 0)]!.units,
   };
   return { points: tied(points.toSpliced(index, 0, fresh), line, index), index };
 }
@@ -137,34 +144,28 @@ function tied(points: readonly Point[], line: HistoryLine, at: number): readonly
 }
 
 /** The changes of the text: entries that were not touched stay as they are written. */
-export function written(line: HistoryLine, before: readonly Point[], points: readonly Point[]) {
-  const units = {
-    time: unitAmong(before.map((point) => point.written.time)) || "s",
-    factor: unitAmong(before.map((point) => point.written.factor)),
-  };
-  const entry = (value: number, text: unknown, unit: string) =>
-    text === undefined ? writeValue(value, factorOf(unit), unit) : text;
-  const times = points.map(({ time, written }) => entry(time, written.time, units.time));
-  const factors = points.map(({ factor, written }) => entry(factor, written.factor, units.factor));
-  const changes: Change[] = [
-    { path: [...line.path, "time"], value: times },
-    { path: [...line.path, "factor"], value: factors },
+export function written(line: HistoryLine, points: readonly Point[]): Change[] {
+  const list = (key: "time" | "factor") =>
+    points.map((point) => {
+      if (key in point.written) return point.written[key];
+      const unit = point.units[key];
+      return writeValue(point[key], factorOf(unit), unit);
+    });
+  return [
+    { path: [...line.path, "time"], value: list("time") },
+    { path: [...line.path, "factor"], value: list("factor") },
   ];
-  return changes;
 }
 
-/** The unit that the entries of a list are written with, or "" where they are bare numbers. */
-function unitAmong(entries: readonly unknown[]): string {
-  for (const entry of entries.toReversed()) {
-    const unit = /^\s*[-+\d.e]+\s+(\S+)\s*$/i.exec(String(entry ?? ""))?.[1];
-    if (unit !== undefined && unitOf(unit)) return unit;
-  }
-  return "";
+/** The unit that an entry is written with. */
+function unitIn(entry: unknown): string {
+  const unit = /^\s*[-+\d.e]+\s*(\S+)\s*$/i.exec(String(entry ?? ""))?.[1];
+  return unit !== undefined && unitOf(unit) ? unit : "";
 }
 
 /** The round step that values snap to on an axis of which some twenty make the span. */
 export function snapStep(span: number, fine: boolean): number {
-  const [first = 0, second = 1] = ticks(0, span, 20);
+  const [first = 0, second = 1] = ticks(0, span, 25);
   return (second - first) / (fine ? 10 : 1);
 }
 
