@@ -18,11 +18,11 @@ function found(...shares: (number | null)[]): EquilibriumEvent {
 }
 
 describe("whether a mesh is fine enough", () => {
-  it("parts the numbers at 2 % and at 5 %, the largest error first", () => {
+  it("parts the numbers at 2 % and at 5 %, the largest error first", () => {
     const rating = rated(found(0.02, 0.021, 0.05, 0.051, 0.3, null));
-    expect(inWords(rating.small)).toBe("probe p0 2 %");
-    expect(inWords(rating.fair)).toBe("probe p2 5 %, probe p1 2.1 %");
-    expect(inWords(rating.beyond)).toBe("probe p4 30 %, probe p3 5.1 %");
+    expect(inWords(rating.small)).toBe("probe p0 2 %");
+    expect(inWords(rating.fair)).toBe("probe p2 5 %, probe p1 2.1 %");
+    expect(inWords(rating.beyond)).toBe("probe p4 30 %, probe p3 5.1 %");
     expect(rating.unknown).toEqual(["probe p5", "largest strain"]);
   });
 
@@ -30,10 +30,10 @@ describe("whether a mesh is fine enough", () => {
     expect(verdict(rated(found(0.01)))?.tone).toBe("good");
     expect(verdict(rated(found(0.01, 0.03)))?.tone).toBe("warn");
     expect(verdict(rated(found(0.01, 0.06)))?.words).toBe(
-      "No: 1 of 2 numbers may be more than 5 % off.",
+      "No: 1 of 2 numbers may be more than 5 % off.",
     );
     expect(verdict(rated(found(0.06, 0.07)))?.words).toBe(
-      "No: every number may be more than 5 % off.",
+      "No: every number may be more than 5 % off.",
     );
   });
 

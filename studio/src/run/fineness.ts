@@ -56,14 +56,14 @@ export function verdict({ small, fair, beyond }: Rating): Verdict | null {
   if (count === 0) return null;
   if (beyond.length > 0) {
     const many = beyond.length === count ? "every number" : `${beyond.length} of ${count} numbers`;
-    return { tone: "bad", words: `No: ${many} may be more than 5 % off.` };
+    return { tone: "bad", words: `No: ${many} may be more than 5 % off.` };
   }
   if (fair.length > 0)
-    return { tone: "warn", words: "Nearly: every number is within 5 %, not all within 2 %." };
-  return { tone: "good", words: "Yes: every number with an error bar is within 2 %." };
+    return { tone: "warn", words: "Nearly: every number is within 5 %, not all within 2 %." };
+  return { tone: "good", words: "Yes: every number with an error bar is within 2 %." };
 }
 
 /** Numbers with their errors in words, such as `probe tip 3.1 %`. */
 export function inWords(some: readonly Rated[]): string {
-  return some.map(({ name, share }) => `${name} ${formatNumber(100 * share, 2)} %`).join(", ");
+  return some.map(({ name, share }) => `${name} ${formatNumber(100 * share, 2)} %`).join(", ");
 }

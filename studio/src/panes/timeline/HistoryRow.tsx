@@ -65,11 +65,12 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
       factor: snapped(factorAt(event.clientY - top, range), snapStep(range[1] - range[0], fine)),
     };
   };
-  const add = (time: number, factor: number) => {
+  const add = (time: number, factor: number): boolean => {
     const found = points && added(points, time, factor, line);
-    if (!found) return;
+    if (!found) return false;
     commit(found.points);
     choose(found.index);
+    return true;
   };
   const remove = (index: number) => {
     const next = points && removed(points, index, line);
@@ -124,8 +125,11 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
         role="group"
         aria-label={`${line.title} over time`}
         onDoubleClick={(event) => {
-          const { time, factor } = place(event, event.currentTarget, event.shiftKey);
-          add(time, factor);
+          // Where the round time has a point already, one beside it was meant.
+          const places = [event.shiftKey, true].map((fine) =>
+            place(event, event.currentTarget, fine),
+          );
+          places.some(({ time, factor }) => add(time, factor));
         }}
         onPointerMove={onPointerMove}
         onPointerUp={onPointerUp}
