@@ -239,6 +239,12 @@ export interface DesignsCommand {
   seq: number;
 }
 
+/** Ask for the materials that a part can have. */
+export interface MaterialsCommand {
+  t: "materials";
+  seq: number;
+}
+
 /** Take back the last change of the document. */
 export interface UndoCommand {
   t: "undo";
@@ -291,6 +297,18 @@ export interface ResetCommand {
 /** Solve for the state at rest with the chosen solver. */
 export interface RestCommand {
   t: "rest";
+  seq: number;
+}
+
+/** Look for the error bars of the equilibrium that is shown on voxels half as large. */
+export interface EstimateCommand {
+  t: "estimate";
+  seq: number;
+}
+
+/** Ask what voxels half as large would cost the equilibrium that is shown. */
+export interface FinenessCommand {
+  t: "fineness";
   seq: number;
 }
 
@@ -717,10 +735,36 @@ export interface Diagnostic {
   hint: string;
 }
 
+/** What follows a history, and what a factor of 1 is of it, such as "30 kPa". */
+export interface HistoryUse {
+  title: string;
+  amount: string;
+}
+
+/**
+ * A history over time, or a place that has none.
+ *
+ * `path` is where it is written. Points can be moved; `words` is the text of the other ways.
+ * `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+ */
+export interface HistoryLine {
+  path: (string | number)[];
+  title: string;
+  used_by: HistoryUse[];
+  way: "expression" | "none" | "points" | "sine" | "table";
+  words: string;
+  times: number[];
+  factors: number[];
+  repeat: number;
+  low: number | null;
+  high: number | null;
+}
+
 /**
  * The document as it stands; `design` is that of the last text that was good (or null).
  *
  * `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+ * `histories` are those of the last text that was good.
  */
 export interface DocumentEvent {
   t: "document";
@@ -737,6 +781,7 @@ export interface DocumentEvent {
   diagnostics: Diagnostic[];
   can_undo: boolean;
   can_redo: boolean;
+  histories: HistoryLine[];
 }
 
 /**
@@ -755,6 +800,49 @@ export interface DesignFilesEvent {
   t: "design_files";
   folder: string;
   files: DesignFile[];
+}
+
+/**
+ * What is known of a material, SI; null and "" where nobody stated it.
+ *
+ * `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
+ * and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
+ * nominal stress at 100 % strain. `stretches` and `stresses` are the curve of the model itself in
+ * uniaxial tension; empty where it has none. `table` is the material as a design writes it.
+ */
+export interface MaterialFacts {
+  name: string;
+  title: string;
+  origin: "card" | "design" | "file";
+  same_as: string;
+  choice: string;
+  model: string;
+  live: "explicit" | "implicit" | "none";
+  shore: string;
+  young: number | null;
+  density: number | null;
+  tested_from: number | null;
+  tested_to: number | null;
+  elongation_at_break: number | null;
+  stress_at_double: number | null;
+  source: string;
+  caution: string;
+  license: string;
+  stretches: number[];
+  stresses: (number | null)[];
+  table: Record<string, unknown>;
+}
+
+/**
+ * All materials that a part can have: those of the design at `rev`, then the cards.
+ *
+ * `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+ */
+export interface MaterialsEvent {
+  t: "materials";
+  rev: number;
+  materials: MaterialFacts[];
+  mixed: string;
 }
 
 /** An enclosed space: its name or an empty text, volume in m³, area in m². */
@@ -961,28 +1049,43 @@ export interface StatEvent {
   grabs: GrabState[];
 }
 
-/** A probe and how far it moved, m; `estimate` is that with its error bars in words. */
+/**
+ * A probe and how far it moved, m; `estimate` is that with its error bars in words.
+ *
+ * `share` is the error as a part of the displacement; null where it is not known.
+ */
 export interface MovedProbe {
   name: string;
   displacement: Triple;
   estimate: string;
+  share: number | null;
 }
 
-/** A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar. */
+/**
+ * A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar.
+ *
+ * `share` is the error as a part of the value; null where it is not known.
+ */
 export interface MetricValue {
   name: string;
   value: number | null;
   kind: string;
   estimate: string;
+  share: number | null;
 }
 
-/** A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar. */
+/**
+ * A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar.
+ *
+ * `share` is the error as a part of how far the volume grew; null where it is not known.
+ */
 export interface Chamber {
   name: string;
   rest_volume: number;
   volume: number;
   pressure: number;
   estimate: string;
+  share: number | null;
 }
 
 /** Something by its name, and its state in words. */
@@ -1014,7 +1117,8 @@ export interface Grip {
  *
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
  * `error_bars` says where error bars come from, or why there are none; told a second time once
- * they are known.
+ * they are known. `looking` while they are being looked for, and `askable` where none were found
+ * and smaller voxels could still give them.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -1033,6 +1137,40 @@ export interface EquilibriumEvent {
   supplies: Summarized[];
   grips: Grip[];
   error_bars: string;
+  looking: boolean;
+  askable: boolean;
+}
+
+/** A value of the document at a path, as an edit of it. */
+export interface TextChange {
+  path: (string | number)[];
+  value: unknown;
+}
+
+/**
+ * What voxels half as large would cost the equilibrium that is shown, and how to have them.
+ *
+ * Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
+ * `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
+ * `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
+ * how many there are.
+ */
+export interface FinenessEvent {
+  t: "fineness";
+  topology: number;
+  voxel_size: number;
+  voxels: number;
+  memory: number;
+  seconds: number | null;
+  half_voxels: number;
+  half_memory: number;
+  half_seconds: number | null;
+  free_memory: number;
+  halving: TextChange[];
+  not_halved: string;
+  refinable: string[];
+  not_refined: string;
+  refinements: number;
 }
 
 /**
@@ -1441,6 +1579,7 @@ export type AnyCommand =
   | RemoveCommand
   | AddBodyCommand
   | DesignsCommand
+  | MaterialsCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
@@ -1449,6 +1588,8 @@ export type AnyCommand =
   | StepCommand
   | ResetCommand
   | RestCommand
+  | EstimateCommand
+  | FinenessCommand
   | SolverCommand
   | LoadCommand
   | GrabCommand
@@ -1481,9 +1622,11 @@ export type AnyEvent =
   | StartEvent
   | DocumentEvent
   | DesignFilesEvent
+  | MaterialsEvent
   | BodyEvent
   | StatEvent
   | EquilibriumEvent
+  | FinenessEvent
   | VibrationEvent
   | ChambersEvent
   | OverlapEvent

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.comparison.error_bar import ErrorBar, ErrorBars
-from voxsoft.comparison.other_voxels import on_voxels
+from voxsoft.comparison.other_voxels import TIMES_AS_LONG, cost_on_voxels, on_voxels
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.design.discretize import voxels_of
@@ -52,8 +52,6 @@ UNKNOWN: Final = 0.01
 UNCHANGED: Final = 1e-6
 #: The part of a vector below which components are rounding.
 ROUNDING: Final = 1e-9
-#: How the time of a run grows as voxels get half as large (:mod:`voxsoft.simulation.cost`).
-TIMES_AS_LONG: Final = 12.0
 
 #: Called before each further run with the edge of its voxels in m, how many there are about, and
 #: about how many seconds it takes.
@@ -253,12 +251,11 @@ class _Search:
     def _solved(self, size: float, coarser: _Run | None) -> _Run | str:
         """The run on other voxels, from that on voxels twice as large, or what went wrong."""
         design = self.own.result.design
-        finer = (self.own.size / size) ** 3
+        factor = size / self.own.size
         if self._announce is not None:
-            seconds = self.own.result.seconds * TIMES_AS_LONG ** (math.log2(finer) / 3.0)
-            self._announce(size, round(finer * self.own.voxels), seconds)
+            self._announce(size, *cost_on_voxels(self.own.voxels, self.own.result.seconds, factor))
         try:
-            other = on_voxels(design, size / self.own.size)
+            other = on_voxels(design, factor)
             begin = None if coarser is None else coarser.result
             if self._solve is None:
                 result = simulate(other, progress=self._progress, coarser=begin)

@@ -75,6 +75,29 @@ def vector_in_words(components: Sequence[ErrorBar]) -> str:
     return f"({', '.join(bar.in_unit(factor) for bar in components)}) {unit}".rstrip()
 
 
+def share_of(components: Sequence[ErrorBar], beside: float = 0.0) -> float | None:
+    """Return the error as a part of the size of a number or vector; None where it has no size.
+
+    Parameters
+    ----------
+    components
+        One number, or the components of a vector.
+    beside
+        What of a single number is there without load, such as the volume of a chamber at rest: the
+        size is how far it is from that.
+
+    Examples
+    --------
+    >>> share_of([ErrorBar(1.0, 1.1, 0.1, "volume")], beside=0.9)
+    0.5
+    """
+    size = math.hypot(*(bar.estimate - beside for bar in components))
+    error = math.hypot(*(bar.error for bar in components))
+    if error == 0.0:
+        return 0.0
+    return None if size == 0.0 else round(error / size, 12)
+
+
 def _unit_of(bars: Sequence[ErrorBar]) -> tuple[str, float]:
     """A unit that suits the largest of some numbers, and its factor."""
     kind = bars[0].kind

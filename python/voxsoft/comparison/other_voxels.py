@@ -1,8 +1,40 @@
-"""A design on voxels of another size."""
+"""A design on voxels of another size, and what that costs."""
 
 from __future__ import annotations
 
+import math
+from typing import Final, NamedTuple
+
 from voxsoft.design import Design
+
+#: How the time of a run grows as voxels get half as large (:mod:`voxsoft.simulation.cost`).
+TIMES_AS_LONG: Final = 12.0
+
+
+class OtherCost(NamedTuple):
+    """What a run on voxels of another size is likely to take: how many, and seconds."""
+
+    voxels: int
+    seconds: float
+
+
+def cost_on_voxels(voxels: int, seconds: float, factor: float) -> OtherCost:
+    """Predict the cost of a run on other voxels from that of one that was made.
+
+    Parameters
+    ----------
+    voxels, seconds
+        Of the run that was made.
+    factor
+        How many times as large the other voxels are: 0.5 for half as large.
+
+    Examples
+    --------
+    >>> cost_on_voxels(1_000, 2.0, 0.5)
+    OtherCost(voxels=8000, seconds=24.0)
+    """
+    finer = factor**-3.0
+    return OtherCost(round(finer * voxels), seconds * TIMES_AS_LONG ** -math.log2(factor))
 
 
 def on_voxels(design: Design, factor: float) -> Design:

@@ -33,6 +33,7 @@ from voxsoft.materials.rigid import Rigid
 from voxsoft.materials.softening import cycled_stress
 from voxsoft.materials.stability import StableRange, stable_range, stable_ranges
 from voxsoft.materials.tested import StretchRange
+from voxsoft.materials.uniaxial import uniaxial_stress
 from voxsoft.materials.yeoh import Yeoh
 
 __all__ = [
@@ -66,5 +67,6 @@ __all__ = [
     "nominal_tangent",
     "stable_range",
     "stable_ranges",
+    "uniaxial_stress",
     "with_constants",
 ]

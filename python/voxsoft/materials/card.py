@@ -37,6 +37,9 @@ class Card(Record):
         What the numbers are not good for, and what the source is worth.
     license
         Under which terms the numbers may be passed on, where they are not VoxSoft's own.
+    shore
+        Shore hardness as the maker states it: ``"00-30"`` on the scale 00, ``"10A"`` on the scale
+        A. Empty where the card states none.
     elongation_at_break
         Strain at break (change of length over length), if it was measured.
     same_as, choice
@@ -64,6 +67,7 @@ class Card(Record):
     license: str = ""
     same_as: str = ""
     choice: str = ""
+    shore: str = Field("", pattern=r"^(00-\d{1,3}|\d{1,3}[AD])?$")
     elongation_at_break: Annotated[float, UnitOf("number", positive=True)] | None = None
     calibration: Table[str, Any] = Field(default_factory=FrozenDict)
 

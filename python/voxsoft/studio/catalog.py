@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, get_args
+from typing import Any, get_args
 
 from voxsoft._core import __version__
 from voxsoft.calibration import usual_ranges
@@ -17,11 +17,9 @@ from voxsoft.search.samplers import SAMPLERS, SINGLE_OBJECTIVE
 from voxsoft.studio import events
 from voxsoft.studio.commands import RestMethod
 from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS
+from voxsoft.studio.materials import young_of
 from voxsoft.studio.wire import PROTOCOL
 from voxsoft.units import UnitOf
-
-#: A length that moduli of lattice cards are told for [m]; they hardly depend on it.
-_USUAL_VOXEL: Final = 2e-3
 
 
 def hello(runs_folder: Path) -> events.Hello:
@@ -98,16 +96,13 @@ def _materials() -> tuple[events.MaterialCard, ...]:
     found = []
     for name in card_names():
         card = load_card(name)
-        material = card.material
-        young = getattr(material, "young", None)
-        value = young(_USUAL_VOXEL) if callable(young) else young
         found.append(
             events.MaterialCard(
                 name=name,
                 title=card.title,
                 source=card.source,
-                model=material.model,
-                young=float(value) if isinstance(value, (int, float)) else None,
+                model=card.material.model,
+                young=young_of(card.material),
             )
         )
     return tuple(found)

@@ -132,6 +132,10 @@ class Designs(Command):
     """Ask for the design files beside the document."""
 
 
+class Materials(Command):
+    """Ask for the materials that a part can have."""
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -170,6 +174,14 @@ class Reset(Command):
 
 class Rest(Command):
     """Solve for the state at rest with the chosen solver."""
+
+
+class Estimate(Command):
+    """Look for the error bars of the equilibrium that is shown on voxels half as large."""
+
+
+class Fineness(Command):
+    """Ask what voxels half as large would cost the equilibrium that is shown."""
 
 
 class Solver(Command):
@@ -430,6 +442,7 @@ AnyCommand = (
     | Remove
     | AddBody
     | Designs
+    | Materials
     | Undo
     | Redo
     | Save
@@ -438,6 +451,8 @@ AnyCommand = (
     | Step
     | Reset
     | Rest
+    | Estimate
+    | Fineness
     | Solver
     | Load
     | Grab

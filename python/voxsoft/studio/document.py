@@ -17,6 +17,7 @@ from voxsoft.files.designs import LARGEST_FILE, read_document, read_text
 from voxsoft.files.toml_edits import with_value
 from voxsoft.studio import events
 from voxsoft.studio.positions import diagnostics_of
+from voxsoft.studio.timeline import timeline_of
 from voxsoft.studio.uploads import safe_name
 from voxsoft.units import KINDS, format_quantity, parse
 
@@ -72,6 +73,7 @@ class DesignDocument:
     before: DesignDocument | None = field(default=None, repr=False)
     after: DesignDocument | None = field(default=None, repr=False)
     _former: dict[str, float] | None = None
+    _histories: list[events.HistoryLine] = field(default_factory=list)
     _undo: list[str] = field(default_factory=list)
     _redo: list[str] = field(default_factory=list)
     _last_place: object = None
@@ -235,6 +237,7 @@ class DesignDocument:
             diagnostics=self.diagnostics,
             can_undo=bool(self._undo) or self.before is not None,
             can_redo=bool(self._redo) or self.after is not None,
+            histories=self._histories,
         )
 
     def _swap(self, taken: list[str], given: list[str]) -> bool:
@@ -257,6 +260,7 @@ class DesignDocument:
             document = read_document(self.text, self.name)
             self.source = document
             self.design = Design.from_document(placed_document(document, self.folder))
+            self._histories = timeline_of(self.design, document)
             if self._former is None:
                 self._former = self._values()
         except VoxSoftError as error:

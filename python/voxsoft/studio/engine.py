@@ -17,7 +17,13 @@ from voxsoft.studio.stage import Stage
 from voxsoft.studio.tab import Tab
 
 #: Commands beside which a natural vibration goes on.
-_BESIDE = (commands.View, commands.Pick, commands.Probe, commands.Vibrate)
+_BESIDE = (
+    commands.View,
+    commands.Pick,
+    commands.Probe,
+    commands.Vibrate,
+    commands.Estimate,
+)
 
 
 class Engine(threading.Thread):

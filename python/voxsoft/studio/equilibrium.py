@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
+from dataclasses import replace
+from typing import Literal
 
 from voxsoft.comparison.bars import error_bars
-from voxsoft.comparison.error_bar import ErrorBars, vector_in_words
+from voxsoft.comparison.error_bar import ErrorBars, share_of, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
@@ -28,6 +30,8 @@ class Measurement(threading.Thread):
         Which body it is of, and the frame that shows it.
     is_shown
         Whether that frame still is: error bars of what is gone are not looked for.
+    finer
+        Whether error bars are looked for on voxels half as large, whatever the design asks for.
     """
 
     def __init__(
@@ -37,16 +41,21 @@ class Measurement(threading.Thread):
         topology: int,
         frame: int,
         is_shown: Callable[[], bool],
+        *,
+        finer: bool = False,
     ) -> None:
         super().__init__(name="studio-equilibrium", daemon=True)
         self._result, self._report = result, report
         self._topology, self._frame = topology, frame
         self._is_shown = is_shown
+        self._finer = finer
 
     def run(self) -> None:
         """Measure, and then look for the error bars."""
         try:
             result = self._result()
+            if self._finer:
+                result = with_error(result, "finer")
             found = equilibrium_of(result, self._topology, self._frame)
             self._report(found)
             if result.design.solver.error != "off":
@@ -60,6 +69,12 @@ class Measurement(threading.Thread):
             raise _Gone
 
 
+def with_error(result: Result, error: Literal["finer"]) -> Result:
+    """The same result of a design that asks for its error on such voxels."""
+    solver = result.design.solver.replace(error=error)
+    return replace(result, design=result.design.replace(solver=solver))
+
+
 class _Gone(Exception):
     """The state that was measured is not shown any more."""
 
@@ -68,11 +83,15 @@ def equilibrium_of(
     result: Result, topology: int, frame: int, bars: ErrorBars | None = None
 ) -> events.Equilibrium:
     """Say all numbers of a result, with their error bars once they are known."""
+    off = result.design.solver.error == "off"
+    looking = bars is None and not off
     if bars is not None:
         source = f"{bars.sentence[:1].upper()}{bars.sentence[1:]}."
     else:
-        off = result.design.solver.error == "off"
         source = "" if off else "Error bars: being looked for on other voxels."
+    # What the design already asks for would only be looked for again.
+    tried = result.design.solver.error == "finer"
+    can_solve = result.status == "ok" and result.mesh.voxel_size is not None
     bars = bars or ErrorBars.none("", "")
     summary = result.summary()
     cavities = zip(summary["cavities"], range(len(summary["cavities"])), strict=True)
@@ -88,6 +107,7 @@ def equilibrium_of(
                 name=name,
                 displacement=(float(x), float(y), float(z)),
                 estimate=vector_in_words(bars.probes[name]) if name in bars.probes else "",
+                share=share_of(bars.probes[name]) if name in bars.probes else None,
             )
             for name, (x, y, z) in result.probes.items()
         ],
@@ -99,12 +119,17 @@ def equilibrium_of(
                 volume=float(cavity["volume"]),
                 pressure=float(cavity["pressure"]),
                 estimate=str(bars.volumes[index]) if bars.volumes else "",
+                share=share_of([bars.volumes[index]], float(cavity["rest_volume"]))
+                if bars.volumes
+                else None,
             )
             for cavity, index in cavities
         ],
         largest_strain=result.metric("max_stretch") - 1.0,
         warnings=[finding_of(warning) for warning in result.warnings],
         error_bars=source,
+        looking=looking,
+        askable=not looking and not bars.voxel_sizes and not tried and can_solve,
         tendons=[
             events.Summarized(name=name, words=tendon.words)
             for name, tendon in result.tendons.items()
@@ -139,6 +164,7 @@ def _metrics(result: Result, bars: ErrorBars) -> list[events.MetricValue]:
             value=float(result.metrics[name]),
             kind=kind,
             estimate=str(bars.metrics[name]) if name in bars.metrics else "",
+            share=share_of([bars.metrics[name]]) if name in bars.metrics else None,
         )
         for name, kind in kinds.items()
     ]

@@ -12,6 +12,12 @@ from msgspec import field
 from voxsoft.studio.message import Entry, Json, Message, Triple
 
 Severity = Literal["error", "warning", "note"]
+#: Where a material is written: a card of VoxSoft, the design, or a card's file.
+Origin = Literal["card", "design", "file"]
+#: How a body of one material moves live: in quick explicit substeps, in implicit steps, not at all.
+LiveMotion = Literal["explicit", "implicit", "none"]
+#: How a history is written: points, a sine, an expression of time, a table in a file, not at all.
+HistoryWay = Literal["points", "sine", "expression", "table", "none"]
 JobKind = Literal["run", "study", "calibrate"]
 JobState = Literal[
     "running", "pausing", "paused", "stopping", "stopped", "done", "failed", "interrupted"
@@ -41,6 +47,37 @@ class MaterialCard(Entry):
     source: str
     model: str
     young: float | None = None
+
+
+class MaterialFacts(Entry):
+    """What is known of a material, SI; null and "" where nobody stated it.
+
+    `same_as` and `choice` are of a plain name: the card that it stands for, and why. `tested_from`
+    and `tested_to` are the stretches between which specimens were tested. `stress_at_double` is the
+    nominal stress at 100 % strain. `stretches` and `stresses` are the curve of the model itself in
+    uniaxial tension; empty where it has none. `table` is the material as a design writes it.
+    """
+
+    name: str
+    title: str
+    origin: Origin
+    same_as: str
+    choice: str
+    model: str
+    live: LiveMotion
+    shore: str
+    young: float | None
+    density: float | None
+    tested_from: float | None
+    tested_to: float | None
+    elongation_at_break: float | None
+    stress_at_double: float | None
+    source: str
+    caution: str
+    license: str
+    stretches: list[float]
+    stresses: list[float | None]
+    table: dict[str, Json]
 
 
 class Sampler(Entry):
@@ -179,10 +216,37 @@ class Diagnostic(Entry):
     hint: str = ""
 
 
+class HistoryUse(Entry):
+    """What follows a history, and what a factor of 1 is of it, such as "30 kPa"."""
+
+    title: str
+    amount: str
+
+
+class HistoryLine(Entry):
+    """A history over time, or a place that has none.
+
+    `path` is where it is written. Points can be moved; `words` is the text of the other ways.
+    `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+    """
+
+    path: list[str | int]
+    title: str
+    used_by: list[HistoryUse]
+    way: HistoryWay
+    words: str = ""
+    times: list[float] = field(default_factory=list)
+    factors: list[float] = field(default_factory=list)
+    repeat: int = 1
+    low: float | None = None
+    high: float | None = None
+
+
 class Document(Event):
     """The document as it stands; `design` is that of the last text that was good (or null).
 
     `dirty`: it differs from what was opened or saved last. `folder` is where it would be saved.
+    `histories` are those of the last text that was good.
     """
 
     rev: int
@@ -198,6 +262,7 @@ class Document(Event):
     diagnostics: list[Diagnostic]
     can_undo: bool
     can_redo: bool
+    histories: list[HistoryLine] = field(default_factory=list)
 
 
 class DesignFile(Entry):
@@ -216,6 +281,17 @@ class DesignFiles(Event):
 
     folder: str
     files: list[DesignFile]
+
+
+class Materials(Event):
+    """All materials that a part can have: those of the design at `rev`, then the cards.
+
+    `mixed` says what is special where parts are of spring lattices and of rubber; "" elsewhere.
+    """
+
+    rev: int
+    materials: list[MaterialFacts]
+    mixed: str
 
 
 class Cavity(Entry):
@@ -431,30 +507,42 @@ class Stat(Event):
 
 
 class MovedProbe(Entry):
-    """A probe and how far it moved, m; `estimate` is that with its error bars in words."""
+    """A probe and how far it moved, m; `estimate` is that with its error bars in words.
+
+    `share` is the error as a part of the displacement; null where it is not known.
+    """
 
     name: str
     displacement: Triple
     estimate: str = ""
+    share: float | None = None
 
 
 class MetricValue(Entry):
-    """A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar."""
+    """A metric of the body as it stands, SI; `kind` tells its unit, `estimate` its error bar.
+
+    `share` is the error as a part of the value; null where it is not known.
+    """
 
     name: str
     value: float | None
     kind: str
     estimate: str = ""
+    share: float | None = None
 
 
 class Chamber(Entry):
-    """A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar."""
+    """A chamber: volumes unloaded and now in m³, pressure in Pa, the volume with its error bar.
+
+    `share` is the error as a part of how far the volume grew; null where it is not known.
+    """
 
     name: str
     rest_volume: float
     volume: float
     pressure: float
     estimate: str = ""
+    share: float | None = None
 
 
 class Summarized(Entry):
@@ -487,7 +575,8 @@ class Equilibrium(Event):
 
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
     `error_bars` says where error bars come from, or why there are none; told a second time once
-    they are known.
+    they are known. `looking` while they are being looked for, and `askable` where none were found
+    and smaller voxels could still give them.
     """
 
     topology: int
@@ -505,6 +594,40 @@ class Equilibrium(Event):
     supplies: list[Summarized]
     grips: list[Grip]
     error_bars: str = ""
+    looking: bool = False
+    askable: bool = False
+
+
+class TextChange(Entry):
+    """A value of the document at a path, as an edit of it."""
+
+    path: list[str | int]
+    value: Json
+
+
+class Fineness(Event):
+    """What voxels half as large would cost the equilibrium that is shown, and how to have them.
+
+    Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
+    `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
+    `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
+    how many there are.
+    """
+
+    topology: int
+    voxel_size: float
+    voxels: int
+    memory: float
+    seconds: float | None
+    half_voxels: int
+    half_memory: float
+    half_seconds: float | None
+    free_memory: float
+    halving: list[TextChange]
+    not_halved: str
+    refinable: list[str]
+    not_refined: str
+    refinements: int
 
 
 class Vibration(Event):
@@ -914,9 +1037,11 @@ AnyEvent = (
     | Start
     | Document
     | DesignFiles
+    | Materials
     | Body
     | Stat
     | Equilibrium
+    | Fineness
     | Vibration
     | Chambers
     | Overlap

@@ -62,6 +62,11 @@ def _on_rest(command: commands.Rest, stage: Stage, tab: Tab) -> None:
     stage.find_rest()
 
 
+@execute.register
+def _on_estimate(command: commands.Estimate, stage: Stage, tab: Tab) -> None:
+    stage.estimate()
+
+
 @execute.register(commands.Load)
 @execute.register(commands.Grab)
 def _on_touch(command: commands.Load | commands.Grab, stage: Stage, tab: Tab) -> None:

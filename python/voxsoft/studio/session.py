@@ -35,8 +35,10 @@ from voxsoft.studio.drafts import Draft, Drafts
 from voxsoft.studio.engine import Engine
 from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.exports import Shown, export_run, export_shown
+from voxsoft.studio.fineness import fineness_of
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
+from voxsoft.studio.materials import materials_of
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.opening import (
     document_at,
@@ -250,6 +252,10 @@ class Session:
     def _on_designs(self, command: commands.Designs, tab: Tab) -> None:
         self.tabs.send_to(tab, design_files(self.document))
 
+    @_execute.register
+    def _on_materials(self, command: commands.Materials, tab: Tab) -> None:
+        self.tabs.send_to(tab, materials_of(self.document))
+
     def _of_several(self, name: str) -> tuple[DesignDocument, str]:
         """A document in which bodies have names, and what there is called by a name."""
         _, design = self._good(self.document)
@@ -403,6 +409,10 @@ class Session:
         with suppress(VoxSoftError, OSError):
             save_thumbnail(shown.measured(), folder)
             self._runs_changed()
+
+    @_execute.register
+    def _on_fineness(self, command: commands.Fineness, tab: Tab) -> None:
+        self.tabs.send_to(tab, fineness_of(self._shown(), self.document))
 
     @_execute.register
     def _on_job_start(self, command: commands.JobStart, tab: Tab) -> None:

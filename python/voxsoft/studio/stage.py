@@ -203,7 +203,19 @@ class Stage:
         self.halt("Canceled: the body is where it was")
         return True
 
-    def measure(self) -> None:
+    def estimate(self) -> None:
+        """Look for the error bars of the equilibrium that is shown on voxels half as large.
+
+        Raises
+        ------
+        SimulationError
+            There is no equilibrium.
+        """
+        if self.playback.state != "at-rest":
+            raise SimulationError("error bars", "are those of an equilibrium", "press Solve first")
+        self.measure(finer=True)
+
+    def measure(self, *, finer: bool = False) -> None:
         """Tell the numbers of the equilibrium that is shown, once they are known."""
         playback = self.playback
         body, shown = playback.require_body(), playback.shown_as("", "")
@@ -217,7 +229,7 @@ class Stage:
             now = playback.body
             return now is not None and (now.topology, playback.frame) == (topology, frame)
 
-        Measurement(shown.measured, report, topology, frame, is_shown).start()
+        Measurement(shown.measured, report, topology, frame, is_shown, finer=finer).start()
 
     def _measured(self, equilibrium: events.Equilibrium) -> None:
         body = self.playback.body

@@ -88,6 +88,7 @@ export function Plot(props: PlotProps) {
         {props.series.map((series) => (
           <span key={series.label}>
             <i
+              className={series.dashed ? "is-dashed" : undefined}
               style={{
                 borderColor: `var(${series.color})`,
                 borderStyle: series.dashed ? "dashed" : "solid",

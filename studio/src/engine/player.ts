@@ -91,6 +91,7 @@ export class Player {
       diagnostics: [],
       can_undo: false,
       can_redo: false,
+      histories: [],
     });
     this.audience.event({ ...notes.body, smooth: false });
     this.audience.binary(this.run.topology());

@@ -25,6 +25,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("design", "Design", () => import("./design/DesignPane")),
   pane("text", "Text", () => import("./design/text/TextPane")),
   pane("path", "Path", () => import("./path/PathPane")),
+  pane("timeline", "Timeline", () => import("./timeline/TimelinePane")),
   pane("calibrate", "Calibrate", () => import("./calibrate/CalibratePane")),
   pane("overlay", "Measured and simulated", () => import("./calibrate/OverlayPane")),
   pane("generations", "Generations", () => import("./calibrate/GenerationsPane")),
@@ -38,6 +39,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("runs", "Runs", () => import("./runs/RunsPane")),
   pane("compare", "Compare", () => import("./runs/ComparePane")),
   pane("export", "Export", () => import("./export/ExportPane")),
+  pane("materials", "Materials", () => import("./materials/MaterialsPane")),
   pane("body", "Body", () => import("./body/BodyPane")),
   pane("log", "Log", () => import("./log/LogPane")),
 ];

@@ -4,6 +4,7 @@ import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { Findings } from "../panes/body/Findings";
 import type { EquilibriumEvent } from "../protocol";
 import { useStudio } from "../store/studio";
+import { FinenessCheck } from "./FinenessCheck";
 
 /** The numbers of the state that is shown, or null where it is no equilibrium, or not yet told. */
 export function useEquilibrium(): EquilibriumEvent | null {
@@ -27,11 +28,10 @@ export function EquilibriumCard() {
       moved(probe),
       probe.estimate,
     ]),
-    ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => [
-      name.replaceAll("_", " "),
-      formatKind(value === null ? null : cleaned(value, siUnit(kind)), kind),
-      estimate,
-    ]),
+    ...found.metrics.map(({ name, value, kind, estimate }): [string, string, string] => {
+      const shown = value === null ? null : cleaned(value, siUnit(kind));
+      return [name.replaceAll("_", " "), formatKind(shown, kind), shown === 0 ? "" : estimate];
+    }),
     ...found.tendons.map(({ name, words }): [string, string, string] => [
       `Tendon ${name}`,
       words,
@@ -77,6 +77,7 @@ export function EquilibriumCard() {
             {found.error_bars}
           </p>
         )}
+        <FinenessCheck of={found} />
       </div>
     </Section>
   );

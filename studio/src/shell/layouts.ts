@@ -20,11 +20,11 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
     left: [["design"], ["text"]],
     main: ["view"],
     bottom: [],
-    right: [["body", "export", "log"]],
+    right: [["body", "materials", "export", "log"]],
     leftShare: 0.25,
   },
   simulate: {
-    left: [["run", "path", "design"]],
+    left: [["run", "path", "timeline", "design"]],
     main: ["view"],
     bottom: [
       ["probes", "chambers"],

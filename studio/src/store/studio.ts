@@ -10,10 +10,12 @@ import type {
   DesignFilesEvent,
   DocumentEvent,
   EquilibriumEvent,
+  FinenessEvent,
   GenerationEvent,
   HelloEvent,
   JobEvent,
   LogEvent,
+  MaterialsEvent,
   MeasuredEvent,
   Moment,
   OverlapEvent,
@@ -61,6 +63,8 @@ export interface Studio {
   document: DocumentEvent | null;
   /** Design files beside it. */
   designs: DesignFilesEvent | null;
+  /** What is known of all materials, once a pane asked for it. */
+  materials: MaterialsEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
   /** The last pace that was asked for and is not confirmed yet. */
@@ -68,6 +72,8 @@ export interface Studio {
   /** Where the body is in itself as it is shown. */
   overlap: OverlapEvent | null;
   equilibrium: EquilibriumEvent | null;
+  /** What finer voxels would cost, once it was asked. */
+  fineness: FinenessEvent | null;
   vibration: VibrationEvent | null;
   /** What supplies did in the motion that is shown. */
   chambers: ChambersEvent | null;
@@ -107,11 +113,13 @@ export const useStudio = create<Studio>(() => ({
   start: null,
   document: null,
   designs: null,
+  materials: null,
   body: null,
   stat: null,
   askedPace: undefined,
   overlap: null,
   equilibrium: null,
+  fineness: null,
   vibration: null,
   chambers: null,
   moments: new Map(),
@@ -183,6 +191,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "design_files":
       set({ designs: event });
       break;
+    case "materials":
+      set({ materials: event });
+      break;
     case "body":
       set(({ body, moments, askedPace, picked }) => ({
         body: event,
@@ -201,6 +212,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "equilibrium":
       set({ equilibrium: event });
+      break;
+    case "fineness":
+      set({ fineness: event });
       break;
     case "vibration":
       set({ vibration: event });

@@ -105,6 +105,45 @@ def test_every_mode_and_sheet_is_accessible(axe, served, open_tab, scheme):
     assert tab.errors == []
 
 
+HISTORY = """
+[[loads]]
+kind = "force"
+region = { x = ["= length", "= length"] }
+value = [0, 0, "10 mN"]
+history = { time = ["0 s", "1 s"], factor = [0, 1] }
+"""
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_materials_timeline_and_fineness_are_accessible(
+    axe, serving, tmp_path, open_tab, coarse, scheme
+):
+    text = coarse.replace("ecoflex-00-30-lattice", "ecoflex-00-30") + HISTORY
+    server = serving(tmp_path, text=text)
+    try:
+        tab = open_tab(server.address, scheme=scheme, mode="design")
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        audit = Audit(tab)
+        tab.page.get_by_role("tab", name="Materials").click()
+        item = tab.find("material-ecoflex-00-30")
+        item.get_by_role("button", expanded=False).click()
+        item.get_by_text("Copy into the design").wait_for()
+        audit.look("materials")
+        tab.find("mode-simulate").click()
+        tab.page.get_by_role("tab", name="Timeline").click()
+        tab.find("timeline-pane").get_by_role("slider").first.focus()
+        audit.look("timeline")
+        tab.page.get_by_role("tab", name="Run", exact=True).click()
+        tab.page.keyboard.press("r")
+        tab.find("fineness-open").click()
+        tab.find("halve").wait_for()
+        audit.look("fineness")
+        assert audit.found == {}, audit.report()
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
 def test_delete_closes_the_pane_whose_tab_has_the_focus(served, open_tab):
     tab = open_tab(served.address, mode="design")
     pane, view = tab.page.get_by_role("tab", name="Text"), tab.page.get_by_role("tab", name="View")

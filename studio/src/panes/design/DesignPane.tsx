@@ -1,6 +1,7 @@
 // The form of the design: one document with the text beside it.
 import { Button, Empty, Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
+import { browseMaterials } from "../materials/browse";
 import { Bodies } from "./Bodies";
 import { Adder, EntryList, EntryMap } from "./Entries";
 import { edit } from "./edits";
@@ -44,6 +45,15 @@ export default function DesignPane() {
             title="Materials"
             what="a material"
             first={materialName}
+            action={
+              <Button
+                kind="quiet"
+                title="All materials with their curves, to choose from"
+                onClick={() => browseMaterials()}
+              >
+                Browse…
+              </Button>
+            }
             empty="None of its own: parts name cards such as ecoflex-00-30."
           />
           <EntryList

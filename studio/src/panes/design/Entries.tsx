@@ -1,5 +1,5 @@
 // Sections of a design that hold several things: parts, loads, clamps, probes, materials, layers.
-import { type ReactNode, useEffect, useRef, useState } from "react";
+import { type DragEvent, type ReactNode, useEffect, useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
@@ -7,6 +7,8 @@ import { send } from "../../store/session";
 import { useStudio } from "../../store/studio";
 import { textNow } from "../../store/typing";
 import { setView, useView } from "../../store/view";
+import { takeDropped } from "../materials/give";
+import { DRAGGED } from "../materials/use";
 import { edit, problemsAt, replaceText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
@@ -26,6 +28,8 @@ interface EntryProps {
   depth?: number;
   /** Whether it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
+  /** What can be dropped on it: the kind of data, and what takes it. */
+  drop?: { readonly kind: string; take(data: string): void };
   actions: readonly {
     readonly glyph: "up" | "down" | "trash" | "more";
     label: string;
@@ -38,10 +42,13 @@ interface EntryProps {
 export function Entry(props: EntryProps) {
   const own = useState(false);
   const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
+  const [over, setOver] = useState(false);
+  const { drop } = props;
   return (
     <div
-      className={`entry${open ? " is-open" : ""}`}
+      className={`entry${open ? " is-open" : ""}${over ? " takes-drop" : ""}`}
       data-testid={props.testId}
+      {...(drop && dropping(drop, setOver))}
       style={{ marginLeft: (props.depth ?? 0) * 14 }}
     >
       <div className="entry-head">
@@ -74,6 +81,23 @@ export function Entry(props: EntryProps) {
       {open && <div className="entry-body">{props.children}</div>}
     </div>
   );
+}
+
+/** Handlers of an entry on which something can be dropped. */
+function dropping(drop: NonNullable<EntryProps["drop"]>, setOver: (over: boolean) => void) {
+  return {
+    onDragOver: (event: DragEvent) => {
+      if (!event.dataTransfer.types.includes(drop.kind)) return;
+      event.preventDefault();
+      setOver(true);
+    },
+    onDragLeave: () => setOver(false),
+    onDrop: (event: DragEvent) => {
+      setOver(false);
+      const data = event.dataTransfer.getData(drop.kind);
+      if (data) drop.take(data);
+    },
+  };
 }
 
 /** A choice of variants that adds one; a plain button where there is one kind only. */
@@ -189,6 +213,7 @@ export function EntryList(props: {
             about={aboutEntry(section, value)}
             wrong={problemsAt(diagnostics, [section, i]).length > 0}
             testId={`${section}-${i}`}
+            {...(section === "parts" ? { drop: takesMaterial(i) } : {})}
             actions={[
               ...(i > 0
                 ? [
@@ -208,6 +233,11 @@ export function EntryList(props: {
       })}
     </Section>
   );
+}
+
+/** A part takes a material that is dragged on it from the list of them. */
+function takesMaterial(part: number) {
+  return { kind: DRAGGED, take: (name: string) => takeDropped(name, part) };
 }
 
 /** A body or an object in the list of them: the one whose fields are open is marked in the picture. */
@@ -261,6 +291,8 @@ export function EntryMap(props: {
   empty: string;
   /** What the first one is called, where it is new; it may depend on what is added. */
   first: string | ((value: Table) => string);
+  /** Stands before the button that adds one. */
+  action?: ReactNode;
   children?: (name: string, value: Table) => ReactNode;
 }) {
   const { root, source, diagnostics } = useForm();
@@ -272,15 +304,18 @@ export function EntryMap(props: {
     <Section
       title={props.title}
       action={
-        <Adder
-          what={props.what}
-          schema={map}
-          onAdd={(value) => {
-            const requested =
-              typeof props.first === "string" ? props.first : props.first(value as Table);
-            edit([section, freeName(requested, Object.keys(values))], value);
-          }}
-        />
+        <span className="row">
+          {props.action}
+          <Adder
+            what={props.what}
+            schema={map}
+            onAdd={(value) => {
+              const requested =
+                typeof props.first === "string" ? props.first : props.first(value as Table);
+              edit([section, freeName(requested, Object.keys(values))], value);
+            }}
+          />
+        </span>
       }
     >
       {Object.keys(values).length === 0 && <p className="muted">{props.empty}</p>}

@@ -14,6 +14,7 @@ const PATHS = {
   sweep: "M2 12.500h12M3 12.500V9M6.300 12.500v-6M9.700 12.500V4M13 12.500V8",
   lock: "M4 7.500h8v5.500H4zM5.500 7.500V5.500a2.500 2.500 0 0 1 5 0v2",
   stop: "M4 4h8v8H4z",
+  curve: "M3 2.500v10.500h10.500M4.500 11.500c4 0 6-2 8-7.500",
 } as const;
 
 export type GlyphName = keyof typeof PATHS;

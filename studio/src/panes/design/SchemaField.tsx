@@ -5,6 +5,7 @@ import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
 import { toast } from "../../store/studio";
+import { browseMaterials } from "../materials/browse";
 import { CavityField } from "./CavityField";
 import { edit, editAll, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
@@ -113,19 +114,33 @@ function ControlField(props: SchemaFieldProps & { control: Control }) {
       const known = names[control.to];
       const options = known.map((name) => ({ value: name, label: materialTitles[name] ?? name }));
       const current = String(value ?? "");
+      const part = control.to === "materials" && path[0] === "parts" ? Number(path[1]) : null;
       return (
         <Removable onRemove={props.onRemove} label={label}>
-          <Select
-            label={label}
-            title={props.help}
-            value={current}
-            options={
-              known.includes(current)
-                ? options
-                : [{ value: current, label: current || "choose…" }, ...options]
-            }
-            onChange={(next) => edit(path, next)}
-          />
+          <div className={part === null ? "" : "either"}>
+            <Select
+              label={label}
+              title={props.help}
+              value={current}
+              options={
+                known.includes(current)
+                  ? options
+                  : [{ value: current, label: current || "choose…" }, ...options]
+              }
+              onChange={(next) => edit(path, next)}
+            />
+            {part !== null && (
+              <Button
+                icon
+                kind="quiet"
+                label={`Browse materials for part ${part + 1}`}
+                title="Browse materials, with their curves"
+                onClick={() => browseMaterials(part)}
+              >
+                <Glyph name="curve" />
+              </Button>
+            )}
+          </div>
           {problem && <span className="field-note">{problem}</span>}
         </Removable>
       );

@@ -1,0 +1,122 @@
+"""The histories of a design as the page draws them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from voxsoft.design import families
+from voxsoft.files.toml_edits import with_value
+from voxsoft.studio import events
+from voxsoft.studio.document import DesignDocument
+
+TEXT = (
+    families.family_text("pneunet")
+    + """
+[histories]
+breath = { sine = { period = "2 s" }, repeat = 3 }
+ramp = { time = ["0 s", "200 ms"], factor = [0, 1] }
+charge = { expression = "1 - exp(-t / 0.3)", duration = "2 s" }
+gait = { table = "gait.csv", column = "left" }
+
+[[loads]]
+kind = "gravity"
+history = "ramp"
+
+[[loads]]
+kind = "gravity"
+history = { time = ["0 s", "1 s"], factor = [0, 2] }
+
+[[tendons]]
+name = "flexor"
+through = [[0, 0, "5 mm"], ["20 mm", 0, "5 mm"]]
+tension = "6 N"
+history = "ramp"
+
+[[activations]]
+kind = "strain"
+part = "layer"
+value = "2 %"
+
+[[clamps]]
+region = { x = [0, 0] }
+motion = { displacement = [0, 0, "1 mm"], history = "breath" }
+"""
+)
+
+
+@pytest.fixture
+def document(tmp_path: Path) -> DesignDocument:
+    (tmp_path / "gait.csv").write_text("time_s,left\n0,0\n1,1\n2,0\n")
+    return DesignDocument(TEXT, "robot.toml", folder=tmp_path)
+
+
+def lines(document: DesignDocument) -> dict[str, events.HistoryLine]:
+    assert document.design is not None, document.diagnostics
+    return {line.title: line for line in document.event().histories}
+
+
+def test_named_histories_say_what_follows_them(document: DesignDocument) -> None:
+    found = lines(document)
+    ramp = found["ramp"]
+    assert ramp.path == ["histories", "ramp"]
+    assert [(use.title, use.amount) for use in ramp.used_by] == [
+        ("Gravity", "9.81 m/s^2"),
+        ("Tendon flexor", "6 N"),
+    ]
+    assert [use.title for use in found["breath"].used_by] == ["Motion of clamp 2"]
+    assert found["gait"].used_by == []
+
+
+def test_each_way_has_its_line_and_its_words(document: DesignDocument) -> None:
+    found = lines(document)
+    ways = {title: (line.way, line.words) for title, line in found.items() if line.times}
+    assert ways == {
+        "breath": ("sine", "sine of 0 to 1, period 2 s"),
+        "ramp": ("points", ""),
+        "charge": ("expression", "1 - exp(-t / 0.3), for 2 s"),
+        "gait": ("table", "table gait.csv, column left"),
+        "Gravity": ("points", ""),
+    }
+    breath = found["breath"]
+    assert (breath.repeat, breath.times[-1], len(breath.times)) == (3, 2.0, 65)
+    assert found["gait"].factors == [0.0, 1.0, 0.0]
+    assert found["ramp"].times == [0.0, 0.2]
+
+
+def test_places_without_a_history_come_last(document: DesignDocument) -> None:
+    none = [line for line in document.event().histories if line.way == "none"]
+    assert document.event().histories[-len(none) :] == none
+    assert ["activations", 0, "history"] in [line.path for line in none]
+    assert [each.title for each in none if each.path[0] == "activations"] == ["Strain of layer"]
+
+
+def test_a_tendon_is_never_pushed(document: DesignDocument) -> None:
+    ramp = lines(document)["ramp"]
+    assert (ramp.low, ramp.high) == (0.0, None)
+
+
+def test_points_are_written_where_the_path_leads(document: DesignDocument) -> None:
+    path = lines(document)["Gravity"].path
+    text = with_value(document.text, [*path, "time"], ["0 s", "0.5 s", "1 s"])
+    text = with_value(text, [*path, "factor"], [0, 1, 2])
+    document.replace(text)
+    assert lines(document)["Gravity"].factors == [0.0, 1.0, 2.0]
+
+
+def test_a_long_curve_is_thinned_with_its_ends(document: DesignDocument) -> None:
+    text = with_value(
+        document.text, ["histories", "breath"], {"sine": {"period": "1 s", "cycles": 900}}
+    )
+    document.replace(text)
+    breath = lines(document)["breath"]
+    assert len(breath.times) == 2000
+    assert (breath.times[0], breath.times[-1]) == (0.0, 900.0)
+
+
+def test_a_text_with_errors_keeps_the_last_good_lines(document: DesignDocument) -> None:
+    before = lines(document)
+    document.replace(document.text.replace('"200 ms"', '"-1 s"'))
+    assert not document.valid
+    assert {line.title: line for line in document.event().histories} == before
