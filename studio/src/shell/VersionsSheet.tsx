@@ -67,7 +67,9 @@ function Row(props: { row: VersionRow; chosen: boolean; onChoose(): void }) {
       <BodyPicture url={row.picture} />
       <span>
         <strong title={new Date(row.when).toLocaleString()}>{whenWords(row.when)}</strong>
-        <span className="muted">{row.reason}</span>
+        <span className="muted">
+          {row.reason}, {new Date(row.when).toLocaleTimeString()}
+        </span>
       </span>
     </button>
   );

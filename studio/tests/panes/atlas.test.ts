@@ -81,7 +81,7 @@ describe("requirements", () => {
 });
 
 describe("map", () => {
-  const box = { left: 100, right: 500, top: 50, bottom: 350 };
+  const box = { left: 100, right: 500, top: 50, bottom: 350, rail: 80 };
   const map = placed(TRIALS, axis("wall"), axis("rise"), box);
   const at = (index: number) => map.places.find((place) => place.trial.index === index);
 
@@ -98,6 +98,7 @@ describe("map", () => {
 
   it("puts a failed trial at its parameter, below all that have an objective, and under them", () => {
     expect(at(6)?.y).toBe(350);
+    expect(Math.max(...[0, 1, 2, 3, 4, 5].map((i) => at(i)?.y ?? 0))).toBeLessThan(270);
     expect(at(6)?.x).toBeLessThan(at(0)?.x ?? 0);
     expect(map.places[0]?.trial.index).toBe(6);
   });

@@ -132,11 +132,13 @@ function Atlas(props: { current: CurrentStudy }) {
             {unloaded === 1 ? "1 picture shows" : `${unloaded} pictures show`} the unloaded shape
           </span>
         )}
-        <span className="atlas-push">
-          <Button pressed={asking} testId="requirements-toggle" onClick={() => ask(!asking)}>
-            Requirements
-          </Button>
-        </span>
+        {!asking && (
+          <span className="atlas-push">
+            <Button testId="requirements-open" onClick={() => ask(true)}>
+              Requirements
+            </Button>
+          </span>
+        )}
       </div>
       <div className="atlas-body">
         {arrangement === "map" && x && y ? (
@@ -149,7 +151,7 @@ function Atlas(props: { current: CurrentStudy }) {
             ))}
           </div>
         )}
-        {asking && <Requirements trials={study.trials} axes={axes} />}
+        {asking && <Requirements trials={study.trials} axes={axes} onClose={() => ask(false)} />}
       </div>
       <TrialCard current={props.current} />
     </div>
@@ -178,8 +180,9 @@ function TrialMap(props: TrialMapProps) {
         right: Math.max(MARGINS.left + half + 1, width - MARGINS.right - half),
         top: MARGINS.top + half,
         bottom: Math.max(MARGINS.top + half + 1, height - MARGINS.bottom - half),
+        rail: size,
       }),
-    [trials, x, y, width, height, half],
+    [trials, x, y, width, height, half, size],
   );
   const tipped = map.places.find((place) => place.trial.index === hovered);
   const ready = width > 120 && height > 120;

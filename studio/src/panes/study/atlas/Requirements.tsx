@@ -1,13 +1,19 @@
 import { useMemo } from "react";
+import { Button } from "../../../controls/Choice";
 import { RangeSlider } from "../../../controls/RangeSlider";
 import type { TrialEvent } from "../../../protocol";
+import { Icon } from "../../../shell/icons";
 import { brush, useSelection } from "../selection";
 import { type Axis, isDone, textOn, valueOn } from "../trials";
 
 const OPEN: readonly [number, number] = [-Infinity, Infinity];
 
 /** A slider for each quantity of which trials have different values: what a design must meet. */
-export function Requirements(props: { trials: readonly TrialEvent[]; axes: readonly Axis[] }) {
+export function Requirements(props: {
+  trials: readonly TrialEvent[];
+  axes: readonly Axis[];
+  onClose(): void;
+}) {
   const { trials, axes } = props;
   const brushes = useSelection((selection) => selection.brushes);
   const rows = useMemo(() => {
@@ -19,7 +25,12 @@ export function Requirements(props: { trials: readonly TrialEvent[]; axes: reado
   }, [trials, axes]);
   return (
     <aside className="atlas-requirements" aria-label="Requirements" data-testid="requirements">
-      <h3>Requirements</h3>
+      <h3>
+        Requirements
+        <Button icon kind="quiet" label="Hide the requirements" onClick={props.onClose}>
+          <Icon name="close" />
+        </Button>
+      </h3>
       {rows.length === 0 && <p className="muted">All designs have the same numbers so far.</p>}
       {rows.map(({ axis, values }) => {
         const range = brushes[axis.key] ?? OPEN;

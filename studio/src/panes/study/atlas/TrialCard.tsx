@@ -27,7 +27,11 @@ export function TrialCard(props: { current: CurrentStudy }) {
             <span className="muted">{axis.name}</span> {textOn(valueOn(trial, axis), axis)}
           </span>
         ))}
-        {trial.message && <span className="muted">{trial.message}</span>}
+        {trial.message && (
+          <span className="muted trial-note" title={trial.message}>
+            {trial.message}
+          </span>
+        )}
       </div>
       <div className="trial-verbs">
         <Button

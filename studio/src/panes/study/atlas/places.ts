@@ -18,12 +18,14 @@ export interface Map2 {
   toY(value: number): number;
 }
 
-/** The part of the map that stays free of points for the pictures at its ends. */
+/** Where the middles of pictures may stand, pixels. */
 export interface Box {
   readonly left: number;
   readonly right: number;
   readonly top: number;
   readonly bottom: number;
+  /** The height of a picture, which those without a value take for themselves at the bottom. */
+  readonly rail: number;
 }
 
 function limitsOf(trials: readonly TrialEvent[], axis: Axis): readonly [number, number] {
@@ -32,14 +34,17 @@ function limitsOf(trials: readonly TrialEvent[], axis: Axis): readonly [number, 
 }
 
 /**
- * Put each trial at its values. One that has no value on an axis, as a failed one has no objective,
- * stands at the low end of that axis.
+ * Put each trial at its values. One that has no value along y, as a failed one has no objective,
+ * stands below all others; one that has none along x, at the left.
  */
 export function placed(trials: readonly TrialEvent[], x: Axis, y: Axis, box: Box): Map2 {
   const [x0, x1] = limitsOf(trials, x);
   const [y0, y1] = limitsOf(trials, y);
+  const low = trials.some((trial) => !Number.isFinite(valueOn(trial, y)))
+    ? Math.max(box.top + 1, box.bottom - box.rail)
+    : box.bottom;
   const toX = (value: number) => box.left + ((value - x0) / (x1 - x0)) * (box.right - box.left);
-  const toY = (value: number) => box.bottom - ((value - y0) / (y1 - y0)) * (box.bottom - box.top);
+  const toY = (value: number) => low - ((value - y0) / (y1 - y0)) * (low - box.top);
   const places = trials.map((trial) => {
     const [atX, atY] = [valueOn(trial, x), valueOn(trial, y)];
     return {

@@ -1,0 +1,99 @@
+"""The atlas of a study: pictures, requirements, and a design that is taken or opened."""
+
+import re
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from voxsoft.design import Design
+from voxsoft.study import Study
+
+pytestmark = pytest.mark.browser
+
+LENGTHS = [0.025, 0.03, 0.035, 0.04, 0.045, 0.05]
+SEEN = "[...document.querySelectorAll('.trial-frame img')].filter(i => i.naturalWidth > 0).length"
+
+
+@pytest.fixture
+def studied(serving, tmp_path, coarse):
+    """A finger of 40 mm that is open, and a study of six others, and of one without a voxel."""
+    text = coarse.replace('min = "20 mm"', 'min = "1 um"').replace(', step = "5 mm"', "")
+    goal = '[objectives]\nsag = { minimize = "displacement", probe = "tip", axis = "z" }\n'
+    design = Design.from_document(tomllib.loads(text + goal))
+    runs = tmp_path / "runs"
+    with ThreadPoolExecutor(1) as threads:
+        Study(design, {"length": [*LENGTHS, 1e-5]}, folder=runs / "fingers").grid(executor=threads)
+    server = serving(tmp_path, text=text)
+    yield server
+    server.stop()
+
+
+def open_atlas(tab):
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("mode-runs").click()
+    tab.find("runs-table").locator("tbody tr").first.click()  # the study, and not its design
+    tab.find("mode-optimize").click()
+    tab.page.locator(".dv-tab", has_text="Atlas").first.click()
+    tab.find("atlas").wait_for()
+    tab.until(f"{SEEN} === {len(LENGTHS)}")
+
+
+def dimmed(tab):
+    return tab.page.evaluate("document.querySelectorAll('.trial-frame.is-dimmed').length")
+
+
+@pytest.mark.parametrize("scheme", ["dark", "light"])
+def test_designs_are_seen_and_requirements_dim_them(studied, open_tab, scheme):
+    tab = open_tab(studied.address, mode="runs", scheme=scheme)
+    open_atlas(tab)
+    page = tab.page
+    # The failed one is an empty frame with its reason.
+    failed = page.locator(".trial-frame.is-failed")
+    assert failed.count() == 1
+    assert failed.locator("img").count() == 0
+    assert len(failed.inner_text().strip()) > 10
+    assert "7 designs, 1 without result" in tab.find("remaining").inner_text()
+    tab.shot(f"atlas-map-{scheme}")
+    # A longer finger is drawn larger: all have one scale.
+    widths = page.evaluate(
+        "[...document.querySelectorAll('.trial-frame img')].map(i => i.clientWidth)"
+    )
+    assert max(widths) > 1.4 * min(widths)
+    page.get_by_label("Arrangement").select_option("grid")
+    slider = page.get_by_label("sag, at least")
+    slider.focus()
+    for _ in range(5):
+        page.keyboard.press("PageUp")
+    tab.until("document.querySelectorAll('.trial-frame.is-dimmed').length > 1")
+    left = int(re.match(r"(\d+) of 7 remain", tab.find("remaining").inner_text())[1])
+    assert 0 < left < len(LENGTHS)
+    assert dimmed(tab) == 7 - left
+    # The table and the parallel axes have the same requirement.
+    assert tab.find("trials-table").locator("tbody tr").count() == left
+    assert page.locator(".parallel-line:not(.faded)").count() == left
+    tab.shot(f"atlas-grid-{scheme}")
+    tab.find("clear-requirements").click()
+    assert dimmed(tab) == 0
+    assert tab.errors == []
+
+
+def test_a_design_is_taken_into_the_open_document_and_opened_as_its_own(studied, open_tab):
+    tab = open_tab(studied.address, mode="runs", symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    open_atlas(tab)  # the design of the study is open now, which is none of its trials
+    page = tab.page
+    page.get_by_label("Arrangement").select_option("grid")
+    frame = page.locator(".trial-frame.is-best")
+    frame.click()
+    card = tab.find("trial-card")
+    card.wait_for()
+    tab.find("take").click()
+    tab.find("toast").get_by_text("has the parameters of design").wait_for()
+    tab.until("voxsoft.state === 'at-rest'")
+    name = tab.find("document-name").inner_text()
+    tab.find("open-trial").click()
+    tab.find("document-name").get_by_text(re.compile(r"fingers-\d+")).wait_for()
+    assert tab.find("document-name").inner_text() != name
+    tab.until("voxsoft.state === 'at-rest'")
+    assert tab.errors == []
