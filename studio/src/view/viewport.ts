@@ -123,6 +123,8 @@ export class Viewport {
   private coming: BodyMesh | null = null;
   private smooth: SmoothMesh | null = null;
   private tetPlaces: TetPlaces | null = null;
+  // A body of which no frame was drawn yet.
+  private unseen = false;
   private latest: Frame | null = null;
   private positions: { key: string; values: Float32Array } | null = null;
   private asked: number | null = null;
@@ -430,6 +432,7 @@ export class Viewport {
     const quality = this.qualityAt(now);
     this.painter.prepare(quality);
     this.style(view, mesh);
+    this.seeFirst(view, mesh);
     const labels = this.words(view, mesh);
     this.painter.backdrop.ground.face(this.rig.toEye.z);
     this.painter.paint(this.scene, this.rig.camera, quality.smooth);
@@ -524,7 +527,8 @@ export class Viewport {
     mesh.setFrame(frame);
     // A frame may be sent again, as with the colors of another field: that is no other state.
     const settled = frame.atRest && !(this.latest?.atRest && this.latest.number === frame.number);
-    if (settled) this.follow(mesh);
+    if (settled) this.follow(mesh.box(useView.getState().exaggeration));
+    this.unseen ||= this.latest === null;
     this.latest = frame;
     this.extremes = null;
     this.colors = null;
@@ -537,9 +541,15 @@ export class Viewport {
   }
 
   // A body that came to rest outside of the picture is brought into it, unless a hand chose that.
-  private follow(mesh: BodyMesh): void {
-    const box = mesh.box(useView.getState().exaggeration).clone();
-    if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box);
+  private follow(box: Box3, atOnce = false): void {
+    if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box.clone(), atOnce);
+  }
+
+  // So is one that is shown elsewhere first than it is unloaded, with what it holds.
+  private seeFirst(view: View, mesh: BodyMesh | null): void {
+    if (!this.unseen || !mesh) return;
+    this.unseen = false;
+    this.follow(this.objects.around(mesh.box(view.exaggeration)), true);
   }
 
   /** The mesh that is drawn: the tetrahedra where they are wanted and at hand. */
