@@ -270,8 +270,11 @@ def test_taking_a_design_writes_its_parameters_as_one_step(barred, searches):
             assert page.document.path is not None  # it is still the open document
             # It is the design of the trial now, whose equilibrium is known.
             await page.shown(lambda s: s.state == "at-rest")
+            await page.send("reset")
+            await page.shown(lambda s: s.state == "paused")
             await page.send("take", trial=f"bars/{number}")
             assert (await page.until("taken")).changed is False
+            await page.shown(lambda s: s.state == "at-rest")
             await page.send("undo")
             await page.until("document", lambda d: d.text == before)
 

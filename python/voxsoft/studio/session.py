@@ -364,6 +364,8 @@ class Session:
         taken = self.document.design
         if trial.status == "ok" and taken is not None and taken.hash == trial.hash:
             self._loaded = _Loaded(self.document.rev, stored_in(folder))
+            if not changed:
+                self._mesh()  # it is that design, and is shown as it came to rest
         self._changed(changed)
         self.tabs.send_to(tab, events.Taken(trial=command.trial, changed=changed))
 

@@ -30,12 +30,12 @@ import { FaceMark } from "./faceMark";
 import { ContactForces } from "./forces";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
-import type { Rect } from "./labelLayout";
 import { type Label, Labels } from "./labels";
 import { MoveHandle } from "./moveHandle";
 import { RigidObjects } from "./objects";
 import { drawnAt, overlapLabels, overlapOf } from "./overlap";
 import { Painter } from "./painter";
+import { Panels } from "./panels";
 import { listen } from "./pointer";
 import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
@@ -110,7 +110,7 @@ export class Viewport {
   private readonly several = new Several();
   private readonly forces = new ContactForces();
   private readonly labels = new Labels();
-  private legend: Rect | null = null;
+  private readonly panels = new Panels();
   private ink = themeColor("--ink");
   private readonly gate = new FrameGate();
   // Disposed of after the next picture, which then uses their shaders again without compiling.
@@ -358,6 +358,7 @@ export class Viewport {
 
   attach(parent: HTMLElement): void {
     parent.prepend(this.element);
+    this.panels.watch(parent, () => this.request());
     this.attached = true;
     this.resize();
     this.tellView();
@@ -365,25 +366,9 @@ export class Viewport {
 
   detach(): void {
     this.element.remove();
+    this.panels.watch(null, () => {});
     this.attached = false;
     this.tellView();
-  }
-
-  /** Keep words out of the legend for as long as it is there; gives what ends that. */
-  keepClearOf(legend: HTMLElement): () => void {
-    const measure = () => {
-      const { offsetLeft: left, offsetTop: top, offsetWidth, offsetHeight } = legend;
-      this.legend = { left, top, right: left + offsetWidth, bottom: top + offsetHeight };
-      this.request();
-    };
-    const observer = new ResizeObserver(measure);
-    observer.observe(legend);
-    observer.observe(this.element); // it stands at the right end
-    return () => {
-      observer.disconnect();
-      this.legend = null;
-      this.request();
-    };
   }
 
   private resize(): void {
@@ -453,7 +438,7 @@ export class Viewport {
       ...this.sectionHandle.grips,
       ...this.mover.grips,
       ...this.sizer.grips,
-      ...(this.legend ? [this.legend] : []),
+      ...this.panels.rects,
     ];
     this.labels.place(this.rig.camera, width, height, pressed);
     this.hover(now, view);

@@ -96,11 +96,32 @@ describe("map", () => {
     }
   });
 
-  it("puts a failed trial at its parameter, below all that have an objective, and under them", () => {
+  it("puts a failed trial at its parameter, below all that have an objective", () => {
     expect(at(6)?.y).toBe(350);
     expect(Math.max(...[0, 1, 2, 3, 4, 5].map((i) => at(i)?.y ?? 0))).toBeLessThan(270);
     expect(at(6)?.x).toBeLessThan(at(0)?.x ?? 0);
-    expect(map.places[0]?.trial.index).toBe(6);
+  });
+});
+
+describe("a map of few columns", () => {
+  const box = { left: 40, right: 760, top: 40, bottom: 360, rail: 80 };
+
+  it("sets designs that would cover each other side by side in their column, the best in its middle", () => {
+    const alike = [0, 1, 2, 3].flatMap((i) => [trial(2 * i, 1, 1, 5), trial(2 * i + 1, 2, 1, 5)]);
+    const { places } = placed(alike, axis("wall"), axis("rise"), box);
+    const [first, second] = [0, 1].map((odd) =>
+      places.filter((one) => one.trial.index % 2 === odd),
+    );
+    const xs = (column: typeof first) => column?.map(({ x }) => x) ?? [];
+    expect(new Set(xs(first)).size).toBe(4);
+    expect(Math.max(...xs(first))).toBeLessThan(Math.min(...xs(second)));
+    expect(first?.[0]?.x).toBeCloseTo(40 + 720 / 4, 6);
+  });
+
+  it("leaves designs of as many values where they are", () => {
+    const many = Array.from({ length: 30 }, (_, i) => trial(i, i, 1, 5));
+    const map = placed(many, axis("wall"), axis("rise"), box);
+    expect(map.places.map(({ x }) => x)).toEqual(many.map((_, i) => map.toX(i)));
   });
 });
 

@@ -29,7 +29,9 @@ export default function AtlasPane() {
 
 /** Frames that are drawn; each costs the page time whenever a trial arrives. */
 const MOST = 1000;
-const SIZES = { least: 44, usual: 88, most: 180 };
+const SIZES = { least: 44, small: 60, usual: 88, most: 180 };
+/** Designs of which pictures of the usual size cover each other. */
+const MANY = 60;
 
 type Arrangement = "map" | "grid";
 
@@ -39,7 +41,7 @@ function Atlas(props: { current: CurrentStudy }) {
   const [arrangement, arrange] = useState<Arrangement>("map");
   const [xKey, setX] = useState<string | null>(null);
   const [yKey, setY] = useState<string | null>(null);
-  const [size, setSize] = useState(SIZES.usual);
+  const [wanted, setSize] = useState<number | null>(null);
   const [scaled, setScaled] = useState(true);
   const [asking, ask] = useState(true);
   const pictures = usePictures();
@@ -50,6 +52,8 @@ function Atlas(props: { current: CurrentStudy }) {
   const best = useMemo(() => bestFirst(study, front), [study, front]);
   const trials = useMemo(() => best.slice(0, MOST), [best]);
   const usual = useMemo(() => mostImportant(study.trials, axes), [study, axes]);
+  const crowded = arrangement === "map" && study.trials.length > MANY;
+  const size = wanted ?? (crowded ? SIZES.small : SIZES.usual);
   const objective = axes.find((axis) => axis.role === "objective");
   const x = axes.find((axis) => axis.key === xKey) ?? usual ?? axes[0];
   const y = axes.find((axis) => axis.key === yKey) ?? objective ?? axes[0];
@@ -209,10 +213,11 @@ function TrialMap(props: TrialMapProps) {
         </svg>
       )}
       {ready &&
-        map.places.map((place) => {
+        map.places.map((place, i) => {
           const frame = props.frameOf(place.trial);
-          const style = { left: place.x - half, top: place.y - half };
-          return <TrialFrame key={nameOf(frame.job, place.trial.index)} {...frame} style={style} />;
+          // The best lie over the others.
+          const at = { left: place.x - half, top: place.y - half, rank: map.places.length - i };
+          return <TrialFrame key={nameOf(frame.job, place.trial.index)} {...frame} {...at} />;
         })}
       {tipped && inside && (
         <Tip x={tipped.x} y={tipped.y} width={width} height={height}>

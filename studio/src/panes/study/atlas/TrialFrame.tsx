@@ -26,7 +26,10 @@ export interface TrialFrameProps {
   hovered: boolean;
   /** Whether the caption is shown, and not only spoken. */
   captioned: boolean;
-  style?: CSSProperties | undefined;
+  /** Where it stands on a map, pixels, and which lie over which. */
+  left?: number;
+  top?: number;
+  rank?: number;
   tabIndex: number;
   onSelect(trial: number, mark: boolean): void;
   onOpen(trial: number): void;
@@ -54,6 +57,8 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
     props.best ? "best" : "",
     unloaded ? "unloaded" : "",
   ];
+  const { left, top, rank } = props;
+  const place = { left, top, width: size, "--rank": rank } as CSSProperties;
   const classes = [
     "trial-frame",
     captioned ? "is-captioned" : "",
@@ -74,7 +79,7 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
       tabIndex={props.tabIndex}
       aria-label={words.filter(Boolean).join(", ")}
       aria-pressed={props.selected}
-      style={{ ...props.style, width: size }}
+      style={place}
       onPointerEnter={() => hover(trial.index)}
       onPointerLeave={() => hover(null)}
       onFocus={() => hover(trial.index)}

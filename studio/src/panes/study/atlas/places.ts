@@ -28,9 +28,17 @@ export interface Box {
   readonly rail: number;
 }
 
+/** Columns of a map: more values are taken as any. */
+const COLUMNS = 12;
+
 function limitsOf(trials: readonly TrialEvent[], axis: Axis): readonly [number, number] {
   if (axis.choices) return [-0.5, Math.max(axis.choices.length - 0.5, 0.5)];
-  return padded(rangeOf(trials.map((trial) => valueOn(trial, axis))), 0.06);
+  const values = trials.map((trial) => valueOn(trial, axis)).filter(Number.isFinite);
+  const columns = [...new Set(values)].sort((a, b) => a - b);
+  if (columns.length < 2 || columns.length > COLUMNS) return padded(rangeOf(values), 0.06);
+  const [low, high] = [columns[0] as number, columns.at(-1) as number];
+  const half = Math.min(...columns.slice(1).map((x, i) => x - (columns[i] as number))) / 2;
+  return [low - half, high + half];
 }
 
 /**
@@ -53,7 +61,40 @@ export function placed(trials: readonly TrialEvent[], x: Axis, y: Axis, box: Box
       y: Number.isFinite(atY) ? toY(atY) : box.bottom,
     };
   });
-  // The best are drawn last, over the others.
-  places.sort((a, b) => Number(isDone(a.trial)) - Number(isDone(b.trial)));
-  return { places, limits: [x0, x1, y0, y1], toX, toY };
+  return { places: sideBySide(places, box), limits: [x0, x1, y0, y1], toX, toY };
+}
+
+/** The part of a picture that another may cover. */
+const COVERED = 0.45;
+
+/**
+ * Where trials share few values along x, those that would cover each other stand beside each other
+ * within their column: the first of them, which are the best, at its middle.
+ */
+function sideBySide(places: readonly Place[], { left, right, rail }: Box): Place[] {
+  const columns = [...new Set(places.map((place) => place.x))].sort((a, b) => a - b);
+  if (columns.length > COLUMNS || columns.length === places.length) return [...places];
+  const gaps = columns.slice(1).map((x, i) => x - (columns[i] as number));
+  const room = columns.length > 1 ? Math.min(...gaps) / 2 - 0.3 * rail : (right - left) / 2;
+  const step = (1 - COVERED) * rail;
+  const most = Math.max(0, Math.floor(room / step));
+  const taken: Place[] = [];
+  for (const place of places) {
+    // Empty frames say the same: one of a column is enough.
+    if (!isDone(place.trial)) {
+      taken.push(place);
+      continue;
+    }
+    const beside = Array.from({ length: 2 * most + 1 }, (_, i) => ({
+      ...place,
+      x: place.x + (i % 2 ? -1 : 1) * Math.ceil(i / 2) * step,
+    })).filter(({ x }) => x >= left && x <= right);
+    const covers = (one: Place) =>
+      taken.filter(
+        (other) => Math.abs(other.x - one.x) < 0.9 * step && Math.abs(other.y - one.y) < step,
+      ).length;
+    const free = beside.find((one) => covers(one) === 0);
+    taken.push(free ?? beside.sort((a, b) => covers(a) - covers(b))[0] ?? place);
+  }
+  return taken;
 }
