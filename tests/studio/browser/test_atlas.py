@@ -1,42 +1,19 @@
 """The atlas of a study: pictures, requirements, and a design that is taken or opened."""
 
 import re
-import tomllib
-from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-
-from voxsoft.design import Design
-from voxsoft.study import Study
+from fingers import LENGTHS, open_atlas, study_fingers
 
 pytestmark = pytest.mark.browser
-
-LENGTHS = [0.025, 0.03, 0.035, 0.04, 0.045, 0.05]
-SEEN = "[...document.querySelectorAll('.trial-frame img')].filter(i => i.naturalWidth > 0).length"
 
 
 @pytest.fixture
 def studied(serving, tmp_path, coarse):
-    """A finger of 40 mm that is open, and a study of six others, and of one without a voxel."""
-    text = coarse.replace('min = "20 mm"', 'min = "1 um"').replace(', step = "5 mm"', "")
-    goal = '[objectives]\nsag = { minimize = "displacement", probe = "tip", axis = "z" }\n'
-    design = Design.from_document(tomllib.loads(text + goal))
-    runs = tmp_path / "runs"
-    with ThreadPoolExecutor(1) as threads:
-        Study(design, {"length": [*LENGTHS, 1e-5]}, folder=runs / "fingers").grid(executor=threads)
-    server = serving(tmp_path, text=text)
+    """A finger that is open, and a study of others."""
+    server = serving(tmp_path, text=study_fingers(coarse, tmp_path / "runs" / "fingers"))
     yield server
     server.stop()
-
-
-def open_atlas(tab):
-    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
-    tab.find("mode-runs").click()
-    tab.find("runs-table").locator("tbody tr").first.click()  # the study, and not its design
-    tab.find("mode-optimize").click()
-    tab.page.locator(".dv-tab", has_text="Atlas").first.click()
-    tab.find("atlas").wait_for()
-    tab.until(f"{SEEN} === {len(LENGTHS)}")
 
 
 def dimmed(tab):

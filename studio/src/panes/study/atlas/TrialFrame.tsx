@@ -51,12 +51,10 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
     };
   }, [name, done]);
   const unloaded = picture?.url !== undefined && picture.url !== "" && !picture.atRest;
-  const words = [
-    `Design ${trial.index}`,
-    done ? props.value : trial.status,
-    props.best ? "best" : "",
-    unloaded ? "unloaded" : "",
-  ];
+  // What the caption shows is read from there.
+  const unseen = captioned ? "" : ` ${trial.index}, ${done ? props.value : trial.status}`;
+  const notes = [props.best ? "best" : "", unloaded && !captioned ? "unloaded" : ""];
+  const words = [`Design${unseen}`, ...notes].filter(Boolean).join(", ");
   const { left, top, rank } = props;
   const place = { left, top, width: size, "--rank": rank } as CSSProperties;
   const classes = [
@@ -77,7 +75,6 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
       className={classes.filter(Boolean).join(" ")}
       data-trial={trial.index}
       tabIndex={props.tabIndex}
-      aria-label={words.filter(Boolean).join(", ")}
       aria-pressed={props.selected}
       style={place}
       onPointerEnter={() => hover(trial.index)}
@@ -87,6 +84,7 @@ export const TrialFrame = memo((props: TrialFrameProps) => {
       onClick={(event) => props.onSelect(trial.index, event.shiftKey)}
       onDoubleClick={() => done && props.onOpen(trial.index)}
     >
+      <span className="visually-hidden">{words} </span>
       <span className="trial-picture" style={{ height }}>
         {picture?.url ? (
           <img
