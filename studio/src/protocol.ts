@@ -245,6 +245,13 @@ export interface MaterialsCommand {
   seq: number;
 }
 
+/** Write the parameters of a study's trial, "ID/INDEX", into the document, as one step. */
+export interface TakeCommand {
+  t: "take";
+  seq: number;
+  trial: string;
+}
+
 /** Take back the last change of the document. */
 export interface UndoCommand {
   t: "undo";
@@ -267,6 +274,26 @@ export interface SaveCommand {
   seq: number;
   path?: string | null;
   overwrite?: boolean;
+}
+
+/** Ask for the versions of the document. */
+export interface VersionsCommand {
+  t: "versions";
+  seq: number;
+}
+
+/** Ask how a version of the document differs from it. */
+export interface VersionShowCommand {
+  t: "version_show";
+  seq: number;
+  id: string;
+}
+
+/** Make the text of a version that of the document, as one step; the present one is kept. */
+export interface VersionRestoreCommand {
+  t: "version_restore";
+  seq: number;
+  id: string;
 }
 
 /** Let time run. */
@@ -686,12 +713,13 @@ export interface Way {
   sentence: string;
 }
 
-/** A design file that was opened or saved; `when` is ISO 8601. */
+/** A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn. */
 export interface RecentFile {
   path: string;
   name: string;
   folder: string;
   when: string;
+  picture: string;
 }
 
 /** What the start screen shows; `fresh` while nothing was opened or changed yet. */
@@ -1552,6 +1580,49 @@ export interface FileExistsEvent {
   path: string;
 }
 
+/** Parameters of a trial that were written into the document; `changed` unless it had them. */
+export interface TakenEvent {
+  t: "taken";
+  trial: string;
+  changed: boolean;
+}
+
+/** A version of the document; `when` is ISO 8601, `picture` where its body is drawn. */
+export interface VersionRow {
+  id: string;
+  when: string;
+  reason: string;
+  picture: string;
+}
+
+/** Versions of the document that is open, the newest first; `most` of them are kept. */
+export interface VersionsEvent {
+  t: "versions";
+  name: string;
+  most: number;
+  versions: VersionRow[];
+}
+
+/**
+ * A line of a comparison of two texts, with its numbers, counted from 1, in both.
+ *
+ * Lines that both have stand around each change; `gap` is where others are left out, after the
+ * line `before`.
+ */
+export interface DifferentLine {
+  mark: "gap" | "gone" | "new" | "same";
+  text: string;
+  before: number | null;
+  after: number | null;
+}
+
+/** How the document came from a version to what it is; null where that is too long to tell. */
+export interface VersionDifferenceEvent {
+  t: "version_difference";
+  id: string;
+  lines: DifferentLine[] | null;
+}
+
 /** What could not be done, and what to try. `seq` is the command's, or 0. */
 export interface ErrorEvent {
   t: "error";
@@ -1580,9 +1651,13 @@ export type AnyCommand =
   | AddBodyCommand
   | DesignsCommand
   | MaterialsCommand
+  | TakeCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
+  | VersionsCommand
+  | VersionShowCommand
+  | VersionRestoreCommand
   | PlayCommand
   | PauseCommand
   | StepCommand
@@ -1648,5 +1723,8 @@ export type AnyEvent =
   | ExportedEvent
   | SavedEvent
   | FileExistsEvent
+  | TakenEvent
+  | VersionsEvent
+  | VersionDifferenceEvent
   | ErrorEvent
   | LogEvent;

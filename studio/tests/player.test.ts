@@ -281,3 +281,21 @@ it("tells where objects are as the body is shown first, until time runs or goes 
   expect(told()).toHaveLength(2);
   expect(told()[1]).toMatchObject({ moment: { frame: 0, poses: [] } });
 });
+
+it("says that what is shown first is at rest where it is, until something wakes it", async () => {
+  const after = async (notes: Notes, ...commands: readonly Draft[]) => {
+    const run = await Core.open(file("../public/voxsoft.wasm"), file("beam.scene"));
+    const heard: AnyEvent[] = [];
+    const shown = new Player(run, notes, { event: (one) => heard.push(one), binary() {} });
+    shown.greet();
+    for (const [i, command] of commands.entries()) shown.take({ ...command, seq: i + 1 });
+    return heard.filter((one) => one.t === "stat").at(-1)?.state;
+  };
+  const resting = { ...NOTES, at_rest: true };
+  expect(await after(NOTES)).toBe("paused");
+  expect(await after(resting)).toBe("at-rest");
+  expect(await after(resting, { t: "pick", vertex: 57 })).toBe("at-rest");
+  expect(await after(resting, { t: "play" })).toBe("playing");
+  expect(await after(resting, { t: "load", index: 0, value: 5 })).not.toBe("at-rest");
+  expect(await after(resting, { t: "reset" })).toBe("paused");
+});

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 import type { Way } from "../src/protocol";
-import { whenWords } from "../src/start/Start";
 import { answer, found, leads, QUESTIONS } from "../src/start/ways";
+import { whenWords } from "../src/store/when";
 
 function way(drive: string, form: string, task: string): Way {
   return { name: `${drive}-${form}-${task}`, drive, form, task, robot: "r", sentence: "" };

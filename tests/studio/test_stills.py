@@ -65,9 +65,10 @@ def read(content):
 
 
 def make_study(folder):
-    """Three bars; one of them is too short to hold a single voxel."""
+    """Three bars; one of them is too short to hold a voxel. As an older study it has no states."""
     bar = Design.from_document(tomllib.loads(BAR))
     Study(bar, {"length": [0.03, 0.05, 1e-5]}, folder=folder).grid(workers=1)
+    (folder / "equilibria").rename(folder / "away")
     return folder
 
 
@@ -120,6 +121,17 @@ def test_a_design_that_was_solved_is_not_solved_again(studio, study, monkeypatch
     first = asked(studio, f"bars/{number}")
     monkeypatch.setattr(stills, "simulate", lambda *_, **__: pytest.fail("solved again"))
     assert asked(studio, f"bars/{number}").content == first.content
+
+
+def test_a_design_whose_state_the_study_has_is_not_solved(fresh_studio, monkeypatch):
+    folder = make_study(fresh_studio.session.runs / "bars")
+    (folder / "away").rename(folder / "equilibria")
+    monkeypatch.setattr(stills, "simulate", lambda *_, **__: pytest.fail("solved again"))
+    trial = trial_of(folder, 0.05)
+    rest, frames = read(asked(fresh_studio, f"bars/{trial.number}").content)
+    tip = rest[:, 0] > 0.0499
+    sag = (frames[0][0] - rest)[tip, 2]
+    assert sag.min() == pytest.approx(trial.objectives["sag"], rel=0.05)
 
 
 def test_the_view_is_left_alone(studio, study):

@@ -6,10 +6,10 @@ import asyncio
 import contextlib
 import threading
 import zlib
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from concurrent.futures import ThreadPoolExecutor
 from mimetypes import guess_type
-from typing import Any, Final
+from typing import Any, Final, TypeVar
 
 from starlette.applications import Starlette
 from starlette.requests import ClientDisconnect, Request
@@ -27,6 +27,8 @@ from voxsoft.studio.session import Session
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.uploads import safe_name
 from voxsoft.studio.wire import LARGEST_UPLOAD, PROTOCOL, CloseCode
+
+Found = TypeVar("Found")
 
 #: Seconds in which a tab must say hello.
 HELLO_WITHIN: Final = 20.0
@@ -61,6 +63,7 @@ def make_app(session: Session, token: str, port: int) -> Guard:
         Route("/", pages.index),
         Route("/assets/{path:path}", pages.asset),
         Route("/still", pages.still),
+        Route("/picture", pages.picture),
         Route("/robot/{name}", pages.robot),
         Route("/{name}", pages.file),
         Route("/download/{id}", pages.download),
@@ -90,11 +93,14 @@ class _Pages:
         self._files = ThreadPoolExecutor(2, "studio-files")
         # Solving for pictures takes long: other files must not wait for it.
         self._stills = ThreadPoolExecutor(2, "studio-stills")
+        # One picture at a time: a study that runs, and the view, need the processor more.
+        self._pictures = ThreadPoolExecutor(1, "studio-pictures")
 
     def end(self) -> None:
         self._commands.shutdown(wait=False, cancel_futures=True)
         self._files.shutdown(wait=False, cancel_futures=True)
         self._stills.shutdown(wait=False, cancel_futures=True)
+        self._pictures.shutdown(wait=False, cancel_futures=True)
 
     async def index(self, request: Request) -> Response:
         page = page_file("index.html")
@@ -134,23 +140,48 @@ class _Pages:
 
     async def still(self, request: Request) -> Response:
         """Answer with a body at rest; solving it ends when nobody waits for it any more."""
-        cancelled, name = threading.Event(), request.query_params.get("of", "")
-        work = asyncio.get_running_loop().run_in_executor(
-            self._stills, self._session.stills.packed, name, cancelled
-        )
-        work.add_done_callback(lambda done: done.cancelled() or done.exception())
         try:
-            while not work.done():
-                await asyncio.wait([work], timeout=LOOK_AGAIN)
-                if not work.done() and await request.is_disconnected():
-                    return Response(status_code=499)
-            content = work.result()
+            content = await self._awaited(self._stills, self._session.stills.packed, request)
         except VoxSoftError as error:
             return _problem(422, error.where, error.what, error.hint)
-        finally:
-            cancelled.set()
+        if content is None:
+            return Response(status_code=499)
         headers = {"cache-control": "no-store"}
         return Response(content, media_type="application/octet-stream", headers=headers)
+
+    async def picture(self, request: Request) -> Response:
+        """Answer with a small picture of a design; one that nobody waits for is not begun."""
+        try:
+            found = await self._awaited(self._pictures, self._session.picture, request)
+        except VoxSoftError as error:
+            return _problem(422, error.where, error.what, error.hint)
+        if found is None:
+            return Response(status_code=499)
+        headers = {
+            "cache-control": "no-cache",
+            "x-voxsoft-state": "rest" if found.at_rest else "unloaded",
+            "x-voxsoft-pixels-per-meter": repr(found.per_meter),
+        }
+        return Response(found.content, media_type="image/png", headers=headers)
+
+    async def _awaited(
+        self,
+        executor: ThreadPoolExecutor,
+        work: Callable[[str, threading.Event], Found],
+        request: Request,
+    ) -> Found | None:
+        """What some work gives for the name `of` of a request; None where nobody waits any more."""
+        cancelled, name = threading.Event(), request.query_params.get("of", "")
+        begun = asyncio.get_running_loop().run_in_executor(executor, work, name, cancelled)
+        begun.add_done_callback(lambda done: done.cancelled() or done.exception())
+        try:
+            while not begun.done():
+                await asyncio.wait([begun], timeout=LOOK_AGAIN)
+                if not begun.done() and await request.is_disconnected():
+                    return None
+            return begun.result()
+        finally:
+            cancelled.set()
 
     async def upload(self, request: Request) -> Response:
         try:

@@ -17,7 +17,7 @@ from voxsoft import _core
 from voxsoft._memory import gigabytes, memory_limit
 from voxsoft.design import Design, Probe
 from voxsoft.design.attachment import attachments_of
-from voxsoft.design.discretize import filled, voxels_of
+from voxsoft.design.discretize import Filled, filled, voxels_of
 from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
@@ -91,10 +91,7 @@ class StudioBody:
         """
         started = time.perf_counter()
         design = design.assembled
-        for name in design.body_names:
-            _refuse_far_too_large(design.alone(name))
-        cells = filled(design, design.solver.refine)
-        _refuse_too_large(cells.count)
+        cells = filled_within_memory(design)
         setup = Setup(design, cells.mesh())
         surface = Surface.of(setup.mesh)
         refusal: VoxSoftError | None = None
@@ -226,6 +223,21 @@ class StudioBody:
             )
             for name, place in places.items()
         ]
+
+
+def filled_within_memory(design: Design) -> Filled:
+    """Put a design, with all its bodies, on its grid, within the memory that is free.
+
+    Raises
+    ------
+    VoxSoftError
+        It would need more, or cannot be put on a grid.
+    """
+    for name in design.body_names:
+        _refuse_far_too_large(design.alone(name))
+    cells = filled(design, design.solver.refine)
+    _refuse_too_large(cells.count)
+    return cells
 
 
 def _refuse_far_too_large(design: Design) -> None:

@@ -136,6 +136,12 @@ class Materials(Command):
     """Ask for the materials that a part can have."""
 
 
+class Take(Command):
+    """Write the parameters of a study's trial, "ID/INDEX", into the document, as one step."""
+
+    trial: ShortText
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -152,6 +158,22 @@ class Save(Command):
 
     path: ShortText | None = None
     overwrite: bool = False
+
+
+class Versions(Command):
+    """Ask for the versions of the document."""
+
+
+class VersionShow(Command):
+    """Ask how a version of the document differs from it."""
+
+    id: ShortText
+
+
+class VersionRestore(Command):
+    """Make the text of a version that of the document, as one step; the present one is kept."""
+
+    id: ShortText
 
 
 class Play(Command):
@@ -443,9 +465,13 @@ AnyCommand = (
     | AddBody
     | Designs
     | Materials
+    | Take
     | Undo
     | Redo
     | Save
+    | Versions
+    | VersionShow
+    | VersionRestore
     | Play
     | Pause
     | Step

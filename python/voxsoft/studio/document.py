@@ -122,6 +122,11 @@ class DesignDocument:
             return self.name
         return safe_name(f"{name}.toml")
 
+    @property
+    def file(self) -> Path:
+        """Its file; of a document that was never saved, where it would be saved."""
+        return self.path or (self.folder / self.title).absolute()
+
     def replace(self, text: str, place: object = None, *, now: float | None = None) -> bool:
         """Take another text; returns whether it is another one.
 

@@ -7,6 +7,7 @@ import threading
 from collections.abc import Callable
 
 from voxsoft.errors import SimulationError, VoxSoftError
+from voxsoft.simulation import Result
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
@@ -33,13 +34,15 @@ class Engine(threading.Thread):
     ----------
     bus
         Where events and frames go.
+    solved
+        Called with each equilibrium that is found under the loads of the design.
     """
 
-    def __init__(self, bus: EventBus) -> None:
+    def __init__(self, bus: EventBus, solved: Callable[[StudioBody, Result], None]) -> None:
         super().__init__(name="studio-engine", daemon=True)
         self._bus = bus
         self._inbox: queue.SimpleQueue[Callable[[], None] | None] = queue.SimpleQueue()
-        self._stage = Stage(bus, self._inbox.put)
+        self._stage = Stage(bus, self._inbox.put, solved)
 
     def run(self) -> None:
         """Do what is asked, and move the body meanwhile, until the end."""
@@ -57,9 +60,9 @@ class Engine(threading.Thread):
         """Stop the thread."""
         self._inbox.put(None)
 
-    def show(self, body: StudioBody, *, loaded: bool = False) -> None:
-        """Take another body, unloaded and at time zero, and look for its rest where asked."""
-        self._inbox.put(lambda: self._stage.show(body, loaded=loaded))
+    def show(self, body: StudioBody, *, loaded: bool = False, known: Result | None = None) -> None:
+        """Take another body, unloaded or in a known equilibrium; look for it where asked."""
+        self._inbox.put(lambda: self._stage.show(body, loaded=loaded, known=known))
 
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""

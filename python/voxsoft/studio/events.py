@@ -166,12 +166,13 @@ class Way(Entry):
 
 
 class RecentFile(Entry):
-    """A design file that was opened or saved; `when` is ISO 8601."""
+    """A design file that was opened or saved; `when` is ISO 8601, `picture` where it is drawn."""
 
     path: str
     name: str
     folder: str
     when: str
+    picture: str = ""
 
 
 class Start(Event):
@@ -1016,6 +1017,50 @@ class FileExists(Event):
     path: str
 
 
+class Taken(Event):
+    """Parameters of a trial that were written into the document; `changed` unless it had them."""
+
+    trial: str
+    changed: bool
+
+
+class VersionRow(Entry):
+    """A version of the document; `when` is ISO 8601, `picture` where its body is drawn."""
+
+    id: str
+    when: str
+    reason: str
+    picture: str
+
+
+class Versions(Event):
+    """Versions of the document that is open, the newest first; `most` of them are kept."""
+
+    name: str
+    most: int
+    versions: list[VersionRow]
+
+
+class DifferentLine(Entry):
+    """A line of a comparison of two texts, with its numbers, counted from 1, in both.
+
+    Lines that both have stand around each change; `gap` is where others are left out, after the
+    line `before`.
+    """
+
+    mark: Literal["same", "gone", "new", "gap"]
+    text: str
+    before: int | None = None
+    after: int | None = None
+
+
+class VersionDifference(Event):
+    """How the document came from a version to what it is; null where that is too long to tell."""
+
+    id: str
+    lines: list[DifferentLine] | None
+
+
 class Error(Event):
     """What could not be done, and what to try. `seq` is the command's, or 0."""
 
@@ -1063,6 +1108,9 @@ AnyEvent = (
     | Exported
     | Saved
     | FileExists
+    | Taken
+    | Versions
+    | VersionDifference
     | Error
     | Log
 )

@@ -149,6 +149,7 @@ def export_shown(shown: Shown, format: str, options: dict[str, Any], folder: Pat
             factors=shown.factors,
             positions=shown.positions,
             moment=shown.moment,
+            at_rest=shown.status == "ok",
             text=shown.text,
         )
         page.save(target)

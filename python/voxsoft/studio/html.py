@@ -52,6 +52,8 @@ class Notes(msgspec.Struct):
     overlap: events.Overlap | None = None
     #: Where objects are as they are shown first, and what touches then; None: nowhere, or unloaded.
     moment: events.Moment | None = None
+    #: Whether what is shown first is an equilibrium.
+    at_rest: bool = False
 
 
 @dataclass(frozen=True)
@@ -93,6 +95,7 @@ def page_of_body(
     factors: Sequence[float] = (),
     positions: NDArray[np.float64] | None = None,
     moment: events.Moment | None = None,
+    at_rest: bool = False,
     text: str = "",
     sentence: str = "",
 ) -> LivePage:
@@ -109,6 +112,8 @@ def page_of_body(
         from the unloaded shape.
     moment
         Where objects are then, and what touches; default: where they are unloaded.
+    at_rest
+        Whether those positions are an equilibrium.
     text
         The design as text; default: as :meth:`voxsoft.design.Design.to_toml` writes it.
     sentence
@@ -146,6 +151,7 @@ def page_of_body(
         overlap=None if positions is None else _overlap(body, design, positions),
         # The page shows first what it calls frame 0.
         moment=moment and msgspec.structs.replace(moment, frame=0, fields=False),
+        at_rest=at_rest and positions is not None,
     )
     scene = scene_of(body).pack(msgspec.json.encode(notes).decode(), positions)
     return LivePage(_filled(scene, design.name))
@@ -173,7 +179,13 @@ def page_of(shown: Design | Result) -> LivePage:
     sentence = f"{shown.message[:1].upper()}{shown.message[1:]}."
     moments = moments_of(shown, 0)
     moment = moments[-1] if moments else None
-    return page_of_body(body, positions=shown.positions, moment=moment, sentence=sentence)
+    return page_of_body(
+        body,
+        positions=shown.positions,
+        moment=moment,
+        at_rest=shown.status == "ok",
+        sentence=sentence,
+    )
 
 
 def export_page(source: FilePath, target: FilePath, assignments: Sequence[str] = ()) -> None:

@@ -6,13 +6,15 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Final
 
-from voxsoft.design import families, robots
-from voxsoft.errors import FileError, VoxSoftError
+from voxsoft.design import Design, families, robots
+from voxsoft.design.resolution import Document as PlainDocument
+from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import load
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.uploads import MESHES, design_of_array, design_of_mesh
+from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
 
 #: The name of the design that holds nothing yet.
@@ -132,12 +134,34 @@ def trial_document(folder: Path, number: str, home: Path) -> tuple[DesignDocumen
     design = document.design
     if design is None:
         raise FileError(f"{folder.name}/{number}", "belongs to a design that cannot be read")
-    text = document.text
+    text = with_parameters_of(trial, document.text, document.source or {}, design)
+    name = f"{folder.name}-{number}.toml"
+    return DesignDocument(text, name, folder=document.folder), trial.status == "ok"
+
+
+def with_parameters_of(trial: Trial, text: str, source: PlainDocument, design: Design) -> str:
+    """The text of a design with the parameters of a trial in place of its own.
+
+    Parameters
+    ----------
+    trial
+        The trial.
+    text, source, design
+        The design file, what is written in it, and what that means.
+
+    Raises
+    ------
+    DesignError
+        The design has no parameter of that name.
+    """
+    missing = [name for name in trial.parameters if name not in design.parameters]
+    if missing:
+        what = f"varies {', '.join(missing)}, which the open design does not have as a parameter"
+        raise DesignError(f"design {trial.number}", what, "open it as a document of its own")
     for parameter, value in trial.parameters.items():
         kind = design.parameters[parameter].kind
         shown = format_quantity(value, kind) if isinstance(value, float) else value
-        table = (document.source or {}).get("parameters", {}).get(parameter)
+        table = source.get("parameters", {}).get(parameter)
         inner = ["value"] if isinstance(table, dict) else []
         text = with_value(text, ["parameters", parameter, *inner], shown)
-    name = f"{folder.name}-{number}.toml"
-    return DesignDocument(text, name, folder=document.folder), trial.status == "ok"
+    return text

@@ -203,7 +203,7 @@ class Playback:
         reported = player.go_to_rest(
             result.positions,
             _STATES.get(result.status, "paused"),
-            f"{sentence}, in {time_text(result.seconds)}.",
+            f"{sentence}, in {time_text(result.seconds)}." if result.seconds else f"{sentence}.",
             residual=result.residual,
             elastic=result.elastic_energy,
             time=result.time if len(times) > 0 else None,

@@ -6,6 +6,7 @@ from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Final
+from urllib.parse import urlencode
 
 import msgspec
 
@@ -73,6 +74,7 @@ class RecentFiles:
                 name=Path(each.path).name,
                 folder=str(Path(each.path).parent),
                 when=each.when,
+                picture=f"/picture?{urlencode({'of': f'file/{each.path}'})}",
             )
             for each in self._noted
             if _is_there(Path(each.path))

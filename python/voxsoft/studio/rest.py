@@ -67,6 +67,11 @@ class RestSearch(threading.Thread):
         self._largest = 0.0
         self._end: float | None = None
 
+    @property
+    def as_designed(self) -> bool:
+        """Whether loads and solver are those of the design, which no hand has changed."""
+        return self._method == "auto" and all(factor == 1.0 for factor in self._factors)
+
     def stop(self) -> None:
         """Give the search up; its listener hears no more of it."""
         self._stopped.set()

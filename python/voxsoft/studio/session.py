@@ -8,10 +8,11 @@ from __future__ import annotations
 import shutil
 import threading
 import uuid
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import singledispatchmethod
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from voxsoft._folders import folder_name
 from voxsoft.design import Design
@@ -20,11 +21,13 @@ from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, MeasurementError, StudyError, VoxSoftError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.cards import card_name, load_card_file, save_card
+from voxsoft.files.designs import read_text
 from voxsoft.files.figures import save_thumbnail
 from voxsoft.files.run_folder import make_folder
 from voxsoft.jobs import CalibrateSpec, DesignSource, MeasuredTable, load
 from voxsoft.simulation.check import CheckReport
 from voxsoft.studio import commands, events
+from voxsoft.studio.album import Album
 from voxsoft.studio.asked import spec_of
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.catalog import hello
@@ -38,6 +41,7 @@ from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.fineness import fineness_of
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
+from voxsoft.studio.line_difference import line_differences
 from voxsoft.studio.materials import materials_of
 from voxsoft.studio.mesher import Mesher
 from voxsoft.studio.opening import (
@@ -47,10 +51,12 @@ from voxsoft.studio.opening import (
     template_document,
     trial_document,
     uploaded_document,
+    with_parameters_of,
 )
 from voxsoft.studio.positions import diagnostics_of
 from voxsoft.studio.recent import RecentFiles
 from voxsoft.studio.recipes import recipe_of
+from voxsoft.studio.reopening import Known, RunState, stored_in
 from voxsoft.studio.runs import RunList, card_of, kind_of
 from voxsoft.studio.several import (
     added,
@@ -63,9 +69,12 @@ from voxsoft.studio.several import (
 from voxsoft.studio.starting import start_event
 from voxsoft.studio.stills import Stills
 from voxsoft.studio.stored_job import stored_job
+from voxsoft.studio.studying import stored_trial
 from voxsoft.studio.tab import Tab
 from voxsoft.studio.tables import guessed_columns, mapped_text, measured
+from voxsoft.studio.thumbnails import Thumbnail
 from voxsoft.studio.uploads import safe_name, unpack_folder
+from voxsoft.studio.versions import Versions, versions_event
 
 #: Folder of the studio's own files below the runs.
 OWN_FOLDER: Final = ".studio"
@@ -75,6 +84,13 @@ _KIND_NAMES: Final[dict[type, str]] = {
     commands.StudySpec: "study",
     commands.CalibrateSpec: "calibration",
 }
+
+
+class _Loaded(NamedTuple):
+    """A revision that is to be shown at rest, and where its equilibrium may be stored."""
+
+    rev: int
+    stored: Sequence[Known]
 
 
 class Session:
@@ -97,10 +113,11 @@ class Session:
         self.runs = runs.absolute()
         self.own = self.runs / OWN_FOLDER
         self.tabs = Tabs()
-        self.engine = Engine(self.tabs)
         self.jobs = Jobs(self.tabs, self._runs_changed)
         self.list = RunList(self.runs, self.own, self.jobs.running_in)
         self.stills = Stills(self.list)
+        self.album = Album(self.own, self.list)
+        self.engine = Engine(self.tabs, self.album.solved)
         self._tables: dict[str, tuple[str, list[commands.ColumnMap] | None]] = {}
         self._mesher = Mesher(
             self.engine.wait_for_body,
@@ -111,10 +128,11 @@ class Session:
         )
         self._lock = threading.RLock()
         self._author: Tab | None = None
-        self._loaded_rev: int | None = None
+        self._loaded: _Loaded | None = None
         self._downloads: dict[str, Path] = {}
         self._drafts = Drafts(self.own)
         self._recent = RecentFiles(self.own)
+        self._versions = Versions(self.own)
         self._fresh = source is None and self._drafts.read() is None
         self._notes: list[str] = []
         self.document = self._first_document(source)
@@ -306,11 +324,56 @@ class Session:
             if there.exists() and there != self.document.path:
                 self.tabs.send_to(tab, events.FileExists(path=str(there)))
                 return
-        written = self.document.save(path)
+        written = self._saved(path)
         self._keep_draft(now=True)
         self._begun()
         self.tabs.publish(self.document.event())
         self.tabs.publish(events.Saved(what="document", path=str(written)))
+
+    def _saved(self, path: Path | None) -> Path:
+        """Save the document; what the file held before is a version, as is what it holds now."""
+        before = ""
+        with suppress(VoxSoftError):
+            before = read_text(self.document.target(path or self.document.path or Path()))
+        written = self.document.save(path)
+        self._versions.keep(written, before, "in the file before")
+        self._versions.keep(written, self.document.text, "saved")
+        return written
+
+    @_execute.register
+    def _on_versions(self, command: commands.Versions, tab: Tab) -> None:
+        file = self.document.file
+        self.tabs.send_to(tab, versions_event(file, self._versions.of(file)))
+
+    @_execute.register
+    def _on_version_show(self, command: commands.VersionShow, tab: Tab) -> None:
+        version = self._versions.one(self.document.file, command.id)
+        lines = line_differences(version.text, self.document.text)
+        self.tabs.send_to(tab, events.VersionDifference(id=version.id, lines=lines))
+
+    @_execute.register
+    def _on_version_restore(self, command: commands.VersionRestore, tab: Tab) -> None:
+        self._author = tab
+        version = self._versions.one(self.document.file, command.id)
+        self._versions.keep(self.document.file, self.document.text, "before another was restored")
+        self._changed(self.document.replace(version.text))
+
+    @_execute.register
+    def _on_take(self, command: commands.Take, tab: Tab) -> None:
+        self._author = tab
+        run, _, number = command.trial.rpartition("/")
+        folder = self.list.folder_of(run)
+        trial = stored_trial(folder, number)
+        source, design = self._good(self.document)
+        text = with_parameters_of(trial, self.document.text, source, design)
+        changed = self.document.replace(text)
+        taken = self.document.design
+        if trial.status == "ok" and taken is not None and taken.hash == trial.hash:
+            self._loaded = _Loaded(self.document.rev, stored_in(folder))
+            if not changed:
+                self._mesh()  # it is that design, and is shown as it came to rest
+        self._changed(changed)
+        self.tabs.send_to(tab, events.Taken(trial=command.trial, changed=changed))
 
     @_execute.register
     def _on_open(self, command: commands.Open, tab: Tab) -> None:
@@ -330,18 +393,25 @@ class Session:
                 self._open_run(self.list.folder_of(command.name))
             case "trial":
                 run, _, number = command.name.rpartition("/")
-                document, at_rest = trial_document(self.list.folder_of(run), number, self._home)
-                self._open(document, loaded=at_rest)
+                folder = self.list.folder_of(run)
+                document, at_rest = trial_document(folder, number, self._home)
+                self._open(document, stored_in(folder) if at_rest else None)
 
     @property
     def _home(self) -> Path:
         """Where documents that have no file would be saved."""
         return self.runs.parent
 
-    def _open(self, document: DesignDocument, *, loaded: bool = False) -> None:
-        """Show another document, at rest where asked; undo leads back to the one before."""
+    def _open(self, document: DesignDocument, stored: Sequence[Known] | None = None) -> None:
+        """Show another document; undo leads back to the one before.
+
+        With `stored`, where its equilibrium may be, it is shown at rest.
+        """
+        if self.document.edited:
+            reason = f"before {document.name} was opened"
+            self._versions.keep(self.document.file, self.document.text, reason)
         document.follow(self.document)
-        self._loaded_rev = document.rev if loaded else None
+        self._loaded = None if stored is None else _Loaded(document.rev, stored)
         self._show(document)
 
     def _turn_to(self, document: DesignDocument) -> None:
@@ -381,7 +451,8 @@ class Session:
     def _open_run(self, folder: Path) -> None:
         kind = kind_of(folder)
         try:
-            self._open(document_at(folder, self._home), loaded=kind == "run")
+            stored = [RunState(folder)] if kind == "run" else None
+            self._open(document_at(folder, self._home), stored)
         except FileError as error:
             if kind != "calibrate":
                 raise
@@ -555,7 +626,12 @@ class Session:
 
     def _meshed(self, body: StudioBody) -> None:
         # What came to rest when it ran is shown as it ended, not as it began.
-        self.engine.show(body, loaded=body.rev == self._loaded_rev)
+        asked = self._loaded
+        loaded = asked is not None and asked.rev == body.rev
+        known = None
+        if asked is not None and loaded:
+            known = self.album.equilibrium(body, asked.stored)
+        self.engine.show(body, loaded=loaded, known=known)
 
     def _examined(self, body: StudioBody, report: CheckReport, smooth: bytes | None) -> None:
         self.engine.publish_report(body, report, smooth)
@@ -617,6 +693,31 @@ class Session:
         with self._lock:
             name, text = Path(self.document.name).stem, self.document.text
         return self.engine.shown(name, text)
+
+    def picture(self, of: str, cancelled: threading.Event) -> Thumbnail:
+        """Draw what a page asks for: "trial/ID/INDEX", "file/PATH" or "version/ID" of the document.
+
+        Only files that the start screen lists are drawn.
+
+        Raises
+        ------
+        VoxSoftError
+            There is no such thing, or it cannot be drawn.
+        NoLongerWantedError
+            `cancelled` was set before it was begun.
+        """
+        kind, _, name = of.partition("/")
+        if kind == "trial":
+            run, _, number = name.rpartition("/")
+            return self.album.of_trial(run, number, cancelled)
+        if kind == "version":
+            with self._lock:
+                file = self.document.file
+            one = self._versions.one(file, name)
+            return self.album.of_text(one.text, one.name, Path(one.folder), cancelled)
+        if kind == "file" and any(each.path == name for each in self._recent.files()):
+            return self.album.of_file(Path(name), cancelled)
+        raise FileError(of[:200], "is not known", "reload the page")
 
     def thumbnail(self, run: str) -> Path | None:
         """The picture of a run, if there is one."""

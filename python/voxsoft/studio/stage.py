@@ -37,21 +37,31 @@ class Stage:
         Where events and frames go.
     later
         Does a task on the thread of the stage; may be called by any thread.
+    solved
+        Called with each equilibrium that is found under the loads of the design.
     """
 
-    def __init__(self, bus: EventBus, later: Callable[[Callable[[], None]], None]) -> None:
+    def __init__(
+        self,
+        bus: EventBus,
+        later: Callable[[Callable[[], None]], None],
+        solved: Callable[[StudioBody, Result], None],
+    ) -> None:
         self.bus = bus
         self.playback = Playback()
         self.pictures = Pictures(self.playback, bus)
         self.overlaps = OverlapWatch(self.playback, bus)
-        self._later = later
+        self._later, self._solved = later, solved
         self._search: RestSearch | None = None
         self._equilibrium: events.Equilibrium | None = None
 
     # The body
 
-    def show(self, body: StudioBody, *, loaded: bool = False) -> None:
-        """Take another body, unloaded and at time zero, and look for its rest where asked."""
+    def show(self, body: StudioBody, *, loaded: bool = False, known: Result | None = None) -> None:
+        """Take another body, unloaded and at time zero, or in an equilibrium that is known.
+
+        Where it is to be shown `loaded` and its equilibrium is not known, a search for it begins.
+        """
         self.stop_search()
         self._equilibrium = None
         again = self.playback.begin(body)
@@ -60,8 +70,12 @@ class Stage:
         if again:
             self.playback.require_player().resume()
         self.painted()
-        if loaded and body.refusal is None and not self.playback.moving:
+        if not loaded or body.refusal is not None or self.playback.moving:
+            return
+        if known is None or self.playback.method != "auto":
             self.find_rest()
+        else:
+            self._come_to_rest(known)
 
     def wait_for_body(self) -> None:
         """Say that a body is being meshed, unless one is moving meanwhile."""
@@ -184,11 +198,16 @@ class Stage:
     def _found(self, search: RestSearch, result: Result) -> None:
         if search is self._search:
             self._search = None
-            reported = self.playback.go_to_rest(result)
-            self.pictures.forget()
-            self.painted()
-            self.publish(reported)
-            self.measure()
+            self._come_to_rest(result)
+            if search.as_designed and result.status == "ok":
+                self._solved(self.playback.require_body(), result)
+
+    def _come_to_rest(self, result: Result) -> None:
+        reported = self.playback.go_to_rest(result)
+        self.pictures.forget()
+        self.painted()
+        self.publish(reported)
+        self.measure()
 
     def _not_found(self, search: RestSearch, sentence: str) -> None:
         if search is self._search:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
@@ -20,21 +21,19 @@ from voxsoft.design import Design
 from voxsoft.design.documents import with_absolute_paths
 from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
-from voxsoft.files.meshes import read_mesh_file
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.softening import softening_parts
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
+from voxsoft.studio.reopening import Known, known_equilibrium, run_positions, stored_in
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
 from voxsoft.studio.surface import Surface
 from voxsoft.studio.wire import FrameFlag
 from voxsoft.study.trial import Trial
 
-#: What a run leaves of its body.
-RESULT: Final = "result.vtu"
 #: Bodies that were solved for a picture and are kept, so that another look costs nothing.
 MOST_KEPT: Final = 4
 #: The number of the one topology of an answer, which its frames name.
@@ -172,7 +171,7 @@ class Stills:
             if (known := self._solved.get(key)) is not None:
                 self._solved.move_to_end(key)
                 return known
-        still = _solved(design, cancelled)
+        still = _at_rest(design, stored_in(folder), cancelled)
         with self._lock:
             self._solved[key] = still
             while len(self._solved) > MOST_KEPT:
@@ -199,30 +198,21 @@ def design_in(folder: Path) -> Design:
 
 def _of_run(folder: Path) -> Still:
     """Read what a run left."""
-    file = folder / RESULT
-    if not file.is_file():
-        raise FileError(
-            folder.name, "holds no result: it has not ended, or not well", "start it again"
-        )
+    mesh, positions = run_positions(folder)
     design = design_in(folder)
-    content = read_mesh_file(file)
-    moved = content.point_data.get("displacement")
-    if moved is None or np.shape(moved) != content.mesh.vertices.shape:
-        raise FileError(str(file), "holds no displacement", "start the run again")
     try:
         status = str(read_summary(folder).get("status", "ok"))
     except OSError:
         status = "ok"
-    positions = content.mesh.vertices + np.asarray(moved, dtype=np.float64)
-    setup = Setup(design, content.mesh)
+    setup = Setup(design, mesh)
     if next(softening_parts(design), None) is not None:
         # The mesh file does not say what the voxels remember, and so not their stress.
         return Still(setup, positions, status, fields=(FIELDS[DISPLACEMENT].name,))
     return Still(setup, positions, status)
 
 
-def _solved(design: Design, cancelled: threading.Event) -> Still:
-    """Mesh and solve a design, as its study did."""
+def _at_rest(design: Design, stored: Sequence[Known], cancelled: threading.Event) -> Still:
+    """Mesh a design, and take its stored equilibrium, or solve it as its study did."""
     body = StudioBody.of(design, rev=0, topology=_TOPOLOGY)
     if body.refusal is not None:
         raise body.refusal
@@ -232,7 +222,7 @@ def _solved(design: Design, cancelled: threading.Event) -> Still:
             raise StillCancelledError
 
     look()
-    result = simulate(body.setup, progress=look)
+    result = known_equilibrium(body, stored) or simulate(body.setup, progress=look)
     if not np.isfinite(result.positions).all():
         raise SimulationError(design.name, result.message, "look at a design with a smaller load")
     return Still(body.setup, result.positions, result.status)

@@ -10,6 +10,7 @@ from voxsoft.design import Design
 from voxsoft.errors import DisconnectedError, NoCavityError, VoxSoftError
 from voxsoft.metrics.own import OwnMetric, missing_metrics
 from voxsoft.simulation import Result, Status, follow, simulate
+from voxsoft.study.equilibria import Equilibrium
 from voxsoft.study.indexed_cavities import IndexedCavities
 
 
@@ -34,6 +35,8 @@ class Outcome:
     path
         Where equilibria were followed: the values of what changed, by its key, and those of each
         objective and constraint beside them.
+    equilibrium
+        Where the body came to rest under the loads of the design, if it did.
     """
 
     status: Status
@@ -43,6 +46,7 @@ class Outcome:
     warnings: tuple[str, ...] = ()
     cavities: IndexedCavities = field(default_factory=IndexedCavities)
     path: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+    equilibrium: Equilibrium | None = field(default=None, repr=False, compare=False)
 
 
 #: Evaluates a design in a worker process; it is sent there by pickle.
@@ -126,6 +130,7 @@ def _along(over: str, design: Design) -> Outcome:
         message=path.message,
         warnings=tuple(warnings),
         path={path.over.key: path.values, **asked},
+        equilibrium=None,  # the end of the path need not have the loads of the design
     )
 
 
@@ -159,4 +164,7 @@ def outcome_of_result(result: Result, metrics: Mapping[str, float]) -> Outcome:
     """
     warnings = tuple(str(warning) for warning in result.warnings)
     cavities = IndexedCavities.of(result.design, result.mesh)
-    return Outcome(result.status, result.message, metrics, 0.0, warnings, cavities)
+    rest = Equilibrium.of(result) if result.status == "ok" else None
+    return Outcome(
+        result.status, result.message, metrics, 0.0, warnings, cavities, equilibrium=rest
+    )

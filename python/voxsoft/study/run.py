@@ -13,6 +13,7 @@ from voxsoft._interrupt import Interrupts
 from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import StudyError, VoxSoftError
 from voxsoft.search.optuna_bridge import StoredStudy, TrialState
+from voxsoft.study.equilibria import Equilibria
 from voxsoft.study.event import ProgressCallback, TrialEvent
 from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, Outcome
@@ -55,6 +56,8 @@ class StudyRun:
         Number of trials in the end, for `progress`.
     gate
         While it is closed no trial begins; those that have are stored as they end.
+    equilibria
+        Where to keep the states of designs that came to rest, if anywhere.
     """
 
     study: StoredStudy
@@ -66,6 +69,7 @@ class StudyRun:
     progress: ProgressCallback | None
     total: int
     gate: Gate | None = None
+    equilibria: Equilibria | None = None
     _running: dict[Future[Outcome], _Job] = field(default_factory=dict)
     _twins: dict[str, list[_Job]] = field(default_factory=dict)
     _solved: dict[str, tuple[int, Outcome]] = field(default_factory=dict)
@@ -183,6 +187,11 @@ class StudyRun:
             self.gate.stored()
 
     def _finish(self, job: _Job, outcome: Outcome) -> None:
+        # The state first: whoever is told of the trial may look for it.
+        if outcome.equilibrium is not None:
+            if self.equilibria is not None:
+                self.equilibria.keep(job.hash, outcome.equilibrium)
+            outcome = replace(outcome, equilibrium=None)
         self._store(job.number, outcome, job.hash, None)
         for twin in self._twins.pop(job.hash, []):
             self._share(twin)

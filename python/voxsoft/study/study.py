@@ -21,6 +21,7 @@ from voxsoft.search.optuna_bridge import BaseStorage, FrozenTrial, StoredStudy
 from voxsoft.search.samplers import SINGLE_OBJECTIVE, grid_values
 from voxsoft.simulation.over import Over
 from voxsoft.study.definition import definition
+from voxsoft.study.equilibria import FOLDER, Equilibria
 from voxsoft.study.event import ProgressCallback
 from voxsoft.study.gate import Gate
 from voxsoft.study.outcome import Evaluate, evaluate_design, evaluate_path, evaluate_with_metrics
@@ -65,7 +66,9 @@ class Study:
         Metrics to keep within bounds, by name. Default: those of the design. A trial that
         breaks one is recorded and not feasible.
     folder
-        Where trials are stored; default ``studies/NAME``. One process at a time writes it.
+        Where trials are stored; default ``studies/NAME``. One process at a time writes it. The
+        equilibria of its designs are kept there too, up to 256 MB, so that the studio shows them
+        at once.
     storage
         An Optuna storage, as its URL or object; trials then go there and not to the folder.
     name
@@ -341,6 +344,7 @@ class Study:
                     progress,
                     total,
                     gate,
+                    None if self.folder is None else Equilibria(self.folder / FOLDER),
                 ).evaluate_all(proposals(study))
                 finished = True
             except KeyboardInterrupt:

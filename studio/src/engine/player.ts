@@ -20,6 +20,8 @@ export interface Notes {
   readonly overlap?: OverlapEvent | null;
   /** Where objects are then, and what touches. */
   readonly moment?: Moment | null;
+  /** Whether what is shown first is an equilibrium. */
+  readonly at_rest?: boolean;
 }
 
 export interface Audience {
@@ -40,6 +42,8 @@ const PLAYED: ReadonlySet<string> = new Set([
 
 /** Commands after which the first frame is that of the unloaded shape. */
 const LEAVE: ReadonlySet<string> = new Set(["play", "step", "reset", "grab"]);
+/** Commands after which the body is not at rest, though it is where it was. */
+const WAKE: ReadonlySet<string> = new Set([...LEAVE, "load"]);
 
 export class Player {
   private credits = CREDITS;
@@ -50,6 +54,7 @@ export class Player {
   private overlapForgotten = false;
   private momentForgotten = false;
   private playing = false;
+  private woken = false;
 
   constructor(
     private readonly run: Run,
@@ -138,6 +143,7 @@ export class Player {
   private play(command: Draft): void {
     const before = this.playing;
     if (LEAVE.has(command.t)) this.forgetMoment();
+    if (WAKE.has(command.t)) this.woken = true;
     this.tell(this.run.command(command));
     if (!before) this.lastTurn = null;
   }
@@ -161,7 +167,10 @@ export class Player {
     this.playing = stat.state === "playing";
     this.forgetOverlap(stat);
     const sentence = stat.sentence || hint(stat.state);
-    this.audience.event({ ...stat, sentence, solver: "xpbd", progress: null });
+    // The core knows the first frame as one that has not begun; whoever wrote the page knows more.
+    const resting = this.notes.at_rest && !this.woken && stat.state === "paused";
+    const state = resting ? "at-rest" : stat.state;
+    this.audience.event({ ...stat, state, sentence, solver: "xpbd", progress: null });
   }
 
   private tellMoment(moment: Moment): void {

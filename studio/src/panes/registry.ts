@@ -31,6 +31,7 @@ export const PANES: readonly PaneDefinition[] = [
   pane("generations", "Generations", () => import("./calibrate/GenerationsPane")),
   pane("errors", "Errors", () => import("./calibrate/ErrorsPane")),
   pane("study", "Study", () => import("./study/StudyPane")),
+  pane("atlas", "Atlas", () => import("./study/atlas/AtlasPane")),
   pane("history", "History", () => import("./study/HistoryPane")),
   pane("scatter", "Design space", () => import("./study/ScatterPane")),
   pane("pareto", "Trade-offs", () => import("./study/ParetoPane")),

@@ -135,7 +135,9 @@ export function Transport() {
         <i /> LIVE
       </button>
       <output className="clock" data-testid="clock">
-        {(stat?.time ?? 0).toFixed(3)} s
+        {stat?.state === "at-rest" && stat.time === 0
+          ? "at rest"
+          : `${(stat?.time ?? 0).toFixed(3)} s`}
       </output>
     </div>
   );

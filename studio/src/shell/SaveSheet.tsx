@@ -63,6 +63,11 @@ export function SaveSheet() {
         </p>
       )}
       <div className="sheet-buttons">
+        <span className="sheet-push">
+          <Button kind="quiet" testId="save-versions" onClick={() => openSheet("versions")}>
+            Versions…
+          </Button>
+        </span>
         <Button kind="quiet" onClick={() => openSheet(null)}>
           Cancel
         </Button>

@@ -9,6 +9,7 @@ import { Icon } from "./icons";
 import { DiscardSheet, SaveSheet } from "./SaveSheet";
 import { Toasts } from "./Toasts";
 import { STEPS, tourSeen } from "./tour";
+import { VersionsSheet } from "./VersionsSheet";
 
 export function Sheets() {
   const sheet = usePage((page) => page.sheet);
@@ -30,6 +31,11 @@ export function Sheets() {
       {sheet === "save" && (
         <Scrim label="Save the design as" testId="save-sheet">
           <SaveSheet />
+        </Scrim>
+      )}
+      {sheet === "versions" && (
+        <Scrim label="Versions of the document" testId="versions-sheet">
+          <VersionsSheet />
         </Scrim>
       )}
       {sheet === "discard" && (

@@ -37,10 +37,17 @@ export function TopBar() {
           </button>
         ))}
       </nav>
-      <div
+      <button
+        type="button"
         className="document-name"
         data-testid="document-name"
-        title={document?.path ?? (document && `would be saved in ${document.folder}`) ?? undefined}
+        disabled={!document}
+        title={
+          document
+            ? `${document.path ?? `would be saved in ${document.folder}`} (click for its versions)`
+            : undefined
+        }
+        onClick={() => openSheet("versions")}
       >
         {document ? (
           <>
@@ -52,7 +59,7 @@ export function TopBar() {
         ) : (
           <span className="muted">no design open</span>
         )}
-      </div>
+      </button>
       <Button
         icon
         kind="quiet"

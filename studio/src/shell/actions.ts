@@ -108,6 +108,12 @@ function simple(): Action[] {
       run: () => useStudio.getState().document && openSheet("save"),
     },
     {
+      id: "versions",
+      title: "Versions of the design: look at them, restore one…",
+      group: "Document",
+      run: () => useStudio.getState().document && openSheet("versions"),
+    },
+    {
       id: "start",
       title: "Start screen: new, open, recent, finished robots",
       group: "Document",

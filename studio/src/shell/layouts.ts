@@ -42,7 +42,7 @@ const LAYOUTS: Readonly<Record<Mode, Layout>> = {
   },
   optimize: {
     left: [["study"]],
-    main: ["view", "compare"],
+    main: ["view", "atlas", "compare"],
     bottom: [["trials", "log"]],
     right: [["history"], ["scatter", "pareto"], ["parallel"]],
     leftShare: 0.22,

@@ -4,8 +4,10 @@ import icon from "../icon.svg";
 import type { RecentFile, Robot } from "../protocol";
 import { upload } from "../shell/DropZone";
 import { Icon } from "../shell/icons";
+import { BodyPicture } from "../shell/VersionsSheet";
 import { openSheet } from "../store/page";
 import { useStudio } from "../store/studio";
+import { whenWords } from "../store/when";
 import { openFromStart, openRobot } from "./begin";
 import { NewRobot } from "./NewRobot";
 import { addressOf, TUTORIALS } from "./tutorials";
@@ -147,7 +149,7 @@ export function Start() {
             {recent.length === 0 ? (
               <p className="muted">What you save or open is listed here.</p>
             ) : (
-              <ul className="start-list" data-testid="start-recent">
+              <ul className="start-list is-pictured" data-testid="start-recent">
                 {recent.map((file) => (
                   <li key={file.path}>
                     <button
@@ -155,6 +157,7 @@ export function Start() {
                       title={file.path}
                       onClick={() => openFromStart("file", file.path)}
                     >
+                      <BodyPicture url={file.picture} />
                       <strong>{file.name}</strong>
                       <span className="muted">{whenWords(file.when)}</span>
                       <span className="muted folder">{file.folder}</span>
@@ -210,15 +213,4 @@ function RobotCard(props: { robot: Robot }) {
       <span className="muted">{robot.sentence}</span>
     </button>
   );
-}
-
-/** When something was, in words that need no arithmetic. */
-export function whenWords(when: string, now = Date.now()): string {
-  const seconds = (now - Date.parse(when)) / 1000;
-  if (!Number.isFinite(seconds)) return "";
-  const relative = new Intl.RelativeTimeFormat("en", { numeric: "auto" });
-  if (seconds < 60) return "just now";
-  if (seconds < 3600) return relative.format(-Math.floor(seconds / 60), "minute");
-  if (seconds < 86_400) return relative.format(-Math.floor(seconds / 3600), "hour");
-  return relative.format(-Math.floor(seconds / 86_400), "day");
 }

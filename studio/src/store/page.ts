@@ -16,7 +16,15 @@ export const MODE_TITLES: Readonly<Record<Mode, string>> = {
 };
 
 export type ThemeChoice = "system" | "dark" | "light";
-export type Sheet = "start" | "palette" | "shortcuts" | "tour" | "save" | "discard" | null;
+export type Sheet =
+  | "start"
+  | "palette"
+  | "shortcuts"
+  | "tour"
+  | "save"
+  | "versions"
+  | "discard"
+  | null;
 
 /** What is to be opened once the open design has been saved or given up. */
 export type Pending = Pick<OpenCommand, "t" | "what" | "name">;

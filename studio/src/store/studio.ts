@@ -29,6 +29,8 @@ import type {
   StatEvent,
   TrialEvent,
   TrialsEvent,
+  VersionDifferenceEvent,
+  VersionsEvent,
   VibrationEvent,
 } from "../protocol";
 import type { Gathered } from "./gather";
@@ -92,6 +94,10 @@ export interface Studio {
   measured: Readonly<Record<string, MeasuredEvent>>;
   /** A file that is there already, which saving would replace. */
   fileExists: string | null;
+  /** Versions of the document, once they were asked for. */
+  versions: VersionsEvent | null;
+  /** How the version that was asked for last differs from the document. */
+  versionDifference: VersionDifferenceEvent | null;
   /** Grows with each design that was saved. */
   saved: number;
   log: readonly LogLine[];
@@ -135,6 +141,8 @@ export const useStudio = create<Studio>(() => ({
   compared: null,
   measured: {},
   fileExists: null,
+  versions: null,
+  versionDifference: null,
   saved: 0,
   log: [],
   toasts: [],
@@ -280,6 +288,15 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
     case "file_exists":
       set({ fileExists: event.path });
       break;
+    case "taken":
+      toast(takenToast(event.trial, event.changed, useStudio.getState().document));
+      break;
+    case "versions":
+      set({ versions: event, versionDifference: null });
+      break;
+    case "version_difference":
+      set({ versionDifference: event });
+      break;
     case "saved":
       if (event.what === "document") set((state) => ({ saved: state.saved + 1 }));
       toast(savedToast(event));
@@ -318,6 +335,17 @@ export function showAskedPace(factor: number | null): void {
     const asked = { factor, choice: (askedPace?.choice ?? stat?.pace_choices ?? 0) + 1 };
     return { stat: stat && withPace(stat, asked), askedPace: asked };
   });
+}
+
+function takenToast(
+  trial: string,
+  changed: boolean,
+  document: DocumentEvent | null,
+): Omit<Toast, "id"> {
+  const [design, name] = [`design ${trial.split("/").at(-1)}`, document?.name ?? "the design"];
+  if (!changed) return { level: "info", what: `${name} is ${design} already`, hint: "" };
+  const hint = "Undo brings its own parameters back.";
+  return { level: "good", what: `${name} has the parameters of ${design}`, hint };
 }
 
 function savedToast({ what, path }: SavedEvent): Omit<Toast, "id"> {

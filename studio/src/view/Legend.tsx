@@ -12,7 +12,6 @@ import { useStudio } from "../store/studio";
 import { type RangeMode, setView, useShown, useView } from "../store/view";
 import { gradient } from "./colormaps";
 import { CLIP } from "./colorRange";
-import { viewport } from "./instance";
 
 const SHARES = [1, 0.75, 0.5, 0.25, 0];
 const RANGES: { value: RangeMode; label: string }[] = [
@@ -40,12 +39,7 @@ export function Legend() {
   const lock = (mode: RangeMode) =>
     setView(mode === "locked" ? { range: mode, low, high } : { range: mode });
   return (
-    <aside
-      ref={keepClear}
-      className="legend"
-      aria-label={`Colors: ${about.title}`}
-      data-testid="legend"
-    >
+    <aside className="legend" aria-label={`Colors: ${about.title}`} data-testid="legend">
       <button
         type="button"
         className="legend-title"
@@ -105,10 +99,6 @@ export function Legend() {
       )}
     </aside>
   );
-}
-
-function keepClear(legend: HTMLElement | null) {
-  return legend ? viewport().keepClearOf(legend) : undefined;
 }
 
 /** A place on the body at rest, in millimeters. */

@@ -83,6 +83,7 @@ export class Labels {
     const standing = standWords(
       seen.map((one) => one.word),
       pressed,
+      width,
     );
     for (const [i, { element, word }] of seen.entries()) {
       const { lines, left, crowded } = standing[i]!;

@@ -30,12 +30,12 @@ import { FaceMark } from "./faceMark";
 import { ContactForces } from "./forces";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
-import type { Rect } from "./labelLayout";
 import { type Label, Labels } from "./labels";
 import { MoveHandle } from "./moveHandle";
 import { RigidObjects } from "./objects";
 import { drawnAt, overlapLabels, overlapOf } from "./overlap";
 import { Painter } from "./painter";
+import { Panels } from "./panels";
 import { listen } from "./pointer";
 import { ladder, type Quality, WHOLE } from "./quality";
 import { Section } from "./section";
@@ -110,7 +110,7 @@ export class Viewport {
   private readonly several = new Several();
   private readonly forces = new ContactForces();
   private readonly labels = new Labels();
-  private legend: Rect | null = null;
+  private readonly panels = new Panels();
   private ink = themeColor("--ink");
   private readonly gate = new FrameGate();
   // Disposed of after the next picture, which then uses their shaders again without compiling.
@@ -123,6 +123,8 @@ export class Viewport {
   private coming: BodyMesh | null = null;
   private smooth: SmoothMesh | null = null;
   private tetPlaces: TetPlaces | null = null;
+  // A body of which no frame was drawn yet.
+  private unseen = false;
   private latest: Frame | null = null;
   private positions: { key: string; values: Float32Array } | null = null;
   private asked: number | null = null;
@@ -356,6 +358,7 @@ export class Viewport {
 
   attach(parent: HTMLElement): void {
     parent.prepend(this.element);
+    this.panels.watch(parent, () => this.request());
     this.attached = true;
     this.resize();
     this.tellView();
@@ -363,25 +366,9 @@ export class Viewport {
 
   detach(): void {
     this.element.remove();
+    this.panels.watch(null, () => {});
     this.attached = false;
     this.tellView();
-  }
-
-  /** Keep words out of the legend for as long as it is there; gives what ends that. */
-  keepClearOf(legend: HTMLElement): () => void {
-    const measure = () => {
-      const { offsetLeft: left, offsetTop: top, offsetWidth, offsetHeight } = legend;
-      this.legend = { left, top, right: left + offsetWidth, bottom: top + offsetHeight };
-      this.request();
-    };
-    const observer = new ResizeObserver(measure);
-    observer.observe(legend);
-    observer.observe(this.element); // it stands at the right end
-    return () => {
-      observer.disconnect();
-      this.legend = null;
-      this.request();
-    };
   }
 
   private resize(): void {
@@ -430,6 +417,7 @@ export class Viewport {
     const quality = this.qualityAt(now);
     this.painter.prepare(quality);
     this.style(view, mesh);
+    this.seeFirst(view, mesh);
     const labels = this.words(view, mesh);
     this.painter.backdrop.ground.face(this.rig.toEye.z);
     this.painter.paint(this.scene, this.rig.camera, quality.smooth);
@@ -450,7 +438,7 @@ export class Viewport {
       ...this.sectionHandle.grips,
       ...this.mover.grips,
       ...this.sizer.grips,
-      ...(this.legend ? [this.legend] : []),
+      ...this.panels.rects,
     ];
     this.labels.place(this.rig.camera, width, height, pressed);
     this.hover(now, view);
@@ -524,7 +512,8 @@ export class Viewport {
     mesh.setFrame(frame);
     // A frame may be sent again, as with the colors of another field: that is no other state.
     const settled = frame.atRest && !(this.latest?.atRest && this.latest.number === frame.number);
-    if (settled) this.follow(mesh);
+    if (settled) this.follow(mesh.box(useView.getState().exaggeration));
+    this.unseen ||= this.latest === null;
     this.latest = frame;
     this.extremes = null;
     this.colors = null;
@@ -537,9 +526,15 @@ export class Viewport {
   }
 
   // A body that came to rest outside of the picture is brought into it, unless a hand chose that.
-  private follow(mesh: BodyMesh): void {
-    const box = mesh.box(useView.getState().exaggeration).clone();
-    if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box);
+  private follow(box: Box3, atOnce = false): void {
+    if (!this.rig.steered && !this.rig.holds(box)) this.rig.fit(box.clone(), atOnce);
+  }
+
+  // So is one that is shown elsewhere first than it is unloaded, with what it holds.
+  private seeFirst(view: View, mesh: BodyMesh | null): void {
+    if (!this.unseen || !mesh) return;
+    this.unseen = false;
+    this.follow(this.objects.around(mesh.box(view.exaggeration)), true);
   }
 
   /** The mesh that is drawn: the tetrahedra where they are wanted and at hand. */

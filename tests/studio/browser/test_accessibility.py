@@ -7,6 +7,7 @@ without Chromium, these tests are skipped. It sees names, roles, contrast and st
 from pathlib import Path
 
 import pytest
+from fingers import open_atlas, study_fingers
 
 pytestmark = pytest.mark.browser
 
@@ -90,6 +91,10 @@ def test_every_mode_and_sheet_is_accessible(axe, served, open_tab, scheme):
     field.fill("45 mm")
     field.press("Enter")
     tab.find("document-name").get_by_text("edited").wait_for()
+    tab.find("document-name").click()
+    tab.find("versions-none").wait_for()
+    audit.look("versions")
+    page.keyboard.press("Escape")
     page.keyboard.press("Control+o")
     tab.find("start-empty").click()
     tab.find("discard-sheet").wait_for()
@@ -142,6 +147,31 @@ def test_materials_timeline_and_fineness_are_accessible(
         assert tab.errors == []
     finally:
         server.stop()
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_atlas_and_the_versions_of_a_design_are_accessible(
+    axe, serving, open_tab, tmp_path, coarse, scheme
+):
+    server = serving(tmp_path, text=study_fingers(coarse, tmp_path / "runs" / "fingers"))
+    tab = open_tab(server.address, scheme=scheme, mode="runs", symbols=False)
+    audit, page = Audit(tab), tab.page
+    open_atlas(tab)
+    audit.look("map")
+    page.get_by_label("Arrangement").select_option("grid")
+    page.locator(".trial-frame.is-best").click()
+    tab.find("trial-card").wait_for()
+    audit.look("grid")
+    tab.find("take").click()
+    tab.find("document-name").get_by_text("edited").wait_for()
+    page.keyboard.press("Control+s")
+    tab.find("save-now").click()
+    tab.find("save-sheet").wait_for(state="detached")
+    tab.find("document-name").click()
+    tab.find("version-difference").wait_for()
+    audit.look("versions")
+    server.stop()
+    assert audit.found == {}, audit.report()
 
 
 def test_delete_closes_the_pane_whose_tab_has_the_focus(served, open_tab):

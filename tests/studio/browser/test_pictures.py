@@ -83,6 +83,10 @@ def optimized(tab):
     tab.find("trials-table").locator("tbody tr").first.click()
     tab.until("voxsoft.state === 'at-rest'")
     take(tab, "optimize")
+    tab.page.get_by_role("tab", name="Atlas").click()
+    done = "document.querySelectorAll('.trial-frame:not(.is-failed)').length"
+    tab.until(f"document.querySelectorAll('.trial-frame img').length === {done}")
+    take(tab, "atlas")
     checks = tab.find("trials-table").get_by_role("checkbox")
     checks.nth(0).check()
     checks.nth(3).check()

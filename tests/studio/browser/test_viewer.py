@@ -1,9 +1,15 @@
 """A result in one file: opened from disk, or in the cell of a notebook, with no server at all."""
 
+import json
+import tomllib
+
+import numpy as np
 import pytest
 
 import voxsoft as vs
-from voxsoft.studio.html import page_of
+from voxsoft.design import Design
+from voxsoft.studio.body import StudioBody
+from voxsoft.studio.html import page_of, page_of_body
 
 LOWEST = """(() => {
   let low = 1;
@@ -69,10 +75,36 @@ def test_a_page_of_a_result_opens_as_it_ended_and_plays_the_way_there(coarse, al
     # Positions on the wire have 16 bits of the body's size, some 1 um here.
     tab.until(f"Math.abs({LOWEST} - {lowest}) < 1e-5")
     tab.shot("page-of-a-result")
+    # An equilibrium has no time.
+    assert tab.find("clock").inner_text() == "at rest"
     tab.find("play").click()
     tab.until(f"{LOWEST} > {lowest} + 1e-3")
     tab.until("voxsoft.state === 'at-rest'")
     assert abs(tab.page.evaluate(LOWEST) - lowest) < 2e-4
+    assert tab.errors == []
+
+
+def test_a_page_of_a_body_that_was_lifted_shows_all_of_it(coarse, alone, tmp_path):
+    body = StudioBody.of(Design.from_document(tomllib.loads(coarse)), rev=1, topology=1)
+    lifted = body.mesh.vertices + np.array([0.0, 0.0, 0.15])
+    path = tmp_path / "lifted.html"
+    page_of_body(body, positions=lifted, at_rest=True).save(path)
+    tab = alone(path.as_uri())
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.until(f"{LOWEST} > 0.1")
+    tab.until("voxsoft.screenOf(0) !== null")
+    tab.shot("page-of-a-lifted-body")
+    canvas = tab.page.locator(".viewport canvas").bounding_box()
+    outside = """(({ x, y, width, height }) => {
+      let count = 0;
+      for (let i = 0; voxsoft.vertexPosition(i); i++) {
+        const [px, py] = voxsoft.screenOf(i);
+        if (px < x || px > x + width || py < y || py > y + height) count++;
+      }
+      return count;
+    })"""
+    assert tab.page.evaluate(f"{outside}({json.dumps(canvas)})") == 0
+    assert tab.find("clock").inner_text() == "at rest"
     assert tab.errors == []
 
 

@@ -157,6 +157,8 @@ function AxisBar(props: {
     const top = event.currentTarget.ownerSVGElement?.getBoundingClientRect().top ?? 0;
     return Math.min(bottom, Math.max(TOP, event.clientY - top));
   };
+  // A requirement may be open at one end.
+  const toY = (value: number) => scale.toY(Math.min(scale.high, Math.max(scale.low, value)));
   const ends = scale.axis.choices
     ? null
     : [textOn(scale.high, scale.axis, 3), textOn(scale.low, scale.axis, 3)];
@@ -186,8 +188,8 @@ function AxisBar(props: {
           className="parallel-brush"
           x={scale.x - 7}
           width="14"
-          y={scale.toY(stretch[1])}
-          height={Math.max(2, scale.toY(stretch[0]) - scale.toY(stretch[1]))}
+          y={toY(stretch[1])}
+          height={Math.max(2, toY(stretch[0]) - toY(stretch[1]))}
         />
       )}
       <rect

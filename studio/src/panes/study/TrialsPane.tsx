@@ -118,7 +118,7 @@ function Trials(props: { current: CurrentStudy }) {
         <Button
           kind="quiet"
           testId="copy-trials"
-          label="Copy these designs as a table, in SI units"
+          title="Copy these designs as a table, in SI units"
           onClick={() => void copy(trialsText(rows, axes), `${rows.length} designs`)}
         >
           Copy data

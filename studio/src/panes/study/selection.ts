@@ -13,10 +13,12 @@ export interface Selection {
   readonly pinned: readonly number[];
   /** The trial that the view shows. */
   readonly opened: number | null;
+  /** The trial that the atlas tells more of. */
+  readonly selected: number | null;
   readonly brushes: Brushes;
 }
 
-const NOTHING = { hovered: null, pinned: [], opened: null, brushes: {} } as const;
+const NOTHING = { hovered: null, pinned: [], opened: null, selected: null, brushes: {} } as const;
 
 export const useSelection = create<Selection>(() => ({ job: null, ...NOTHING }));
 
@@ -57,6 +59,17 @@ export function choose(job: string, trial: number, mark: boolean): void {
   }
   useSelection.setState({ opened: trial });
   openHere("trial", `${job}/${trial}`);
+}
+
+/** Tell more of a trial, or mark it where `mark` is set. */
+export function select(trial: number | null, mark = false): void {
+  if (mark && trial !== null) pin(trial);
+  else useSelection.setState({ selected: trial });
+}
+
+/** Write the parameters of a trial into the open design, which undo takes back as one step. */
+export function take(job: string, trial: number): void {
+  send({ t: "take", trial: `${job}/${trial}` });
 }
 
 export function comparePinned(job: string): void {

@@ -148,6 +148,16 @@ export function within(trial: TrialEvent, axes: readonly Axis[], brushes: Brushe
   });
 }
 
+/** How many trials meet all requirements, of all that there are; failed ones meet none. */
+export function remaining(
+  trials: readonly TrialEvent[],
+  axes: readonly Axis[],
+  brushes: Brushes,
+): number {
+  if (Object.keys(brushes).length === 0) return trials.length;
+  return trials.filter((trial) => isDone(trial) && within(trial, axes, brushes)).length;
+}
+
 const COMPARISON = /^([\w-]+)\s*(<=|>=|<|>|=)\s*(.+)$/;
 
 /**

@@ -43,10 +43,9 @@ export interface PointChartProps {
   testId?: string;
 }
 
-const LEFT = 58;
-const RIGHT = 14;
-const TOP = 10;
-const BOTTOM = 36;
+/** Room for the numbers and names around a chart, pixels. */
+export const MARGINS = { left: 58, right: 14, top: 10, bottom: 36 } as const;
+const { left: LEFT, right: RIGHT, top: TOP, bottom: BOTTOM } = MARGINS;
 
 export function PointChart(props: PointChartProps) {
   const [box, { width, height }] = useSize<HTMLDivElement>();
@@ -163,7 +162,7 @@ function pathOf(
     .join("");
 }
 
-interface FrameProps {
+export interface FrameProps {
   x: ChartAxis;
   y: ChartAxis;
   limits: readonly [number, number, number, number];
@@ -178,7 +177,8 @@ export function axisTitle(label: string, kind: string): string {
   return unit ? `${label} (${unit})` : label;
 }
 
-function Frame(props: FrameProps) {
+/** Lines of equal values with their numbers, and the names of both axes. */
+export function Frame(props: FrameProps) {
   const [x0, x1, y0, y1] = props.limits;
   const [width, height] = props.size;
   const along = (axis: ChartAxis, low: number, high: number, pixels: number, each: number) => {
