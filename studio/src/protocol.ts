@@ -81,6 +81,9 @@ export const KINDS = {
   "number": {"si": "1", "written": "", "called": "a plain number", "dimension": [0, 0, 0, 0, 0, 0]},
 } as const;
 
+/** Kinds of shapes that a design file can hold. */
+export const SHAPE_KINDS = ["box", "rounded-box", "sphere", "ellipsoid", "cylinder", "tube", "cone", "capsule", "torus", "half-space", "prism", "revolve", "gyroid", "schwarz-p", "schwarz-d", "neovius", "iwp", "cubic", "bcc", "fcc", "octet", "expression", "mesh", "union", "intersection", "difference", "offset", "shell", "blend", "grade", "translate", "rotate", "scale", "mirror", "twist", "bend", "taper", "array", "polar-array"] as const;
+
 /** Units of daily use: SI units in one, and exponents. */
 export const COMMON_UNITS = {
   "um": [1e-06, [1, 0, 0, 0, 0, 0]],

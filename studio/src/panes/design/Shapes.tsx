@@ -1,37 +1,57 @@
 import { useState } from "react";
 import { Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
-import { Adder, Entry, NameField, type Table } from "./Entries";
+import { Entry, NameField, type Table } from "./Entries";
 import { edit, editAll, problemsAt } from "./edits";
 import { useForm } from "./form";
 import { Menu, type MenuPlace } from "./Menu";
 import { TableFields } from "./SchemaField";
-import { resolve } from "./schema";
+import { ShapeIcon } from "./ShapeIcon";
+import { ShapePicker } from "./ShapePicker";
+import { controlOf, resolve } from "./schema";
+import type { ShapeKind } from "./shapeKinds";
 import { shapeTree } from "./shapeTree";
 import { isUsed, shapeVerbs, withShape } from "./shapeVerbs";
+import { variantStarter } from "./starters";
+
+/** What most robots begin with. */
+const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
 
 export function Shapes() {
-  const { root, source, diagnostics } = useForm();
+  const { root, source, diagnostics, names } = useForm();
   const [menu, setMenu] = useState<{ name: string; at: MenuPlace } | null>(null);
   const body = useStudio((state) => state.body);
   const room = body && { low: body.bounds[0], high: body.bounds[1] };
   const voxel = body?.voxel_size || 0.005;
   const schema = resolve(root, root.properties?.shapes ?? {}).additionalProperties;
   if (typeof schema !== "object") return null;
+  const control = controlOf(root, schema);
+  if (control.is !== "variant") return null;
   const shapes = (source.shapes as Record<string, Table> | undefined) ?? {};
+  const add = (kind: ShapeKind) => {
+    const value = variantStarter(root, control.tag, kind, control.variants[kind] ?? {}, names);
+    editAll(withShape(value, source));
+  };
   return (
-    <Section
-      title="Shapes"
-      action={
-        <Adder
-          what="a shape"
-          schema={schema}
-          onAdd={(value) => editAll(withShape(value as Table, source))}
-        />
-      }
-    >
+    <Section title="Shapes" action={<ShapePicker variants={control.variants} onChoose={add} />}>
       {Object.keys(shapes).length === 0 && (
-        <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
+        <>
+          <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
+          <div className="shape-starts">
+            {STARTS.map((kind) => (
+              <button
+                key={kind}
+                type="button"
+                className="shape-tile"
+                data-testid={`start-${kind}`}
+                onClick={() => add(kind)}
+              >
+                <ShapeIcon kind={kind} />
+                <span>{kind}</span>
+              </button>
+            ))}
+          </div>
+        </>
       )}
       {shapeTree(shapes).map((node) =>
         node.again ? (
