@@ -242,6 +242,13 @@ export interface DesignsCommand {
   seq: number;
 }
 
+/** Ask for the surfaces of some shapes of the document, by their names. */
+export interface GhostsCommand {
+  t: "ghosts";
+  seq: number;
+  names: string[];
+}
+
 /** Take back the last change of the document. */
 export interface UndoCommand {
   t: "undo";
@@ -758,6 +765,34 @@ export interface DesignFilesEvent {
   t: "design_files";
   folder: string;
   files: DesignFile[];
+}
+
+/**
+ * A shape by itself, in the frame of the body that is made of it, which has a pose.
+ *
+ * `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
+ * and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
+ * It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
+ * or an empty text. `rotation` has nine numbers by rows.
+ */
+export interface Ghost {
+  name: string;
+  vertices: string;
+  triangles: string;
+  low: Triple;
+  high: Triple;
+  step: number;
+  clipped: string;
+  trouble: string;
+  position: Triple;
+  rotation: number[];
+}
+
+/** The shapes that a tab asked for, as the last good design has them at a revision. */
+export interface GhostsEvent {
+  t: "ghosts";
+  rev: number;
+  shapes: Ghost[];
 }
 
 /** An enclosed space: its name or an empty text, volume in m³, area in m². */
@@ -1444,6 +1479,7 @@ export type AnyCommand =
   | RemoveCommand
   | AddBodyCommand
   | DesignsCommand
+  | GhostsCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
@@ -1484,6 +1520,7 @@ export type AnyEvent =
   | StartEvent
   | DocumentEvent
   | DesignFilesEvent
+  | GhostsEvent
   | BodyEvent
   | StatEvent
   | EquilibriumEvent

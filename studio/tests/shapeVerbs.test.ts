@@ -11,7 +11,7 @@ const verb = (label: string, source: Record<string, unknown> = SOURCE, name = "b
 
 describe("a new shape", () => {
   it("is a part and seen, where it is the first", () => {
-    const changes = withShape({ kind: "box", size: ["10 mm", "10 mm", "10 mm"] }, {});
+    const { changes } = withShape({ kind: "box", size: ["10 mm", "10 mm", "10 mm"] }, {});
     expect(changes).toEqual([
       { path: ["shapes", "box"], value: BOX },
       { path: ["parts", 0], value: { shape: "box", material: FIRST_MATERIAL } },
@@ -19,7 +19,10 @@ describe("a new shape", () => {
   });
 
   it("is a shape alone beside others, under a free name", () => {
-    expect(withShape(BOX, SOURCE)).toEqual([{ path: ["shapes", "box-2"], value: BOX }]);
+    expect(withShape(BOX, SOURCE)).toEqual({
+      name: "box-2",
+      changes: [{ path: ["shapes", "box-2"], value: BOX }],
+    });
   });
 });
 

@@ -132,6 +132,12 @@ class Designs(Command):
     """Ask for the design files beside the document."""
 
 
+class Ghosts(Command):
+    """Ask for the surfaces of some shapes of the document, by their names."""
+
+    names: Annotated[list[ShortText], Meta(max_length=20)]
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -430,6 +436,7 @@ AnyCommand = (
     | Remove
     | AddBody
     | Designs
+    | Ghosts
     | Undo
     | Redo
     | Save

@@ -218,6 +218,34 @@ class DesignFiles(Event):
     files: list[DesignFile]
 
 
+class Ghost(Entry):
+    """A shape by itself, in the frame of the body that is made of it, which has a pose.
+
+    `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
+    and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
+    It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
+    or an empty text. `rotation` has nine numbers by rows.
+    """
+
+    name: str
+    vertices: str
+    triangles: str
+    low: Triple
+    high: Triple
+    step: float
+    clipped: str
+    trouble: str
+    position: Triple
+    rotation: list[float]
+
+
+class Ghosts(Event):
+    """The shapes that a tab asked for, as the last good design has them at a revision."""
+
+    rev: int
+    shapes: list[Ghost]
+
+
 class Cavity(Entry):
     """An enclosed space: its name or an empty text, volume in m³, area in m²."""
 
@@ -914,6 +942,7 @@ AnyEvent = (
     | Start
     | Document
     | DesignFiles
+    | Ghosts
     | Body
     | Stat
     | Equilibrium

@@ -11,6 +11,7 @@ import type {
   DocumentEvent,
   EquilibriumEvent,
   GenerationEvent,
+  GhostsEvent,
   HelloEvent,
   JobEvent,
   LogEvent,
@@ -61,6 +62,8 @@ export interface Studio {
   document: DocumentEvent | null;
   /** Design files beside it. */
   designs: DesignFilesEvent | null;
+  /** Shapes by themselves, as this tab asked for them. */
+  ghosts: GhostsEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
   /** The last pace that was asked for and is not confirmed yet. */
@@ -107,6 +110,7 @@ export const useStudio = create<Studio>(() => ({
   start: null,
   document: null,
   designs: null,
+  ghosts: null,
   body: null,
   stat: null,
   askedPace: undefined,
@@ -182,6 +186,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "design_files":
       set({ designs: event });
+      break;
+    case "ghosts":
+      set({ ghosts: event });
       break;
     case "body":
       set(({ body, moments, askedPace, picked }) => ({

@@ -24,6 +24,8 @@ interface EntryProps {
   wrong: boolean;
   testId?: string;
   depth?: number;
+  /** Whether it is what the picture marks. */
+  chosen?: boolean;
   /** Whether it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
   actions: readonly {
@@ -38,14 +40,25 @@ interface EntryProps {
 export function Entry(props: EntryProps) {
   const own = useState(false);
   const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
+  const box = useRef<HTMLDivElement>(null);
+  // It may have been added, or chosen in the picture.
+  useEffect(() => {
+    if (props.chosen) box.current?.scrollIntoView({ block: "nearest" });
+  }, [props.chosen]);
   return (
     <div
-      className={`entry${open ? " is-open" : ""}`}
+      ref={box}
+      className={`entry${open ? " is-open" : ""}${props.chosen ? " is-chosen" : ""}`}
       data-testid={props.testId}
       style={{ marginLeft: (props.depth ?? 0) * 14 }}
     >
       <div className="entry-head">
-        <button type="button" aria-expanded={open} onClick={() => setOpen(!open)}>
+        <button
+          type="button"
+          aria-expanded={open}
+          aria-current={props.chosen || undefined}
+          onClick={() => setOpen(!open)}
+        >
           <i className="chevron">
             <Glyph name="open" />
           </i>
@@ -224,32 +237,25 @@ export function ThingEntry(props: {
   const name = named ? String(props.value.name) : `${single(section)} ${index + 1}`;
   const valid = useStudio((state) => state.document?.valid ?? false);
   const chosen = useView((view) => view.chosen === name);
-  const box = useRef<HTMLDivElement>(null);
-  // It may have been added, or chosen in the picture.
-  useEffect(() => {
-    if (chosen) box.current?.scrollIntoView({ block: "nearest" });
-  }, [chosen]);
   return (
-    <div ref={box}>
-      <Entry
-        title={name}
-        about={props.about}
-        wrong={problemsAt(diagnostics, [section, index]).length > 0}
-        testId={`${section}-${index}`}
-        open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
-        actions={[
-          {
-            glyph: "trash",
-            label: `Remove ${name}`,
-            // With the pairs of contact that name it, unless the text is not good as it is.
-            run: () =>
-              named && valid ? send({ t: "remove", name }) : edit([section, index], null),
-          },
-        ]}
-      >
-        {props.children}
-      </Entry>
-    </div>
+    <Entry
+      title={name}
+      about={props.about}
+      wrong={problemsAt(diagnostics, [section, index]).length > 0}
+      testId={`${section}-${index}`}
+      chosen={chosen}
+      open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
+      actions={[
+        {
+          glyph: "trash",
+          label: `Remove ${name}`,
+          // With the pairs of contact that name it, unless the text is not good as it is.
+          run: () => (named && valid ? send({ t: "remove", name }) : edit([section, index], null)),
+        },
+      ]}
+    >
+      {props.children}
+    </Entry>
   );
 }
 
@@ -305,7 +311,12 @@ export function EntryMap(props: {
   );
 }
 
-export function NameField(props: { section: Named; name: string; taken: readonly string[] }) {
+export function NameField(props: {
+  section: Named;
+  name: string;
+  taken: readonly string[];
+  onRenamed?(name: string): void;
+}) {
   return (
     <TextField
       label="Name"
@@ -314,6 +325,7 @@ export function NameField(props: { section: Named; name: string; taken: readonly
         if (!NAME.test(name)) return "letters, digits, _ and - only";
         if (props.taken.includes(name)) return `“${name}” is taken`;
         replaceText(renamed(textNow(), props.section, props.name, name));
+        props.onRenamed?.(name);
         return null;
       }}
     />

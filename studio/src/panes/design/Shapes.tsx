@@ -1,6 +1,7 @@
 import { useState } from "react";
 import { Section } from "../../controls/Choice";
 import { useStudio } from "../../store/studio";
+import { setView, useView } from "../../store/view";
 import { Entry, NameField, type Table } from "./Entries";
 import { edit, editAll, problemsAt } from "./edits";
 import { useForm } from "./form";
@@ -20,6 +21,8 @@ const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
 export function Shapes() {
   const { root, source, diagnostics, names } = useForm();
   const [menu, setMenu] = useState<{ name: string; at: MenuPlace } | null>(null);
+  const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
+  const chosen = useView((view) => view.shape);
   const body = useStudio((state) => state.body);
   const room = body && { low: body.bounds[0], high: body.bounds[1] };
   const voxel = body?.voxel_size || 0.005;
@@ -28,40 +31,48 @@ export function Shapes() {
   const control = controlOf(root, schema);
   if (control.is !== "variant") return null;
   const shapes = (source.shapes as Record<string, Table> | undefined) ?? {};
+  const unfold = (name: string, is: boolean) =>
+    setOpen(
+      (before) => new Set(is ? [...before, name] : [...before].filter((one) => one !== name)),
+    );
+  const choose = (name: string) => {
+    setView({ shape: name });
+    unfold(name, true);
+  };
+  // A press chooses a shape and opens its fields; another one closes them again.
+  const press = (name: string, opens: boolean) => {
+    if (opens || chosen !== name) choose(name);
+    else {
+      setView({ shape: null });
+      unfold(name, false);
+    }
+  };
   const add = (kind: ShapeKind) => {
-    const value = variantStarter(root, control.tag, kind, control.variants[kind] ?? {}, names);
-    editAll(withShape(value, source));
+    const variant = control.variants[kind] ?? {};
+    // What moves or combines begins with the shape that is chosen.
+    const first = chosen !== null && chosen in shapes ? [chosen] : [];
+    const own = { ...names, shapes: [...first, ...names.shapes.filter((one) => one !== chosen)] };
+    const { name, changes } = withShape(
+      variantStarter(root, control.tag, kind, variant, own),
+      source,
+    );
+    editAll(changes);
+    choose(name);
   };
   return (
     <Section title="Shapes" action={<ShapePicker variants={control.variants} onChoose={add} />}>
-      {Object.keys(shapes).length === 0 && (
-        <>
-          <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
-          <div className="shape-starts">
-            {STARTS.map((kind) => (
-              <button
-                key={kind}
-                type="button"
-                className="shape-tile"
-                data-testid={`start-${kind}`}
-                onClick={() => add(kind)}
-              >
-                <ShapeIcon kind={kind} />
-                <span>{kind}</span>
-              </button>
-            ))}
-          </div>
-        </>
-      )}
+      {Object.keys(shapes).length === 0 && <Starts onChoose={add} />}
       {shapeTree(shapes).map((node) =>
         node.again ? (
-          <p
+          <button
             key={`${node.name} in ${node.within}`}
-            className="muted entry-again"
+            type="button"
+            className={`muted entry-again${node.name === chosen ? " is-chosen" : ""}`}
             style={{ marginLeft: node.depth * 14 }}
+            onClick={() => choose(node.name)}
           >
             {node.name} (above)
-          </p>
+          </button>
         ) : (
           <Entry
             key={node.name}
@@ -70,6 +81,8 @@ export function Shapes() {
             depth={node.depth}
             wrong={problemsAt(diagnostics, ["shapes", node.name]).length > 0}
             testId={`shapes-${node.name}`}
+            chosen={node.name === chosen}
+            open={{ is: open.has(node.name), set: (is) => press(node.name, is) }}
             actions={[
               {
                 glyph: "more",
@@ -83,8 +96,17 @@ export function Shapes() {
               },
             ]}
           >
-            <NameField section="shapes" name={node.name} taken={Object.keys(shapes)} />
+            <NameField
+              section="shapes"
+              name={node.name}
+              taken={Object.keys(shapes)}
+              onRenamed={(name) => {
+                unfold(name, true);
+                if (chosen === node.name) setView({ shape: name });
+              }}
+            />
             <TableFields path={["shapes", node.name]} schema={schema} value={shapes[node.name]} />
+            {node.name === chosen && <NotDrawn name={node.name} />}
           </Entry>
         ),
       )}
@@ -92,13 +114,46 @@ export function Shapes() {
         <Menu
           label={`What to do with ${menu.name}`}
           at={menu.at}
-          items={shapeVerbs(menu.name, source, room, voxel).map(({ label, changes }) => ({
+          items={shapeVerbs(menu.name, source, room, voxel).map(({ label, changes, adds }) => ({
             label,
-            run: () => editAll(changes),
+            run: () => {
+              editAll(changes);
+              if (adds) choose(adds);
+            },
           }))}
           onClose={() => setMenu(null)}
         />
       )}
     </Section>
   );
+}
+
+/** Where there is no shape yet: what most robots begin with, one press away. */
+function Starts(props: { onChoose(kind: ShapeKind): void }) {
+  return (
+    <>
+      <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
+      <div className="shape-starts">
+        {STARTS.map((kind) => (
+          <button
+            key={kind}
+            type="button"
+            className="shape-tile"
+            data-testid={`start-${kind}`}
+            onClick={() => props.onChoose(kind)}
+          >
+            <ShapeIcon kind={kind} />
+            <span>{kind}</span>
+          </button>
+        ))}
+      </div>
+    </>
+  );
+}
+
+/** Why a chosen shape is not seen in the picture. */
+function NotDrawn(props: { name: string }) {
+  const ghost = useStudio((state) => state.ghosts?.shapes.find((one) => one.name === props.name));
+  if (!ghost?.trouble) return null;
+  return <p className="muted">Not drawn by itself: {ghost.trouble}.</p>;
 }

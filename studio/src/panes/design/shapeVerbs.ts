@@ -9,6 +9,8 @@ type Table = Readonly<Record<string, unknown>>;
 export interface ShapeVerb {
   readonly label: string;
   readonly changes: readonly Change[];
+  /** The shape that is added, which is placed next. */
+  readonly adds?: string;
 }
 
 /** Shapes that cut or are joined, as they are asked for. */
@@ -28,18 +30,22 @@ const tableOf = (source: Table, section: string) => (source[section] as Table | 
 const listOf = (source: Table, section: string) =>
   (source[section] as readonly Table[] | undefined) ?? [];
 
-/** The changes that add a shape; the first one is made a part, so that it is seen. */
-export function withShape(value: Table, source: Table): Change[] {
+/** The name and the changes of a shape that is added; the first one is made a part. */
+export function withShape(value: Table, source: Table): { name: string; changes: Change[] } {
   const shapes = Object.keys(tableOf(source, "shapes"));
   const name = freeName(String(value.kind ?? "shape"), shapes);
   const parts = listOf(source, "parts");
   const several = listOf(source, "bodies").length > 0;
   const isFirst = shapes.length === 0 && parts.length === 0 && !several;
-  if (!isFirst) return [{ path: ["shapes", name], value }];
-  return [
-    { path: ["shapes", name], value: enlarged(value) },
-    { path: ["parts", 0], value: { shape: name, material: FIRST_MATERIAL } },
-  ];
+  if (!isFirst) return { name, changes: [{ path: ["shapes", name], value }] };
+  const part = { shape: name, material: FIRST_MATERIAL };
+  return {
+    name,
+    changes: [
+      { path: ["shapes", name], value: enlarged(value) },
+      { path: ["parts", 0], value: part },
+    ],
+  };
 }
 
 /** Lengths that every new shape begins with, as large as a first body is. */
@@ -106,6 +112,7 @@ export function shapeVerbs(
       const added = freeName(tool, [...names, whole]);
       return {
         label: `${verb} a ${tool}`,
+        adds: added,
         changes: [
           { path: ["shapes", added], value: toolFor(tool, kind, body, voxel) },
           ...become({ kind, of: [whole, added] }),
@@ -123,6 +130,10 @@ export function shapeVerbs(
         kind: "difference",
         of: [whole, { kind: "offset", of: whole, distance: written(-WALL * voxel) }],
       }),
+    },
+    {
+      label: "Move it as a whole",
+      changes: become({ kind: "translate", of: whole, by: [0, 0, 0] }),
     },
     ...tooled("Cut with", "difference"),
     ...tooled("Join with", "union"),
