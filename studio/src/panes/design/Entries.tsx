@@ -1,5 +1,5 @@
 // Sections of a design that hold several things: parts, loads, clamps, probes, materials, layers.
-import { type ReactNode, useEffect, useRef, useState } from "react";
+import { type DragEvent, type ReactNode, useEffect, useRef, useState } from "react";
 import { Button, Section } from "../../controls/Choice";
 import { describeValue } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
@@ -28,6 +28,8 @@ interface EntryProps {
   chosen?: boolean;
   /** Whether it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
+  /** Where it can be dragged on another, and others on it. */
+  drag?: HeadDrag;
   actions: readonly {
     readonly glyph: "up" | "down" | "trash" | "more";
     label: string;
@@ -36,10 +38,46 @@ interface EntryProps {
   children: ReactNode;
 }
 
+/** What the line of an entry does when it is dragged, or something is dragged over it. */
+export interface HeadDrag {
+  /** Whether what is dragged can be dropped here now. */
+  readonly takes: boolean;
+  begin(): void;
+  end(): void;
+  drop(at: MenuPlace): void;
+}
+
+function dragged(drag: HeadDrag | undefined, over: boolean, setOver: (over: boolean) => void) {
+  if (!drag) return {};
+  return {
+    draggable: true,
+    onDragStart: (event: DragEvent) => {
+      event.dataTransfer.effectAllowed = "move";
+      event.dataTransfer.setData("text/plain", "");
+      drag.begin();
+    },
+    onDragEnd: () => drag.end(),
+    onDragOver: (event: DragEvent) => {
+      if (!drag.takes) return;
+      event.preventDefault(); // it may be dropped here
+      if (!over) setOver(true);
+    },
+    onDragLeave: (event: DragEvent) => {
+      if (!event.currentTarget.contains(event.relatedTarget as Node | null)) setOver(false);
+    },
+    onDrop: (event: DragEvent) => {
+      event.preventDefault();
+      setOver(false);
+      drag.drop({ x: event.clientX, y: event.clientY });
+    },
+  };
+}
+
 /** A line that opens to the fields behind it. */
 export function Entry(props: EntryProps) {
   const own = useState(false);
   const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
+  const [over, setOver] = useState(false);
   const box = useRef<HTMLDivElement>(null);
   // It may have been added, or chosen in the picture.
   useEffect(() => {
@@ -52,7 +90,10 @@ export function Entry(props: EntryProps) {
       data-testid={props.testId}
       style={{ marginLeft: (props.depth ?? 0) * 14 }}
     >
-      <div className="entry-head">
+      <div
+        className={`entry-head${over ? " is-over" : ""}`}
+        {...dragged(props.drag, over, setOver)}
+      >
         <button
           type="button"
           aria-expanded={open}

@@ -1,5 +1,6 @@
-import { useState } from "react";
+import { useRef, useState } from "react";
 import { Section } from "../../controls/Choice";
+import { sendFile } from "../../shell/DropZone";
 import { useStudio } from "../../store/studio";
 import { setView, useView } from "../../store/view";
 import { Entry, NameField, type Table } from "./Entries";
@@ -11,16 +12,18 @@ import { ShapeIcon } from "./ShapeIcon";
 import { ShapePicker } from "./ShapePicker";
 import { controlOf, resolve } from "./schema";
 import type { ShapeKind } from "./shapeKinds";
+import { shapeStarter, spotOn } from "./shapeStarters";
 import { shapeTree } from "./shapeTree";
-import { isUsed, shapeVerbs, withShape } from "./shapeVerbs";
-import { variantStarter } from "./starters";
+import { FIRST_SIDE, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
 
 /** What most robots begin with. */
 const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
 
 export function Shapes() {
-  const { root, source, diagnostics, names } = useForm();
-  const [menu, setMenu] = useState<{ name: string; at: MenuPlace } | null>(null);
+  const { root, source, diagnostics } = useForm();
+  const file = useRef<HTMLInputElement>(null);
+  const [menu, setMenu] = useState<{ name: string; onto?: string; at: MenuPlace } | null>(null);
+  const [dragged, drag] = useState<string | null>(null);
   const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
   const chosen = useView((view) => view.shape);
   const body = useStudio((state) => state.body);
@@ -48,19 +51,52 @@ export function Shapes() {
     }
   };
   const add = (kind: ShapeKind) => {
-    const variant = control.variants[kind] ?? {};
     // What moves or combines begins with the shape that is chosen.
-    const first = chosen !== null && chosen in shapes ? [chosen] : [];
-    const own = { ...names, shapes: [...first, ...names.shapes.filter((one) => one !== chosen)] };
-    const { name, changes } = withShape(
-      variantStarter(root, control.tag, kind, variant, own),
-      source,
-    );
+    const all = Object.keys(shapes);
+    const operands = [
+      ...all.filter((one) => one === chosen),
+      ...all.filter((one) => one !== chosen),
+    ];
+    const spot =
+      room && all.length > 0
+        ? spotOn(room, voxel, operands)
+        : { side: FIRST_SIDE, middle: null, operands };
+    addShape(shapeStarter(kind, spot));
+  };
+  const addShape = (value: Table) => {
+    const { name, changes } = withShape(value, source);
     editAll(changes);
     choose(name);
   };
+  const addFile = async (mesh: File) => {
+    const sent = await sendFile(mesh);
+    if (sent) addShape({ kind: "mesh", path: sent.path, unit: "mm" });
+  };
   return (
-    <Section title="Shapes" action={<ShapePicker variants={control.variants} onChoose={add} />}>
+    <Section
+      title="Shapes"
+      action={
+        <>
+          <ShapePicker
+            variants={control.variants}
+            onChoose={(kind) => (kind === "mesh" ? file.current?.click() : add(kind))}
+          />
+          <input
+            ref={file}
+            type="file"
+            accept=".stl,.obj,.ply,.off"
+            hidden
+            aria-label="Mesh file of a shape"
+            data-testid="shape-file"
+            onChange={(event) => {
+              const [mesh] = event.target.files ?? [];
+              if (mesh) void addFile(mesh);
+              event.target.value = "";
+            }}
+          />
+        </>
+      }
+    >
       {Object.keys(shapes).length === 0 && <Starts onChoose={add} />}
       {shapeTree(shapes).map((node) =>
         node.again ? (
@@ -83,6 +119,12 @@ export function Shapes() {
             testId={`shapes-${node.name}`}
             chosen={node.name === chosen}
             open={{ is: open.has(node.name), set: (is) => press(node.name, is) }}
+            drag={{
+              takes: dragged !== null && !isMadeOf(dragged, node.name, shapes),
+              begin: () => drag(node.name),
+              end: () => drag(null),
+              drop: (at) => dragged !== null && setMenu({ name: dragged, onto: node.name, at }),
+            }}
             actions={[
               {
                 glyph: "more",
@@ -112,9 +154,16 @@ export function Shapes() {
       )}
       {menu && (
         <Menu
-          label={`What to do with ${menu.name}`}
+          label={
+            menu.onto
+              ? `What to do with ${menu.name} and ${menu.onto}`
+              : `What to do with ${menu.name}`
+          }
           at={menu.at}
-          items={shapeVerbs(menu.name, source, room, voxel).map(({ label, changes, adds }) => ({
+          items={(menu.onto
+            ? joined(menu.name, menu.onto, shapes)
+            : shapeVerbs(menu.name, source, room, voxel)
+          ).map(({ label, changes, adds }) => ({
             label,
             run: () => {
               editAll(changes);
