@@ -133,8 +133,7 @@ def ghost_of(design: Design, name: str, kept: Kept | None = None) -> events.Ghos
     try:
         room = _room(design, bodies)
         key = (_identity(shape, design), room, detail)
-        make = lambda: sketch(shape.build(design.shapes), room, detail)  # noqa: E731
-        found = (kept or Kept()).get(key, make)
+        found = (kept or Kept()).get(key, lambda: sketch(shape.build(design.shapes), room, detail))
     except VoxSoftError as error:
         found, trouble = _nothing(), str(error)
     except BaseException as error:  # a panic of the core too: the thread must live on

@@ -19,6 +19,7 @@ import { Legend } from "./Legend";
 import { OverlapBanner } from "./OverlapBanner";
 import { ViewBar } from "./ViewBar";
 import "./view.css";
+import "./shapeHandle.css";
 
 export default function ViewPane() {
   const box = useRef<HTMLDivElement>(null);

@@ -7,7 +7,6 @@ import {
   BufferGeometry,
   Color,
   DoubleSide,
-  FrontSide,
   GLSL3,
   Group,
   type IUniform,
@@ -30,7 +29,7 @@ import { CHOSEN_COLOR } from "./several";
 
 const COLOR = "#7f9bb8";
 /** How much of a picture a ghost takes in the middle, and at its rim. */
-const OPACITY = { chosen: 0.26, other: 0.16 } as const;
+const OPACITY = { chosen: 0.34, other: 0.22 } as const;
 const RIM = { chosen: 0.3, other: 0.2 } as const;
 /** Of the line around it, CSS pixels. */
 const LINE = { chosen: 2, other: 1.2 } as const;
@@ -61,8 +60,10 @@ uniform float uAlpha;
 uniform float uRim;
 out vec4 color;
 void main() {
-  float facing = abs(normalize(vNormal).z);
-  color = vec4(uOwn * (0.8 + 0.2 * facing), uAlpha + uRim * pow(1.0 - facing, 2.0));
+  vec3 normal = normalize(gl_FrontFacing ? vNormal : -vNormal);
+  float key = max(0.0, dot(normal, normalize(vec3(0.35, 0.55, 0.75))));
+  float rim = pow(1.0 - max(0.0, normal.z), 2.0);
+  color = vec4(uOwn * (0.6 + 0.45 * key), uAlpha + uRim * rim);
 }
 `;
 
@@ -104,18 +105,24 @@ export class Ghosts {
 
   private drawnOf(ghost: Ghost, geometry: BufferGeometry, order: number): Drawn {
     const passes = {
-      mask: this.pass(geometry, order, { colorWrite: false, side: DoubleSide }),
-      fill: this.pass(geometry, order + 1, { side: FrontSide }),
-      line: this.pass(geometry, order + 2, { side: DoubleSide }),
-      clear: this.pass(geometry, order + 3, { colorWrite: false, side: DoubleSide }),
+      mask: this.pass(geometry, order, { colorWrite: false, depthTest: true, depthWrite: true }),
+      fill: this.pass(geometry, order + 1, { depthTest: true }),
+      line: this.pass(geometry, order + 2, {}),
+      clear: this.pass(geometry, order + 3, { colorWrite: false }),
     };
+    // What is before a ghost does not hide it, but it hides itself: else many layers were one blot.
+    passes.mask.onBeforeRender = (renderer) => renderer.clearDepth();
     for (const [pass, mark] of [
       [passes.mask, BIT],
       [passes.clear, 0],
     ] as const)
       Object.assign(pass.material, {
         ...{ stencilWrite: true, stencilFunc: AlwaysStencilFunc, stencilRef: mark },
-        ...{ stencilWriteMask: BIT, stencilZPass: ReplaceStencilOp },
+        ...{
+          stencilWriteMask: BIT,
+          stencilZPass: ReplaceStencilOp,
+          stencilZFail: ReplaceStencilOp,
+        },
       });
     Object.assign(passes.line.material, {
       ...{ stencilWrite: true, stencilWriteMask: 0 },
@@ -131,12 +138,12 @@ export class Ghosts {
   private pass(
     geometry: BufferGeometry,
     order: number,
-    own: { side: typeof DoubleSide | typeof FrontSide; colorWrite?: boolean },
+    own: { colorWrite?: boolean; depthTest?: boolean; depthWrite?: boolean },
   ): Pass {
     const material = new ShaderMaterial({
       ...{ glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT },
       // Also those that are not blended: all have to be drawn in their order.
-      ...{ transparent: true, depthTest: false, depthWrite: false },
+      ...{ transparent: true, depthTest: false, depthWrite: false, side: DoubleSide },
       uniforms: {
         uPixel: this.pixel,
         uLine: { value: 0 },

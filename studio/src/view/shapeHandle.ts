@@ -18,6 +18,8 @@ const LEAST_WAY = 0.2;
 const STEP = 5e-4;
 const FINE_STEP = 1e-4;
 const KEY_MOVE = 1e-3;
+/** A shape that was dropped comes anew within this time, ms, or it does not. */
+const LONGEST_WAIT = 3000;
 const SIGNS: Readonly<Record<string, number>> = {
   ...{ ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1 },
 };
@@ -276,8 +278,7 @@ export class ShapeHandle {
         const { held } = this;
         this.held = null;
         if (held && Math.abs(held.value - held.grip.value) > 1e-9) {
-          this.dropped = held;
-          this.edits.dropped(held.grip, held.value);
+          this.drop(held);
         }
         this.edits.changed();
       },
@@ -300,6 +301,16 @@ export class ShapeHandle {
     number.addEventListener("click", type);
   }
 
+  // The shape comes anew soon; where it does not, it is shown as it still is.
+  private drop(held: { grip: ShapeGrip; value: number }): void {
+    this.dropped = held;
+    this.edits.dropped(held.grip, held.value);
+    setTimeout(() => {
+      if (this.dropped === held) this.forget();
+      this.edits.changed();
+    }, LONGEST_WAIT);
+  }
+
   // A field in place of the number; Enter or leaving it takes what was typed.
   private type(item: Item): void {
     if (item.input) return;
@@ -310,20 +321,29 @@ export class ShapeHandle {
     input.setAttribute("aria-label", grip.label);
     input.value = formatQuantity(grip.value, "m", 6);
     input.style.transform = item.number.style.transform;
+    const wrong = document.createElement("span");
+    wrong.className = "grip-problem";
+    wrong.id = `problem-${grip.id}`;
+    wrong.setAttribute("role", "alert");
+    wrong.hidden = true;
+    wrong.style.transform = input.style.transform;
+    input.setAttribute("aria-describedby", wrong.id);
     item.input = input;
     item.number.hidden = true;
-    this.element.append(input);
+    this.element.append(input, wrong);
     const end = (refocus: boolean) => {
       if (item.input !== input) return;
       item.input = null;
       input.remove();
+      wrong.remove();
       if (refocus) item.button.focus();
       this.edits.changed();
     };
     const take = (): boolean => {
       const same = input.value.trim() === formatQuantity(grip.value, "m", 6);
       const problem = same ? null : this.edits.typed(grip, input.value);
-      input.title = problem ?? "";
+      wrong.textContent = problem ?? "";
+      wrong.hidden = problem === null;
       input.setAttribute("aria-invalid", String(problem !== null));
       return problem === null;
     };

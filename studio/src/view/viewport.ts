@@ -696,7 +696,7 @@ export class Viewport {
       if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
-    if (this.ghosts.group.visible) labels.push(...this.ghosts.labels());
+    if (this.ghosts.group.visible && view.symbols) labels.push(...this.ghosts.labels());
     // Where all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
     if (view.extremes && varies && view.coloring === "field")

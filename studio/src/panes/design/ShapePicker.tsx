@@ -11,7 +11,7 @@ import "./shapePicker.css";
 
 /** Of the list beside its button, and from the edges of the page, pixels. */
 const GAP = 4;
-const WIDTH = 396;
+const WIDTH = 440;
 const LEAST_HEIGHT = 320;
 
 interface Props {

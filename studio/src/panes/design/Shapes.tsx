@@ -1,27 +1,20 @@
-import { useRef, useState } from "react";
+import { useState } from "react";
 import { Section } from "../../controls/Choice";
-import { sendFile } from "../../shell/DropZone";
 import { useStudio } from "../../store/studio";
 import { setView, useView } from "../../store/view";
+import { AddShape, FirstShapes } from "./AddShape";
 import { Entry, NameField, type Table } from "./Entries";
 import { edit, editAll, problemsAt } from "./edits";
 import { useForm } from "./form";
 import { Menu, type MenuPlace } from "./Menu";
 import { TableFields } from "./SchemaField";
-import { ShapeIcon } from "./ShapeIcon";
-import { ShapePicker } from "./ShapePicker";
 import { controlOf, resolve } from "./schema";
-import type { ShapeKind } from "./shapeKinds";
-import { shapeStarter, spotOn } from "./shapeStarters";
+import { spotOn } from "./shapeStarters";
 import { shapeTree } from "./shapeTree";
 import { FIRST_SIDE, isMadeOf, isUsed, joined, shapeVerbs, withShape } from "./shapeVerbs";
 
-/** What most robots begin with. */
-const STARTS: readonly ShapeKind[] = ["box", "cylinder", "sphere"];
-
 export function Shapes() {
   const { root, source, diagnostics } = useForm();
-  const file = useRef<HTMLInputElement>(null);
   const [menu, setMenu] = useState<{ name: string; onto?: string; at: MenuPlace } | null>(null);
   const [dragged, drag] = useState<string | null>(null);
   const [open, setOpen] = useState<ReadonlySet<string>>(new Set());
@@ -50,54 +43,24 @@ export function Shapes() {
       unfold(name, false);
     }
   };
-  const add = (kind: ShapeKind) => {
-    // What moves or combines begins with the shape that is chosen.
-    const all = Object.keys(shapes);
-    const operands = [
-      ...all.filter((one) => one === chosen),
-      ...all.filter((one) => one !== chosen),
-    ];
-    const spot =
-      room && all.length > 0
-        ? spotOn(room, voxel, operands)
-        : { side: FIRST_SIDE, middle: null, operands };
-    addShape(shapeStarter(kind, spot));
-  };
-  const addShape = (value: Table) => {
+  // What moves or combines begins with the shape that is chosen.
+  const all = Object.keys(shapes);
+  const operands = [...all.filter((one) => one === chosen), ...all.filter((one) => one !== chosen)];
+  const spot =
+    room && all.length > 0
+      ? spotOn(room, voxel, operands)
+      : { side: FIRST_SIDE, middle: null, operands };
+  const add = (value: Table) => {
     const { name, changes } = withShape(value, source);
     editAll(changes);
     choose(name);
   };
-  const addFile = async (mesh: File) => {
-    const sent = await sendFile(mesh);
-    if (sent) addShape({ kind: "mesh", path: sent.path, unit: "mm" });
-  };
   return (
     <Section
       title="Shapes"
-      action={
-        <>
-          <ShapePicker
-            variants={control.variants}
-            onChoose={(kind) => (kind === "mesh" ? file.current?.click() : add(kind))}
-          />
-          <input
-            ref={file}
-            type="file"
-            accept=".stl,.obj,.ply,.off"
-            hidden
-            aria-label="Mesh file of a shape"
-            data-testid="shape-file"
-            onChange={(event) => {
-              const [mesh] = event.target.files ?? [];
-              if (mesh) void addFile(mesh);
-              event.target.value = "";
-            }}
-          />
-        </>
-      }
+      action={<AddShape variants={control.variants} spot={spot} onAdd={add} />}
     >
-      {Object.keys(shapes).length === 0 && <Starts onChoose={add} />}
+      {all.length === 0 && <FirstShapes spot={spot} onAdd={add} />}
       {shapeTree(shapes).map((node) =>
         node.again ? (
           <button
@@ -141,7 +104,7 @@ export function Shapes() {
             <NameField
               section="shapes"
               name={node.name}
-              taken={Object.keys(shapes)}
+              taken={all}
               onRenamed={(name) => {
                 unfold(name, true);
                 if (chosen === node.name) setView({ shape: name });
@@ -174,29 +137,6 @@ export function Shapes() {
         />
       )}
     </Section>
-  );
-}
-
-/** Where there is no shape yet: what most robots begin with, one press away. */
-function Starts(props: { onChoose(kind: ShapeKind): void }) {
-  return (
-    <>
-      <p className="muted">None yet. Add a box or a cylinder, then cut, join or repeat it.</p>
-      <div className="shape-starts">
-        {STARTS.map((kind) => (
-          <button
-            key={kind}
-            type="button"
-            className="shape-tile"
-            data-testid={`start-${kind}`}
-            onClick={() => props.onChoose(kind)}
-          >
-            <ShapeIcon kind={kind} />
-            <span>{kind}</span>
-          </button>
-        ))}
-      </div>
-    </>
   );
 }
 
