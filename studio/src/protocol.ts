@@ -767,13 +767,19 @@ export interface DesignFilesEvent {
   files: DesignFile[];
 }
 
+/** Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows. */
+export interface BodyPose {
+  position: Triple;
+  rotation: number[];
+}
+
 /**
- * A shape by itself, in the frame of the body that is made of it, which has a pose.
+ * A shape by itself, in its own frame; `poses` are those of the bodies that are made of it.
  *
  * `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
  * and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
  * It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
- * or an empty text. `rotation` has nine numbers by rows.
+ * or an empty text.
  */
 export interface Ghost {
   name: string;
@@ -784,8 +790,7 @@ export interface Ghost {
   step: number;
   clipped: string;
   trouble: string;
-  position: Triple;
-  rotation: number[];
+  poses: BodyPose[];
 }
 
 /** The shapes that a tab asked for, as the last good design has them at a revision. */

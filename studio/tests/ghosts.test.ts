@@ -1,6 +1,6 @@
 import { Vector3 } from "three";
 import { expect, it } from "vitest";
-import type { Ghost } from "../src/protocol";
+import type { BodyPose, Ghost } from "../src/protocol";
 import { isAsBuilt } from "../src/view/asBuilt";
 import { wantedGhosts } from "../src/view/askGhosts";
 import { Ghosts, poseOf } from "../src/view/ghosts";
@@ -24,7 +24,7 @@ function ghost(name: string, over: Partial<Ghost> = {}): Ghost {
     vertices: packed(new Float32Array([0, 0, 0, 1, 0, 0, 0, 1, 0])),
     triangles: packed(new Uint32Array([0, 1, 2])),
     ...{ low: [0, 0, 0], high: [1, 1, 0], step: 0.5, clipped: "", trouble: "" },
-    ...{ position: [0, 0, 0], rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1] },
+    poses: [{ position: [0, 0, 0], rotation: [1, 0, 0, 0, 1, 0, 0, 0, 1] }],
     ...over,
   };
 }
@@ -46,9 +46,17 @@ it("draws none over a body that has moved", () => {
 });
 
 it("stands where the body stands that is made of it", () => {
-  const turned = ghost("hole", { position: [0, 0, 2], rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1] });
+  const turned: BodyPose = { position: [0, 0, 2], rotation: [0, -1, 0, 1, 0, 0, 0, 0, 1] };
   const at = new Vector3(1, 0, 0).applyMatrix4(poseOf(turned));
   expect(at.toArray()).toEqual([0, 1, 2]);
+  // With two such bodies it stands at both places, under one name.
+  const ghosts = new Ghosts();
+  const [first] = ghost("hole").poses;
+  ghosts.build([ghost("hole", { poses: [first!, turned] }), ghost("spare")]);
+  ghosts.place(null, null, { x: 100, y: 100, ratio: 1 });
+  expect(ghosts.group.children).toHaveLength(3);
+  expect(ghosts.names).toEqual(["hole", "spare"]);
+  expect(ghosts.labels()).toHaveLength(2);
 });
 
 it("keeps no shape without a surface, and says how coarse the others are", () => {

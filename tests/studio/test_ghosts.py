@@ -5,6 +5,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from own_loop import run
 
 import voxsoft as vs
 from voxsoft.shapes import Box, Gyroid, HalfSpace, Sphere
@@ -68,10 +69,18 @@ def test_a_shape_without_end_is_closed_around_the_body(design):
 
 
 def test_a_shape_of_a_body_is_where_that_body_stands():
-    text = TEXT + 'body = "left"\n[[bodies]]\nname = "left"\nposition = [0, 0, "100 mm"]\n'
+    text = TEXT + 'body = "left"\n[[parts]]\nshape = "block"\nmaterial = "ecoflex-00-30"\n'
+    text += 'body = "right"\n[[bodies]]\nname = "left"\nposition = [0, 0, "100 mm"]\n'
+    text += '[[bodies]]\nname = "right"\nrotation = { axis = [0, 0, 1], angle = "90 deg" }\n'
     posed = vs.Design.from_document(tomllib.loads(text))
-    assert ghost_of(posed, "hole").position == pytest.approx((0, 0, 0.1))
-    assert ghost_of(posed, "spare").position == (0, 0, 0)
+    (left,) = ghost_of(posed, "hole").poses
+    assert left.position == pytest.approx((0, 0, 0.1))
+    (alone,) = ghost_of(posed, "spare").poses
+    assert alone.position == (0, 0, 0)
+    # One of two bodies stands at both places.
+    both = ghost_of(posed, "block").poses
+    assert [each.position[2] for each in both] == pytest.approx([0.1, 0])
+    assert both[1].rotation == pytest.approx([0, -1, 0, 1, 0, 0, 0, 0, 1], abs=1e-12)
 
 
 def test_what_has_no_surface_says_why(design):
@@ -115,3 +124,23 @@ def test_a_known_surface_is_not_traced_again(design, monkeypatch):
     other = design.replace(shapes={**design.shapes, "spare": Sphere(radius=0.001)})
     assert ghost_of(other, "hole", kept).vertices == first.vertices
     assert "traced again" in ghost_of(other, "spare", kept).trouble
+
+
+def test_a_tab_gets_the_shapes_that_it_asks_for(fresh_studio):
+    async def scenario():
+        async with fresh_studio.page() as page:
+            await page.until("document")
+            # Of two requests that come at once the newer one alone needs an answer.
+            await page.send("ghosts", names=["body"])
+            await page.send("ghosts", names=["cavity", "gone"])
+            found = await page.until(
+                "ghosts", lambda event: len(event.shapes) != 1 or is_cavity(event)
+            )
+        assert [shape["name"] for shape in found.shapes] == ["cavity"]
+        assert found.rev == page.rev
+        assert found.shapes[0]["triangles"]
+
+    def is_cavity(event):
+        return event.shapes[0]["name"] == "cavity"
+
+    run(scenario())

@@ -73,7 +73,7 @@ def sketch(shape: _core.Shape, room: tuple[Triple, Triple], detail: float) -> Sk
     bounds = np.array(shape.bounds(), dtype=np.float64)
     endless = ~np.isfinite(bounds)
     low, high = np.where(endless, np.array(room), bounds)
-    clipped = "".join(axis for axis, end in zip("xyz", endless.any(axis=0), strict=True) if end)
+    clipped = "".join("xyz"[axis] for axis in np.flatnonzero(endless.any(axis=0)))
     size = high - low
     if not (size > 0.0).all():
         return Sketch(np.zeros((0, 3)), np.zeros((0, 3), np.int64), 0.0, clipped)

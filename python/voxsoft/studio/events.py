@@ -218,13 +218,20 @@ class DesignFiles(Event):
     files: list[DesignFile]
 
 
+class BodyPose(Entry):
+    """Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows."""
+
+    position: Triple
+    rotation: list[float]
+
+
 class Ghost(Entry):
-    """A shape by itself, in the frame of the body that is made of it, which has a pose.
+    """A shape by itself, in its own frame; `poses` are those of the bodies that are made of it.
 
     `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
     and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
     It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
-    or an empty text. `rotation` has nine numbers by rows.
+    or an empty text.
     """
 
     name: str
@@ -235,8 +242,7 @@ class Ghost(Entry):
     step: float
     clipped: str
     trouble: str
-    position: Triple
-    rotation: list[float]
+    poses: list[BodyPose]
 
 
 class Ghosts(Event):

@@ -124,10 +124,7 @@ def ghost_of(design: Design, name: str, kept: Kept | None = None) -> events.Ghos
     ('', [20.0, 20.0, 40.0])
     """
     shape = design.shapes[name]
-    bodies = {part.body for part in _users(design, shape)}
-    poses = {body.name: body.pose for body in design.bodies}
-    own = poses.get(next(iter(bodies)) or "") if len(bodies) == 1 else None
-    rotation, position = own or (np.eye(3), np.zeros(3))
+    bodies = list(dict.fromkeys(part.body for part in _users(design, shape)))
     detail = design.voxel_size / 2
     trouble = ""
     try:
@@ -150,9 +147,20 @@ def ghost_of(design: Design, name: str, kept: Kept | None = None) -> events.Ghos
         step=found.step,
         clipped=found.clipped,
         trouble=trouble,
-        position=_triple(position),
-        rotation=[float(each) for each in rotation.ravel()],
+        poses=_poses(design, bodies),
     )
+
+
+def _poses(design: Design, bodies: Sequence[str | None]) -> list[events.BodyPose]:
+    """The poses of some bodies; of none, or of the only one, the frame of the design."""
+    poses = {body.name: body.pose for body in design.bodies}
+    found = [poses[name] for name in bodies if name in poses] or [(np.eye(3), np.zeros(3))]
+    return [
+        events.BodyPose(
+            position=_triple(position), rotation=[float(each) for each in rotation.ravel()]
+        )
+        for rotation, position in found
+    ]
 
 
 def _users(design: Design, shape: Shape) -> Iterator[Part]:
@@ -163,7 +171,7 @@ def _users(design: Design, shape: Shape) -> Iterator[Part]:
             yield part
 
 
-def _room(design: Design, bodies: set[str | None]) -> tuple[Triple, Triple]:
+def _room(design: Design, bodies: Sequence[str | None]) -> tuple[Triple, Triple]:
     """The box of some bodies and a bit more, in their own frames; of all where there are none."""
     boxes = []
     for part in design.parts:

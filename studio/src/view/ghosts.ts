@@ -21,7 +21,7 @@ import {
   Vector3,
 } from "three";
 import { bytesOf } from "../engine/base64";
-import type { Ghost } from "../protocol";
+import type { BodyPose, Ghost } from "../protocol";
 import { showPane } from "../shell/actions";
 import { setView } from "../store/view";
 import type { Label } from "./labels";
@@ -83,27 +83,26 @@ export class Ghosts {
   private chosen: string | null = null;
   private readonly pixel: IUniform<Vector2> = { value: new Vector2(1, 1) };
 
-  /** Take other shapes; those that are as they were stay. */
+  /** Take other shapes; the surfaces of those that are as they were stay. */
   build(ghosts: readonly Ghost[]): void {
     const before = new Map(this.drawn.map((one) => [one.ghost.name, one]));
-    this.group.clear();
-    this.drawn = ghosts
-      .filter((ghost) => ghost.vertices !== "")
-      .map((ghost, i) => {
-        const known = before.get(ghost.name);
-        const same =
-          known?.ghost.vertices === ghost.vertices && known.ghost.triangles === ghost.triangles;
-        if (same) before.delete(ghost.name);
-        const geometry = same ? known.geometry : geometryOf(ghost);
-        return this.drawnOf(ghost, geometry, FIRST + 4 * i);
-      });
-    for (const { geometry, passes } of before.values()) {
-      geometry.dispose();
+    for (const { passes } of this.drawn)
       for (const pass of Object.values(passes)) pass.material.dispose();
+    this.group.clear();
+    this.drawn = [];
+    for (const ghost of ghosts.filter((one) => one.vertices !== "")) {
+      const known = before.get(ghost.name);
+      const same =
+        known?.ghost.vertices === ghost.vertices && known.ghost.triangles === ghost.triangles;
+      if (same) before.delete(ghost.name);
+      const geometry = same ? known.geometry : geometryOf(ghost);
+      for (const pose of ghost.poses)
+        this.drawn.push(this.drawnOf(ghost, geometry, poseOf(pose), FIRST + 4 * this.drawn.length));
     }
+    for (const { geometry } of before.values()) geometry.dispose();
   }
 
-  private drawnOf(ghost: Ghost, geometry: BufferGeometry, order: number): Drawn {
+  private drawnOf(ghost: Ghost, geometry: BufferGeometry, pose: Matrix4, order: number): Drawn {
     const passes = {
       mask: this.pass(geometry, order, { colorWrite: false, depthTest: true, depthWrite: true }),
       fill: this.pass(geometry, order + 1, { depthTest: true }),
@@ -132,7 +131,7 @@ export class Ghosts {
     group.matrixAutoUpdate = false;
     group.add(...Object.values(passes));
     this.group.add(group);
-    return { ghost, group, geometry, pose: poseOf(ghost), passes };
+    return { ghost, group, geometry, pose, passes };
   }
 
   private pass(
@@ -182,7 +181,7 @@ export class Ghosts {
   }
 
   labels(): Label[] {
-    return this.drawn.map(({ ghost, group }) => ({
+    return this.firsts.map(({ ghost, group }) => ({
       key: `shape-${ghost.name}`,
       kind: "shape",
       text: ghost.name,
@@ -228,12 +227,17 @@ export class Ghosts {
   }
 
   get names(): string[] {
-    return this.drawn.map((one) => one.ghost.name);
+    return this.firsts.map((one) => one.ghost.name);
+  }
+
+  /** Each shape once, also where several bodies are made of it. */
+  private get firsts(): Drawn[] {
+    return this.drawn.filter(({ ghost }, i) => this.drawn[i - 1]?.ghost !== ghost);
   }
 }
 
 /** From the frame of the body that is made of a shape to that of the picture. */
-export function poseOf({ rotation: r, position: p }: Ghost): Matrix4 {
+export function poseOf({ rotation: r, position: p }: BodyPose): Matrix4 {
   return new Matrix4().set(
     ...[r[0]!, r[1]!, r[2]!, p[0], r[3]!, r[4]!, r[5]!, p[1]],
     ...([r[6]!, r[7]!, r[8]!, p[2], 0, 0, 0, 1] as const),
