@@ -129,7 +129,6 @@ def test_a_known_surface_is_not_traced_again(design, monkeypatch):
 def test_a_tab_gets_the_shapes_that_it_asks_for(fresh_studio):
     async def scenario():
         async with fresh_studio.page() as page:
-            await page.until("document")
             # Of two requests that come at once the newer one alone needs an answer.
             await page.send("ghosts", names=["body"])
             await page.send("ghosts", names=["cavity", "gone"])
