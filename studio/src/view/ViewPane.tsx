@@ -130,7 +130,9 @@ function HiddenShape() {
   const shape = useView((view) => view.shape);
   const design = usePage((page) => page.mode === "design");
   const asBuilt = useStudio((state) => isAsBuilt(state.stat));
-  if (shape === null || !design || asBuilt) return null;
+  const shapes = useStudio((state) => state.document?.source?.shapes);
+  const there = shape !== null && shape in ((shapes as object | undefined) ?? {});
+  if (!there || !design || asBuilt) return null;
   return (
     <button
       type="button"
