@@ -263,7 +263,10 @@ export class Viewport {
     } else this.surface = mesh;
     this.scene.add(mesh.group);
     this.coverSurface();
-    if (fresh) this.takeIn();
+    if (fresh) {
+      this.takeIn();
+      this.takeInShape();
+    }
     this.stir(performance.now());
     this.request();
   }
@@ -360,13 +363,17 @@ export class Viewport {
   private ghostsChanged(): void {
     this.shaper.forget();
     this.ghosts.build(useStudio.getState().ghosts?.shapes ?? []);
-    // A shape beside the body that was just chosen is brought into a picture that no hand has turned.
+    this.takeInShape();
+    this.request();
+  }
+
+  // A chosen shape beside the body is brought into a picture that no hand has turned, whichever of the two comes first.
+  private takeInShape(): void {
     const { shape } = useView.getState();
     const own = shape === null ? null : this.ghosts.boxOf(shape);
     const mesh = this.shownMesh();
     if (own && mesh && this.asBuilt && !this.rig.steered && !this.rig.holds(own))
       this.rig.fit(this.objects.around(mesh.box(1).clone()).union(own));
-    this.request();
   }
 
   // The body's layers, whichever of its surface and what is told of it comes first.
