@@ -80,14 +80,17 @@ interface Drawn {
 export class Ghosts {
   readonly group = new Group();
   private drawn: Drawn[] = [];
+  /** Those before; their shaders are used again, without compiling, as long as these are not disposed of. */
+  private gone: Drawn[] = [];
   private chosen: string | null = null;
   private readonly pixel: IUniform<Vector2> = { value: new Vector2(1, 1) };
 
   /** Take other shapes; the surfaces of those that are as they were stay. */
   build(ghosts: readonly Ghost[]): void {
     const before = new Map(this.drawn.map((one) => [one.ghost.name, one]));
-    for (const { passes } of this.drawn)
+    for (const { passes } of this.gone)
       for (const pass of Object.values(passes)) pass.material.dispose();
+    this.gone = this.drawn;
     this.group.clear();
     this.drawn = [];
     for (const ghost of ghosts.filter((one) => one.vertices !== "")) {
