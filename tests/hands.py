@@ -83,7 +83,14 @@ def renewed(tab, change):
 
 
 def first_shape(tab, hand, kind):
-    renewed(tab, lambda: hand.choose("Add a shape", kind))
+    """Press a kind of those that stand where there are no shapes yet; its fields are open then."""
+    renewed(tab, lambda: hand.press(test_id=f"start-{kind}"))
+
+
+def add_shape(hand, kind):
+    """Open the list of all kinds, and press one; the shape is chosen then, with its fields open."""
+    hand.press(name="Add a shape")
+    hand.press(test_id=f"kind-{kind}")
 
 
 def saved(tab, file):

@@ -18,6 +18,9 @@ declare global {
       readonly rev: number;
       vertexPosition(vertex: number): [number, number, number] | null;
       objectPosition(name: string): [number, number, number] | null;
+      /** Shapes that are drawn by themselves, and the corners of each. */
+      readonly ghosts: readonly string[];
+      ghostBox(name: string): [number[], number[]] | null;
       screenOf(vertex: number): [number, number] | null;
       /** How many triangles a section through the field has. */
       cut(): number;
@@ -56,6 +59,10 @@ export function provideHook(): void {
       get rev() {
         return useStudio.getState().document?.rev ?? 0;
       },
+      get ghosts() {
+        return viewport().ghostNames;
+      },
+      ghostBox: (name: string) => viewport().ghostBox(name),
       vertexPosition: (vertex: number) => viewport().vertexPosition(vertex),
       objectPosition: (name: string) => viewport().objectPosition(name),
       screenOf: (vertex: number) => viewport().screenOf(vertex),

@@ -81,6 +81,9 @@ export const KINDS = {
   "number": {"si": "1", "written": "", "called": "a plain number", "dimension": [0, 0, 0, 0, 0, 0]},
 } as const;
 
+/** Kinds of shapes that a design file can hold. */
+export const SHAPE_KINDS = ["box", "rounded-box", "sphere", "ellipsoid", "cylinder", "tube", "cone", "capsule", "torus", "half-space", "prism", "revolve", "gyroid", "schwarz-p", "schwarz-d", "neovius", "iwp", "cubic", "bcc", "fcc", "octet", "expression", "mesh", "union", "intersection", "difference", "offset", "shell", "blend", "grade", "translate", "rotate", "scale", "mirror", "twist", "bend", "taper", "array", "polar-array"] as const;
+
 /** Units of daily use: SI units in one, and exponents. */
 export const COMMON_UNITS = {
   "um": [1e-06, [1, 0, 0, 0, 0, 0]],
@@ -250,6 +253,13 @@ export interface TakeCommand {
   t: "take";
   seq: number;
   trial: string;
+}
+
+/** Ask for the surfaces of some shapes of the document, by their names. */
+export interface GhostsCommand {
+  t: "ghosts";
+  seq: number;
+  names: string[];
 }
 
 /** Take back the last change of the document. */
@@ -871,6 +881,39 @@ export interface MaterialsEvent {
   rev: number;
   materials: MaterialFacts[];
   mixed: string;
+}
+
+/** Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows. */
+export interface BodyPose {
+  position: Triple;
+  rotation: number[];
+}
+
+/**
+ * A shape by itself, in its own frame; `poses` are those of the bodies that are made of it.
+ *
+ * `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
+ * and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
+ * It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
+ * or an empty text.
+ */
+export interface Ghost {
+  name: string;
+  vertices: string;
+  triangles: string;
+  low: Triple;
+  high: Triple;
+  step: number;
+  clipped: string;
+  trouble: string;
+  poses: BodyPose[];
+}
+
+/** The shapes that a tab asked for, as the last good design has them at a revision. */
+export interface GhostsEvent {
+  t: "ghosts";
+  rev: number;
+  shapes: Ghost[];
 }
 
 /** An enclosed space: its name or an empty text, volume in m³, area in m². */
@@ -1652,6 +1695,7 @@ export type AnyCommand =
   | DesignsCommand
   | MaterialsCommand
   | TakeCommand
+  | GhostsCommand
   | UndoCommand
   | RedoCommand
   | SaveCommand
@@ -1698,6 +1742,7 @@ export type AnyEvent =
   | DocumentEvent
   | DesignFilesEvent
   | MaterialsEvent
+  | GhostsEvent
   | BodyEvent
   | StatEvent
   | EquilibriumEvent

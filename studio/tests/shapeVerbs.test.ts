@@ -1,6 +1,13 @@
 import { describe, expect, it } from "vitest";
 import type { Room } from "../src/panes/design/placing";
-import { FIRST_MATERIAL, isUsed, shapeVerbs, withShape } from "../src/panes/design/shapeVerbs";
+import {
+  FIRST_MATERIAL,
+  isMadeOf,
+  isUsed,
+  joined,
+  shapeVerbs,
+  withShape,
+} from "../src/panes/design/shapeVerbs";
 
 const ROOM: Room = { low: [0, 0, 0], high: [0.04, 0.04, 0.04] };
 const BOX = { kind: "box", size: ["40 mm", "40 mm", "40 mm"] };
@@ -11,7 +18,7 @@ const verb = (label: string, source: Record<string, unknown> = SOURCE, name = "b
 
 describe("a new shape", () => {
   it("is a part and seen, where it is the first", () => {
-    const changes = withShape({ kind: "box", size: ["10 mm", "10 mm", "10 mm"] }, {});
+    const { changes } = withShape(BOX, {});
     expect(changes).toEqual([
       { path: ["shapes", "box"], value: BOX },
       { path: ["parts", 0], value: { shape: "box", material: FIRST_MATERIAL } },
@@ -19,7 +26,10 @@ describe("a new shape", () => {
   });
 
   it("is a shape alone beside others, under a free name", () => {
-    expect(withShape(BOX, SOURCE)).toEqual([{ path: ["shapes", "box-2"], value: BOX }]);
+    expect(withShape(BOX, SOURCE)).toEqual({
+      name: "box-2",
+      changes: [{ path: ["shapes", "box-2"], value: BOX }],
+    });
   });
 });
 
@@ -57,6 +67,28 @@ describe("what is done with a shape", () => {
       value: { kind: "difference", of: ["box-whole", "ball"] },
     });
     expect(verb("Make it a part")).toBeUndefined();
+  });
+
+  it("joins two shapes; one that is such a joint already takes the other in", () => {
+    const shapes = { box: BOX, ball: { kind: "sphere" }, cut: { kind: "difference", of: ["box"] } };
+    const [join, cut, common] = joined("ball", "cut", shapes);
+    expect(join?.changes[1]?.value).toEqual({ kind: "union", of: ["cut-whole", "ball"] });
+    expect(cut?.changes).toEqual([{ path: ["shapes", "cut", "of"], value: ["box", "ball"] }]);
+    expect(common?.changes[1]?.value).toEqual({ kind: "intersection", of: ["cut-whole", "ball"] });
+    // A blended edge is between those that there are.
+    const smooth = { ...shapes, cut: { kind: "difference", of: ["box"], smooth: "2 mm" } };
+    expect(joined("ball", "cut", smooth)[1]?.changes).toHaveLength(2);
+  });
+
+  it("knows what is made of what, so that nothing becomes a part of itself", () => {
+    const shapes = {
+      box: BOX,
+      cut: { kind: "shell", of: "box" },
+      all: { kind: "union", of: ["cut"] },
+    };
+    expect(isMadeOf("all", "box", shapes)).toBe(true);
+    expect(isMadeOf("box", "box", shapes)).toBe(true);
+    expect(isMadeOf("box", "all", shapes)).toBe(false);
   });
 
   it("does not take a material or a parameter of its name for a use", () => {

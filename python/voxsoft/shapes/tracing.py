@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,7 +49,6 @@ def trace(
         Vertices [m], (n, 3); triangles, (t, 3); of each the part, from 0, (t,). None where the
         grid would be too large.
     """
-    import igl
     from scipy import ndimage
 
     filled = np.pad(voxels.array > 0, 2)
@@ -65,7 +64,43 @@ def trace(
     asked = np.argwhere(_refined(near, along))
     found = _union(shapes, first + step * asked, step)
     values[tuple(asked.T)] = found
+    vertices, triangles = contour(values, first, step)
+    if len(triangles) == 0:
+        return None
+    return vertices, triangles, _owners(shapes, vertices[triangles].mean(axis=1), step)
+
+
+def contour(
+    values: NDArray[np.floating[Any]], first: Floats, step: float | Floats
+) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the surface on which samples are zero, by marching cubes.
+
+    Parameters
+    ----------
+    values
+        Samples of a shape on a grid, (nx, ny, nz), negative inside.
+    first
+        The place of the first sample [m].
+    step
+        From one sample to the next [m], along all axes or along each.
+
+    Returns
+    -------
+    tuple
+        Vertices [m], (n, 3), and triangles, (t, 3), outward; none where all samples have one sign.
+
+    Examples
+    --------
+    >>> x, y, z = np.mgrid[-2:3, -2:3, -2:3].astype(float)
+    >>> vertices, _ = contour(np.sqrt(x**2 + y**2 + z**2) - 1.5, np.array([-2.0, -2, -2]), 1.0)
+    >>> vertices.max(axis=0)
+    array([1.5, 1.5, 1.5])
+    """
+    import igl
+
     cubes = np.argwhere(_mixed(values < 0))
+    if len(cubes) == 0:
+        return np.zeros((0, 3)), np.zeros((0, 3), np.int64)
     corners = np.array([corner for ring in _CORNERS for corner in ring])
     at = cubes[:, None, :] + corners
     flat = np.ravel_multi_index(tuple(np.moveaxis(at, -1, 0)), values.shape)
@@ -77,9 +112,7 @@ def trace(
         np.ascontiguousarray(index.reshape(flat.shape)),
         0.0,
     )
-    if len(triangles) == 0:
-        return None
-    return vertices, triangles, _owners(shapes, vertices[triangles].mean(axis=1), step)
+    return vertices, triangles
 
 
 def _refined(cells: NDArray[np.bool_], along: int) -> NDArray[np.bool_]:

@@ -142,6 +142,12 @@ class Take(Command):
     trial: ShortText
 
 
+class Ghosts(Command):
+    """Ask for the surfaces of some shapes of the document, by their names."""
+
+    names: Annotated[list[ShortText], Meta(max_length=20)]
+
+
 class Undo(Command):
     """Take back the last change of the document."""
 
@@ -466,6 +472,7 @@ AnyCommand = (
     | Designs
     | Materials
     | Take
+    | Ghosts
     | Undo
     | Redo
     | Save

@@ -295,6 +295,40 @@ class Materials(Event):
     mixed: str
 
 
+class BodyPose(Entry):
+    """Where the frame of a body is: its origin in m, and its rotation, nine numbers by rows."""
+
+    position: Triple
+    rotation: list[float]
+
+
+class Ghost(Entry):
+    """A shape by itself, in its own frame; `poses` are those of the bodies that are made of it.
+
+    `vertices` are x, y, z as float32 in m and `triangles` three indices as uint32, in base64; `low`
+    and `high` are their bounds. Samples are `step` m apart: walls that are thinner may be missing.
+    It goes on beyond the picture along the axes of `clipped`. `trouble` is why there is no surface,
+    or an empty text.
+    """
+
+    name: str
+    vertices: str
+    triangles: str
+    low: Triple
+    high: Triple
+    step: float
+    clipped: str
+    trouble: str
+    poses: list[BodyPose]
+
+
+class Ghosts(Event):
+    """The shapes that a tab asked for, as the last good design has them at a revision."""
+
+    rev: int
+    shapes: list[Ghost]
+
+
 class Cavity(Entry):
     """An enclosed space: its name or an empty text, volume in m³, area in m²."""
 
@@ -1083,6 +1117,7 @@ AnyEvent = (
     | Document
     | DesignFiles
     | Materials
+    | Ghosts
     | Body
     | Stat
     | Equilibrium

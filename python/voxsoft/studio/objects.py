@@ -52,8 +52,8 @@ def objects_of(setup: Setup) -> list[events.BodyObject]:
             name=each.name,
             motion="free" if each.is_free else "fixed" if each.way is None else "moved",
             middle=_triple(surface.middle),
-            vertices=_packed(surface.vertices.astype("<f4")),
-            triangles=_packed(surface.triangles.astype("<u4")),
+            vertices=packed(surface.vertices.astype("<f4")),
+            triangles=packed(surface.triangles.astype("<u4")),
         )
         for each, surface in zip(setup.design.objects, traced, strict=True)
     ]
@@ -157,5 +157,6 @@ def _triple(values: NDArray[np.float64]) -> Triple:
     return (x, y, z)
 
 
-def _packed(values: NDArray[Any]) -> str:
+def packed(values: NDArray[Any]) -> str:
+    """Write the bytes of an array as base64, as messages hold them."""
     return base64.b64encode(np.ascontiguousarray(values).tobytes()).decode("ascii")

@@ -39,6 +39,7 @@ from voxsoft.studio.engine import Engine
 from voxsoft.studio.event_bus import Tabs
 from voxsoft.studio.exports import Shown, export_run, export_shown
 from voxsoft.studio.fineness import fineness_of
+from voxsoft.studio.ghosts import GhostTracer
 from voxsoft.studio.jobs import Jobs
 from voxsoft.studio.kept import keep
 from voxsoft.studio.line_difference import line_differences
@@ -126,6 +127,7 @@ class Session:
             self._not_meshed,
             self._not_examined,
         )
+        self._ghosts = GhostTracer(self.tabs.send_to)
         self._lock = threading.RLock()
         self._author: Tab | None = None
         self._loaded: _Loaded | None = None
@@ -143,6 +145,7 @@ class Session:
         """Start the threads, and mesh the document."""
         self.engine.start()
         self._mesher.start()
+        self._ghosts.start()
         self._mesh()
 
     def end(self) -> None:
@@ -150,6 +153,7 @@ class Session:
         self._keep_draft(now=True)
         self.jobs.end()
         self._mesher.end()
+        self._ghosts.end()
         self.engine.end()
         shutil.rmtree(self.own / "exports", ignore_errors=True)
 
@@ -273,6 +277,10 @@ class Session:
     @_execute.register
     def _on_materials(self, command: commands.Materials, tab: Tab) -> None:
         self.tabs.send_to(tab, materials_of(self.document))
+
+    @_execute.register
+    def _on_ghosts(self, command: commands.Ghosts, tab: Tab) -> None:
+        self._ghosts.ask(tab, self.document.design, self.document.rev, command.names)
 
     def _of_several(self, name: str) -> tuple[DesignDocument, str]:
         """A document in which bodies have names, and what there is called by a name."""

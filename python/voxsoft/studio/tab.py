@@ -18,7 +18,7 @@ LONGEST_QUEUE: Final = 5_000
 #: Rows of a plot that wait in one message.
 MOST_ROWS: Final = 20_000
 #: Events that tell all of something: a newer one makes those that wait useless.
-_STATES: Final = (events.Document, events.Body, events.Runs, events.Stat)
+_STATES: Final = (events.Document, events.Ghosts, events.Body, events.Runs, events.Stat)
 
 
 class Socket(Protocol):

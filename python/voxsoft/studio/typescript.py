@@ -16,6 +16,7 @@ from typing import Any, Final
 
 from msgspec import inspect as types
 
+from voxsoft.shapes import KINDS as SHAPES
 from voxsoft.studio.commands import AnyCommand, Command
 from voxsoft.studio.events import AnyEvent, Event
 from voxsoft.studio.wire import (
@@ -73,6 +74,7 @@ def typescript() -> str:
         _constant("PACES", PACES, "Speeds of time: simulated seconds for each of the clock."),
         *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
         _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),
+        _constant("SHAPE_KINDS", _shape_kinds(), "Kinds of shapes that a design file can hold."),
         _constant("COMMON_UNITS", _units(), "Units of daily use: SI units in one, and exponents."),
         "export type Triple = [number, number, number];\n",
     ]
@@ -108,6 +110,11 @@ def _kinds() -> dict[str, dict[str, object]]:
             "dimension": list(kind.dimension),
         }
     return found
+
+
+def _shape_kinds() -> tuple[str, ...]:
+    """All kinds but functions of Python, which have no form in a file."""
+    return tuple(kind for kind, shape in SHAPES.items() if "function" not in shape.model_fields)
 
 
 def _units() -> dict[str, list[object]]:

@@ -82,6 +82,8 @@ export interface ButtonProps {
   kind?: "plain" | "primary" | "quiet" | "danger";
   icon?: boolean;
   pressed?: boolean;
+  /** Of one that opens something: whether that is open. */
+  expanded?: boolean;
   disabled?: boolean;
   testId?: string;
   onClick(event: MouseEvent): void;
@@ -95,6 +97,7 @@ export function Button(props: ButtonProps) {
       className={`button${kind}${props.icon ? " icon" : ""}`}
       aria-label={props.label}
       aria-pressed={props.pressed}
+      aria-expanded={props.expanded}
       title={props.title ?? props.label}
       disabled={props.disabled}
       data-testid={props.testId}

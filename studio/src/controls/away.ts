@@ -1,15 +1,20 @@
 import { type RefObject, useEffect } from "react";
 
-/** Calls `close` on Escape and on a press outside of the element, as long as that is open. */
+/**
+ * Calls `close` on Escape and on a press outside of the element, as long as that is open; what opened it closes it
+ * itself.
+ */
 export function useAway(
   box: RefObject<HTMLElement | null>,
   open: boolean,
   close: (by: "escape" | "press") => void,
+  opener: HTMLElement | null = null,
 ): void {
   useEffect(() => {
     if (!open) return;
     const press = (event: PointerEvent) => {
-      if (!box.current?.contains(event.target as Node)) close("press");
+      const at = event.target as Node;
+      if (!box.current?.contains(at) && !opener?.contains(at)) close("press");
     };
     const key = (event: KeyboardEvent) => {
       if (event.key !== "Escape") return;

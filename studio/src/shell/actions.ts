@@ -14,6 +14,7 @@ import {
 } from "../store/page";
 import { send } from "../store/session";
 import { showAskedPace, useStudio } from "../store/studio";
+import { setView } from "../store/view";
 
 export interface Action {
   readonly id: string;
@@ -292,6 +293,7 @@ export function openDocument(draft: Pending): void {
 
 /** Open a document without asking. */
 export function openNow(draft: Pending): void {
+  setView({ shape: null }); // another design may have one of the same name
   send(draft);
 }
 

@@ -88,6 +88,9 @@ const ON_DOCUMENT: ReadonlySet<Draft["t"]> = new Set([
   "job_start",
 ]);
 
+/** Commands that are sent again by themselves once there is a connection. */
+const LATER: ReadonlySet<Draft["t"]> = new Set(["text", "edit", "view", "ghosts"]);
+
 /** Send a command; gives its number, or 0 with a message where there is no connection. */
 export function send(draft: Draft): number {
   if (ON_DOCUMENT.has(draft.t)) flushText();
@@ -95,7 +98,7 @@ export function send(draft: Draft): number {
   if (seq > 0) {
     sentAt.set(seq, performance.now());
     if (sentAt.size > 400) sentAt.delete(sentAt.keys().next().value as number);
-  } else if (draft.t !== "text" && draft.t !== "edit" && draft.t !== "view") {
+  } else if (!LATER.has(draft.t)) {
     toast({
       level: "warning",
       what: "Not connected to VoxSoft",

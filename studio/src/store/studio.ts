@@ -12,6 +12,7 @@ import type {
   EquilibriumEvent,
   FinenessEvent,
   GenerationEvent,
+  GhostsEvent,
   HelloEvent,
   JobEvent,
   LogEvent,
@@ -67,6 +68,8 @@ export interface Studio {
   designs: DesignFilesEvent | null;
   /** What is known of all materials, once a pane asked for it. */
   materials: MaterialsEvent | null;
+  /** Shapes by themselves, as this tab asked for them. */
+  ghosts: GhostsEvent | null;
   body: BodyEvent | null;
   stat: StatEvent | null;
   /** The last pace that was asked for and is not confirmed yet. */
@@ -120,6 +123,7 @@ export const useStudio = create<Studio>(() => ({
   document: null,
   designs: null,
   materials: null,
+  ghosts: null,
   body: null,
   stat: null,
   askedPace: undefined,
@@ -201,6 +205,9 @@ export function apply(event: Exclude<AnyEvent, Gathered>): void {
       break;
     case "materials":
       set({ materials: event });
+      break;
+    case "ghosts":
+      set({ ghosts: event });
       break;
     case "body":
       set(({ body, moments, askedPace, picked }) => ({

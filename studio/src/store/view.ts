@@ -43,6 +43,8 @@ export interface View {
   scheme: Scheme;
   /** The rigid object that is chosen in the form or the picture. */
   chosen: string | null;
+  /** The shape that is chosen instead. */
+  shape: string | null;
   /** Spring by which the mouse pulls, N/m. */
   stiffness: number;
 }
@@ -86,6 +88,7 @@ export const useView = create<View>(() => ({
   tape: false,
   scheme: "voxsoft",
   chosen: null,
+  shape: null,
   stiffness: 50,
   ...kept<View>(KEY),
 }));
@@ -95,7 +98,9 @@ useView.subscribe((view) => {
 });
 
 export function setView(change: Partial<View>): void {
-  useView.setState(change);
+  // One thing is chosen at a time.
+  const one = change.chosen ? { shape: null } : change.shape ? { chosen: null } : {};
+  useView.setState({ ...one, ...change });
 }
 
 /** What the view tells the panes a few times a second: what is drawn, not how. */

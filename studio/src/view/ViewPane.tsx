@@ -5,9 +5,11 @@ import { EMPTY } from "../panes/design/empty";
 import { Transport } from "../run/Transport";
 import { openDocument } from "../shell/actions";
 import { chooseFace } from "../store/face";
+import { usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView } from "../store/view";
+import { isAsBuilt } from "./asBuilt";
 import { ContactBanner } from "./ContactBanner";
 import { Cube } from "./Cube";
 import { FaceCard } from "./FaceCard";
@@ -17,6 +19,7 @@ import { Legend } from "./Legend";
 import { OverlapBanner } from "./OverlapBanner";
 import { ViewBar } from "./ViewBar";
 import "./view.css";
+import "./shapeHandle.css";
 
 export default function ViewPane() {
   const box = useRef<HTMLDivElement>(null);
@@ -111,6 +114,7 @@ function Badges() {
         </button>
       )}
       {tape && <span className="badge">tape: click two points of the body, Esc ends</span>}
+      <HiddenShape />
       {recording && <span className="badge bad">● recording</span>}
       {playing && fps > 0 && (
         <span className="badge" data-testid="fps">
@@ -118,6 +122,27 @@ function Badges() {
         </span>
       )}
     </div>
+  );
+}
+
+/** Says why the chosen shape is not seen: it is drawn over the body as it was built alone. */
+function HiddenShape() {
+  const shape = useView((view) => view.shape);
+  const design = usePage((page) => page.mode === "design");
+  const asBuilt = useStudio((state) => isAsBuilt(state.stat));
+  const shapes = useStudio((state) => state.document?.source?.shapes);
+  const there = shape !== null && shape in ((shapes as object | undefined) ?? {});
+  if (!there || !design || asBuilt) return null;
+  return (
+    <button
+      type="button"
+      className="badge"
+      data-testid="hidden-shape"
+      title="Go back to the unloaded shape, where shapes are drawn and moved"
+      onClick={() => send({ t: "reset" })}
+    >
+      {shape} is drawn over the unloaded body: reset
+    </button>
   );
 }
 

@@ -21,20 +21,20 @@ export function put(button: HTMLButtonElement, at: { x: number; y: number }, ang
   (button.firstChild as HTMLElement).style.transform = `rotate(${angle.toFixed(3)}rad)`;
 }
 
-/** While a grip is held, call what `begin` gives with the pixels of each move; then `ended`. */
+/** While a grip is held, call what `begin` gives with the pixels of each move, and whether Shift is held; then `ended`. */
 export function drags(
   button: HTMLButtonElement,
-  begin: () => (dx: number, dy: number) => void,
+  begin: () => (dx: number, dy: number, fine: boolean) => void,
   ended: () => void = () => {},
 ): void {
-  let held: { move: (dx: number, dy: number) => void; x: number; y: number } | null = null;
+  let held: { move: ReturnType<typeof begin>; x: number; y: number } | null = null;
   button.addEventListener("pointerdown", (event) => {
     button.setPointerCapture(event.pointerId);
     held = { move: begin(), x: event.clientX, y: event.clientY };
   });
   button.addEventListener("pointermove", (event) => {
     if (!held) return;
-    held.move(event.clientX - held.x, event.clientY - held.y);
+    held.move(event.clientX - held.x, event.clientY - held.y, event.shiftKey);
     held = { ...held, x: event.clientX, y: event.clientY };
   });
   const end = () => {

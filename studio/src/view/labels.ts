@@ -10,6 +10,7 @@ export interface Label {
     | "attachment"
     | "body"
     | "object"
+    | "shape"
     | "load"
     | "probe"
     | "cavity"

@@ -73,6 +73,10 @@ export function listen(view: Viewport): void {
   const finish = (event: PointerEvent) => {
     if (gesture?.kind === "pull") view.grabs.end(event.shiftKey);
     else if (gesture?.kind === "maybe-pull") clicked(view, gesture.hit);
+    else if (gesture?.kind === "steer" && event.button === 0) {
+      const far = Math.hypot(event.clientX - start.x, event.clientY - start.y);
+      if (far < STILL) view.chooseGhost(event.clientX, event.clientY);
+    }
     gesture = null;
     canvas.style.cursor = "";
     view.request();
@@ -115,7 +119,8 @@ export function listen(view: Viewport): void {
       view.grabs.end(false);
       gesture = null;
     } else if (useView.getState().tape) setView({ tape: false });
-    else setView({ chosen: null });
+    else if (event.target instanceof HTMLInputElement) setView({ chosen: null });
+    else setView({ chosen: null, shape: null });
     view.request();
   });
 }

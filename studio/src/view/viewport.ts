@@ -11,15 +11,19 @@ import {
 } from "three";
 import { FrameGate } from "../engine/credits";
 import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../engine/frames";
-import { editAll } from "../panes/design/edits";
+import { edit, editAll } from "../panes/design/edits";
 import { resized } from "../panes/design/gripped";
 import { BODY, roomOf } from "../panes/design/several";
+import { type ShapeGrip, shapeGrips } from "../panes/design/shapeGrips";
+import { typedChanges } from "../panes/design/typedNumber";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
 import { usePage } from "../store/page";
 import { currentEngine, onReady, present, send, sinceSent } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useShown, useView, type View } from "../store/view";
+import { isAsBuilt } from "./asBuilt";
+import { askGhosts } from "./askGhosts";
 import { Attachments } from "./attachments";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
@@ -28,6 +32,7 @@ import { withoutDust } from "./dust";
 import { faceAt, triangleAt } from "./face";
 import { FaceMark } from "./faceMark";
 import { ContactForces } from "./forces";
+import { Ghosts } from "./ghosts";
 import { Grabs } from "./grab";
 import { roundLength } from "./ground";
 import { type Label, Labels } from "./labels";
@@ -42,6 +47,7 @@ import { Section } from "./section";
 import { SectionFill } from "./sectionFill";
 import { SectionHandle } from "./sectionHandle";
 import { partColors, Several } from "./several";
+import { type Edited, ShapeHandle } from "./shapeHandle";
 import { SizeHandle } from "./sizeHandle";
 import { SmoothMesh } from "./smooth";
 import { Spot } from "./spot";
@@ -104,10 +110,28 @@ export class Viewport {
       if (shape) editAll([{ path: ["objects", sized.index, "shape"], value: shape }]);
     },
   );
+  private readonly shaper = new ShapeHandle(this.rig, {
+    changed: () => this.request(),
+    // Each drag is a step of its own; keys that follow each other are undone together.
+    dropped: (grip, value) => editAll(grip.number.changes(value)),
+    stepped: (grip, value) => {
+      const changes = grip.number.changes(value);
+      if (changes.length > 1) editAll(changes);
+      else for (const change of changes) edit(change.path, change.value);
+    },
+    typed: (grip, text) => {
+      const read = typedChanges(grip.number, text, useStudio.getState().document);
+      if ("problem" in read) return read.problem;
+      editAll(read.changes);
+      return null;
+    },
+  });
+  private shapeGrips: { key: unknown; shape: string; grips: ShapeGrip[] } | null = null;
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
   private readonly objects = new RigidObjects(this.section);
   private readonly several = new Several();
+  private readonly ghosts = new Ghosts();
   private readonly forces = new ContactForces();
   private readonly labels = new Labels();
   private readonly panels = new Panels();
@@ -164,6 +188,7 @@ export class Viewport {
       this.sectionHandle.element,
       this.mover.element,
       this.sizer.element,
+      this.shaper.element,
     );
     this.scene.add(
       this.section.group,
@@ -176,6 +201,7 @@ export class Viewport {
       this.grabs.group,
       this.tape.group,
       this.faceMark.mesh,
+      this.ghosts.group,
     );
     new ResizeObserver(() => this.resize()).observe(this.element);
     new MutationObserver(() => this.recolor()).observe(document.documentElement, {
@@ -183,7 +209,10 @@ export class Viewport {
     });
     listen(this);
     useView.subscribe((now, before) => this.viewChanged(now, before));
-    useFace.subscribe(() => this.request());
+    useFace.subscribe(({ face }) => {
+      if (face) setView({ shape: null });
+      this.request();
+    });
     usePage.subscribe((now, before) => now.mode !== before.mode && this.request());
     useStudio.subscribe((now, before) => {
       if (now.body !== before.body) this.bodyChanged();
@@ -193,7 +222,9 @@ export class Viewport {
         // While time runs the next frame is on its way and will show what else is new.
         if (now.stat?.state !== "playing" || before.stat?.state !== "playing") this.request();
       }
+      if (now.ghosts !== before.ghosts) this.ghostsChanged();
       if (now.overlap !== before.overlap || now.moments !== before.moments) this.request();
+      if (now.document !== before.document && !now.document?.valid) this.shaper.forget();
       const name = nameOf(now.document);
       if (name !== null && name !== this.documentName) {
         this.documentName = name;
@@ -208,6 +239,7 @@ export class Viewport {
       this.gate.clear();
       this.tellView();
     });
+    askGhosts();
     present(this);
     if (useStudio.getState().body) this.bodyChanged();
   }
@@ -233,7 +265,10 @@ export class Viewport {
     } else this.surface = mesh;
     this.scene.add(mesh.group);
     this.coverSurface();
-    if (fresh) this.takeIn();
+    if (fresh) {
+      this.takeIn();
+      this.takeInShape();
+    }
     this.stir(performance.now());
     this.request();
   }
@@ -325,6 +360,22 @@ export class Viewport {
     if (this.rig.steered || (!alone && this.rig.holds(box))) return;
     this.rig.fit(box, alone);
     this.fitted = 0;
+  }
+
+  private ghostsChanged(): void {
+    this.shaper.forget();
+    this.ghosts.build(useStudio.getState().ghosts?.shapes ?? []);
+    this.takeInShape();
+    this.request();
+  }
+
+  // A chosen shape beside the body is brought into a picture that no hand has turned, whichever of the two comes first.
+  private takeInShape(): void {
+    const { shape } = useView.getState();
+    const own = shape === null ? null : this.ghosts.boxOf(shape);
+    const mesh = this.shownMesh();
+    if (own && mesh && this.asBuilt && !this.rig.steered && !this.rig.holds(own))
+      this.rig.fit(this.objects.around(mesh.box(1).clone()).union(own));
   }
 
   // The body's layers, whichever of its surface and what is told of it comes first.
@@ -433,11 +484,13 @@ export class Viewport {
     const middle = this.middleToMove(view);
     this.mover.place(middle, width, height);
     const sized = this.objectToSize(view);
+    this.shaper.place(this.shapeToEdit(view), width, height);
     this.sizer.place(sized ? middle : null, sized?.half ?? 0, width, height);
     const pressed = [
       ...this.sectionHandle.grips,
       ...this.mover.grips,
       ...this.sizer.grips,
+      ...this.shaper.grips,
       ...this.panels.rects,
     ];
     this.labels.place(this.rig.camera, width, height, pressed);
@@ -465,12 +518,17 @@ export class Viewport {
     return lasts ? ladder.quality : { ...ladder.quality, share: this.painter.share };
   }
 
-  // The middle of what is chosen in the form, where it can be moved: while the design is drawn as it was built.
+  // Whether the design can be changed in the picture: while it is drawn as it was built.
+  private get asBuilt(): boolean {
+    const { stat, document } = useStudio.getState();
+    if (usePage.getState().mode !== "design" || currentEngine()?.kind !== "server") return false;
+    return (document?.valid ?? false) && isAsBuilt(stat);
+  }
+
+  // The middle of what is chosen in the form, where it can be moved.
   private middleToMove(view: View): Vector3 | null {
-    const { body, stat, document } = useStudio.getState();
-    if (!view.chosen || !body || usePage.getState().mode !== "design") return null;
-    if (currentEngine()?.kind !== "server") return null;
-    if (!document?.valid || (stat?.time ?? 0) !== 0 || stat?.state === "at-rest") return null;
+    const { body } = useStudio.getState();
+    if (!view.chosen || !body || !this.asBuilt) return null;
     if (body.bodies.length === 0 && view.chosen === BODY) return null;
     const room = roomOf(view.chosen, body);
     return room && new Vector3(...room.low).add(new Vector3(...room.high)).multiplyScalar(0.5);
@@ -491,6 +549,19 @@ export class Viewport {
     const room = roomOf(view.chosen, body);
     if (!room) return null;
     return { index, shape, half: Math.max(...room.low.map((x, i) => room.high[i]! - x)) / 2 };
+  }
+
+  // The chosen shape with its grips, where it is drawn.
+  private shapeToEdit(view: View): Edited | null {
+    const frame = view.shape !== null && this.asBuilt ? this.ghosts.frameOf(view.shape) : null;
+    if (!frame || view.shape === null) return null;
+    const { document } = useStudio.getState();
+    if (this.shapeGrips?.key !== document || this.shapeGrips?.shape !== view.shape) {
+      const { source, design, parameters } = document!;
+      const grips = shapeGrips(view.shape, source ?? {}, design, parameters);
+      this.shapeGrips = { key: document, shape: view.shape, grips };
+    }
+    return { ...frame, grips: this.shapeGrips.grips };
   }
 
   // What is recorded is whole, however long it takes.
@@ -576,9 +647,16 @@ export class Viewport {
     const moved = this.mover.shift.some((one) => one !== 0);
     if (moved && body && view.chosen) this.several.placeMoved(body, view.chosen, this.mover.shift);
     else this.several.place(body, this.surface, view.chosen, view.exaggeration);
+    this.ghosts.group.visible = this.asBuilt;
+    this.ghosts.place(view.shape, this.shaper.preview, this.pixels);
     this.faceMark.place(useFace.getState().face, this.surface, view.exaggeration);
     this.symbols.group.visible = view.symbols;
     this.attachments.group.visible = view.symbols;
+  }
+
+  private get pixels(): { x: number; y: number; ratio: number } {
+    const { width: x, height: y } = this.renderer.domElement;
+    return { x, y, ratio: this.renderer.getPixelRatio() };
   }
 
   private range(view: View): [number, number] {
@@ -620,6 +698,7 @@ export class Viewport {
       if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
+    if (this.ghosts.group.visible && view.symbols) labels.push(...this.ghosts.labels());
     // Where all values are the same there is no least and no greatest.
     const varies = mesh.frame && mesh.frame.max > mesh.frame.min;
     if (view.extremes && varies && view.coloring === "field")
@@ -738,6 +817,11 @@ export class Viewport {
     return targetOf(this.ray(x, y), surface, mesh, positions, smooth, keep);
   }
 
+  /** Choose the ghost at a place of the page where no body is; none where there is none. */
+  chooseGhost(x: number, y: number): void {
+    if (this.ghosts.group.visible) setView({ shape: this.ghosts.hit(this.ray(x, y)) });
+  }
+
   /** The free object under the pointer, in front of the body. */
   hitObject(x: number, y: number): ReturnType<RigidObjects["hit"]> {
     if (!this.objects.group.visible) return null;
@@ -811,7 +895,13 @@ export class Viewport {
   fit(): void {
     const mesh = this.shownMesh();
     const box = mesh?.box(useView.getState().exaggeration).clone();
-    if (box) this.rig.fit(this.objects.around(box));
+    if (!box) return;
+    const all = this.objects.around(box);
+    for (const name of this.ghostNames) {
+      const own = this.ghosts.boxOf(name);
+      if (own) all.union(own);
+    }
+    this.rig.fit(all);
     this.request();
   }
 
@@ -882,6 +972,17 @@ export class Viewport {
   /** Where the middle of a rigid object is drawn, m. */
   objectPosition(name: string): [number, number, number] | null {
     return this.objects.middleOf(name);
+  }
+
+  /** Shapes that are drawn by themselves. */
+  get ghostNames(): readonly string[] {
+    return this.ghosts.group.visible ? this.ghosts.names : [];
+  }
+
+  /** Lowest and highest corner of one of them, m. */
+  ghostBox(name: string): [number[], number[]] | null {
+    const box = this.ghosts.boxOf(name);
+    return box && [box.min.toArray(), box.max.toArray()];
   }
 
   /** How many triangles of a section through the field are drawn. */

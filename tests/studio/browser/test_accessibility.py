@@ -79,6 +79,14 @@ def test_every_mode_and_sheet_is_accessible(axe, served, open_tab, scheme):
         tab.find(f"mode-{mode}").click()
         tab.until(LOADED)
         audit.look(mode)
+        if mode == "design":
+            tab.find("add-shape").click()
+            tab.find("shape-picker").wait_for()
+            audit.look("shape picker")
+            page.keyboard.press("Escape")
+            tab.find("shapes-body").get_by_role("button", name="body").first.click()
+            tab.find("shape-size-y").wait_for()
+            audit.look("chosen shape")
     tab.find("mode-design").click()
     for keys, sheet in KEYS.items():
         page.locator(".viewport canvas").focus()

@@ -36,8 +36,6 @@ def test_a_bending_finger_with_a_layer_from_nothing(empty, tmp_path):
     tab, hand = empty
     first_shape(tab, hand, "box")
     entry = tab.find("shapes-box")
-    entry.get_by_role("button", expanded=False).first.click()
-    hand.actions += 1
     for axis, size in (("x", "100 mm"), ("z", "30 mm")):
         field = entry.get_by_label(f"Size {axis}", exact=True)
         renewed(tab, lambda field=field, size=size: hand.number(field, size))

@@ -107,8 +107,6 @@ def build(tab, hand):
     """Two hanging fingers of silicone with fabric inside, a ball between them, and what they do."""
     first_shape(tab, hand, "box")
     entry = tab.find("shapes-box")
-    entry.get_by_role("button", expanded=False).first.click()
-    hand.actions += 1
     for axis, size in (("x", "30 mm"), ("z", "100 mm")):
         field = entry.get_by_label(f"Size {axis}", exact=True)
         renewed(tab, lambda field=field, size=size: hand.number(field, size))

@@ -26,10 +26,14 @@ interface EntryProps {
   wrong: boolean;
   testId?: string;
   depth?: number;
+  /** Whether it is what the picture marks. */
+  chosen?: boolean;
   /** Whether it is open, where another place decides that too. */
   open?: { readonly is: boolean; set(open: boolean): void };
   /** What can be dropped on it: the kind of data, and what takes it. */
   drop?: { readonly kind: string; take(data: string): void };
+  /** Where it can be dragged on another, and others on it. */
+  drag?: HeadDrag;
   actions: readonly {
     readonly glyph: "up" | "down" | "trash" | "more";
     label: string;
@@ -38,21 +42,71 @@ interface EntryProps {
   children: ReactNode;
 }
 
+/** What the line of an entry does when it is dragged, or something is dragged over it. */
+export interface HeadDrag {
+  /** Whether what is dragged can be dropped here now. */
+  readonly takes: boolean;
+  begin(): void;
+  end(): void;
+  drop(at: MenuPlace): void;
+}
+
+function dragged(drag: HeadDrag | undefined, over: boolean, setOver: (over: boolean) => void) {
+  if (!drag) return {};
+  return {
+    draggable: true,
+    onDragStart: (event: DragEvent) => {
+      event.dataTransfer.effectAllowed = "move";
+      event.dataTransfer.setData("text/plain", "");
+      drag.begin();
+    },
+    onDragEnd: () => drag.end(),
+    onDragOver: (event: DragEvent) => {
+      if (!drag.takes) return;
+      event.preventDefault(); // it may be dropped here
+      if (!over) setOver(true);
+    },
+    onDragLeave: (event: DragEvent) => {
+      if (!event.currentTarget.contains(event.relatedTarget as Node | null)) setOver(false);
+    },
+    onDrop: (event: DragEvent) => {
+      event.preventDefault();
+      setOver(false);
+      drag.drop({ x: event.clientX, y: event.clientY });
+    },
+  };
+}
+
 /** A line that opens to the fields behind it. */
 export function Entry(props: EntryProps) {
   const own = useState(false);
   const [open, setOpen] = props.open ? [props.open.is, props.open.set] : own;
   const [over, setOver] = useState(false);
   const { drop } = props;
+  const box = useRef<HTMLDivElement>(null);
+  // It may have been added, or chosen in the picture.
+  useEffect(() => {
+    if (props.chosen) box.current?.scrollIntoView({ block: "nearest" });
+  }, [props.chosen]);
+  const marks = [open && "is-open", props.chosen && "is-chosen", drop && over && "takes-drop"];
   return (
     <div
-      className={`entry${open ? " is-open" : ""}${over ? " takes-drop" : ""}`}
+      ref={box}
+      className={["entry", ...marks].filter(Boolean).join(" ")}
       data-testid={props.testId}
       {...(drop && dropping(drop, setOver))}
       style={{ marginLeft: (props.depth ?? 0) * 14 }}
     >
-      <div className="entry-head">
-        <button type="button" aria-expanded={open} onClick={() => setOpen(!open)}>
+      <div
+        className={`entry-head${props.drag && over ? " is-over" : ""}`}
+        {...dragged(props.drag, over, setOver)}
+      >
+        <button
+          type="button"
+          aria-expanded={open}
+          aria-current={props.chosen || undefined}
+          onClick={() => setOpen(!open)}
+        >
           <i className="chevron">
             <Glyph name="open" />
           </i>
@@ -254,32 +308,25 @@ export function ThingEntry(props: {
   const name = named ? String(props.value.name) : `${single(section)} ${index + 1}`;
   const valid = useStudio((state) => state.document?.valid ?? false);
   const chosen = useView((view) => view.chosen === name);
-  const box = useRef<HTMLDivElement>(null);
-  // It may have been added, or chosen in the picture.
-  useEffect(() => {
-    if (chosen) box.current?.scrollIntoView({ block: "nearest" });
-  }, [chosen]);
   return (
-    <div ref={box}>
-      <Entry
-        title={name}
-        about={props.about}
-        wrong={problemsAt(diagnostics, [section, index]).length > 0}
-        testId={`${section}-${index}`}
-        open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
-        actions={[
-          {
-            glyph: "trash",
-            label: `Remove ${name}`,
-            // With the pairs of contact that name it, unless the text is not good as it is.
-            run: () =>
-              named && valid ? send({ t: "remove", name }) : edit([section, index], null),
-          },
-        ]}
-      >
-        {props.children}
-      </Entry>
-    </div>
+    <Entry
+      title={name}
+      about={props.about}
+      wrong={problemsAt(diagnostics, [section, index]).length > 0}
+      testId={`${section}-${index}`}
+      chosen={chosen}
+      open={{ is: chosen, set: (open) => setView({ chosen: open ? name : null }) }}
+      actions={[
+        {
+          glyph: "trash",
+          label: `Remove ${name}`,
+          // With the pairs of contact that name it, unless the text is not good as it is.
+          run: () => (named && valid ? send({ t: "remove", name }) : edit([section, index], null)),
+        },
+      ]}
+    >
+      {props.children}
+    </Entry>
   );
 }
 
@@ -340,7 +387,12 @@ export function EntryMap(props: {
   );
 }
 
-export function NameField(props: { section: Named; name: string; taken: readonly string[] }) {
+export function NameField(props: {
+  section: Named;
+  name: string;
+  taken: readonly string[];
+  onRenamed?(name: string): void;
+}) {
   return (
     <TextField
       label="Name"
@@ -349,6 +401,7 @@ export function NameField(props: { section: Named; name: string; taken: readonly
         if (!NAME.test(name)) return "letters, digits, _ and - only";
         if (props.taken.includes(name)) return `“${name}” is taken`;
         replaceText(renamed(textNow(), props.section, props.name, name));
+        props.onRenamed?.(name);
         return null;
       }}
     />

@@ -15,15 +15,7 @@ import { Glyph } from "./Glyph";
 import { lock, useLocked } from "./locks";
 import { Menu, type MenuPlace } from "./Menu";
 import { ParameterDetails } from "./ParameterDetails";
-
-/** Where the value of a parameter is written: a table has it inside. */
-function valuePath(source: Readonly<Record<string, unknown>>, name: string): (string | number)[] {
-  const all = source.parameters as Record<string, unknown> | undefined;
-  const written = all?.[name];
-  return typeof written === "object" && written !== null
-    ? ["parameters", name, "value"]
-    : ["parameters", name];
-}
+import { valuePath } from "./parameterPath";
 
 /** The value as it is written, also where the design as a whole is not good. */
 function writtenValue(parameter: Parameter): number {

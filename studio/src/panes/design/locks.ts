@@ -23,6 +23,11 @@ export function useLocked(parameter: string): boolean {
   return useLocks((locks) => locks.of[document]?.includes(parameter) ?? false);
 }
 
+/** The same once, outside of what React draws. */
+export function isLocked(parameter: string): boolean {
+  return useLocks.getState().of[currentDocument()]?.includes(parameter) ?? false;
+}
+
 /** Lock a parameter, and take it out of the study; or let it be changed again. */
 export function lock(parameter: string, on: boolean): void {
   const document = currentDocument();

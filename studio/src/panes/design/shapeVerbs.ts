@@ -9,6 +9,8 @@ type Table = Readonly<Record<string, unknown>>;
 export interface ShapeVerb {
   readonly label: string;
   readonly changes: readonly Change[];
+  /** The shape that is added, which is placed next. */
+  readonly adds?: string;
 }
 
 /** Shapes that cut or are joined, as they are asked for. */
@@ -18,7 +20,7 @@ type Tool = (typeof TOOLS)[number];
 /** The material of a first part: soft, and its card is measured. */
 export const FIRST_MATERIAL = "ecoflex-00-30";
 /** Side of the first shape, m: some voxels of the usual 5 mm. */
-const FIRST_SIDE = "40 mm";
+export const FIRST_SIDE = 0.04;
 /** A new shape as a part of the body that it cuts or joins. */
 const SHARE = 0.6;
 /** Walls that are left when a shape is hollowed, in voxels: bending wants two or more. */
@@ -28,24 +30,22 @@ const tableOf = (source: Table, section: string) => (source[section] as Table | 
 const listOf = (source: Table, section: string) =>
   (source[section] as readonly Table[] | undefined) ?? [];
 
-/** The changes that add a shape; the first one is made a part, so that it is seen. */
-export function withShape(value: Table, source: Table): Change[] {
+/** The name and the changes of a shape that is added; the first one is made a part. */
+export function withShape(value: Table, source: Table): { name: string; changes: Change[] } {
   const shapes = Object.keys(tableOf(source, "shapes"));
   const name = freeName(String(value.kind ?? "shape"), shapes);
   const parts = listOf(source, "parts");
   const several = listOf(source, "bodies").length > 0;
   const isFirst = shapes.length === 0 && parts.length === 0 && !several;
-  if (!isFirst) return [{ path: ["shapes", name], value }];
-  return [
-    { path: ["shapes", name], value: enlarged(value) },
-    { path: ["parts", 0], value: { shape: name, material: FIRST_MATERIAL } },
-  ];
-}
-
-/** Lengths that every new shape begins with, as large as a first body is. */
-function enlarged(value: Table): Table {
-  const text = JSON.stringify(value).replaceAll('"10 mm"', JSON.stringify(FIRST_SIDE));
-  return JSON.parse(text) as Table;
+  if (!isFirst) return { name, changes: [{ path: ["shapes", name], value }] };
+  const part = { shape: name, material: FIRST_MATERIAL };
+  return {
+    name,
+    changes: [
+      { path: ["shapes", name], value },
+      { path: ["parts", 0], value: part },
+    ],
+  };
 }
 
 /** Names that a shape refers to, of all depths. */
@@ -99,13 +99,14 @@ export function shapeVerbs(
           .map((part) => part.shape)
           .filter((shape): shape is string => typeof shape === "string" && shape in shapes)
           .slice(0, 3)
-          .flatMap((shape) => into(name, shape, shapes)),
+          .flatMap((shape) => joined(name, shape, shapes)),
       ];
   const tooled = (verb: string, kind: "difference" | "union") =>
     TOOLS.map((tool): ShapeVerb => {
       const added = freeName(tool, [...names, whole]);
       return {
         label: `${verb} a ${tool}`,
+        adds: added,
         changes: [
           { path: ["shapes", added], value: toolFor(tool, kind, body, voxel) },
           ...become({ kind, of: [whole, added] }),
@@ -123,6 +124,10 @@ export function shapeVerbs(
         kind: "difference",
         of: [whole, { kind: "offset", of: whole, distance: written(-WALL * voxel) }],
       }),
+    },
+    {
+      label: "Move it as a whole",
+      changes: become({ kind: "translate", of: whole, by: [0, 0, 0] }),
     },
     ...tooled("Cut with", "difference"),
     ...tooled("Join with", "union"),
@@ -146,21 +151,39 @@ export function shapeVerbs(
   ];
 }
 
-/** Join an unused shape to the shape of a part, or cut it out of it. */
-function into(name: string, shape: string, shapes: Table): ShapeVerb[] {
+/** Join a shape to another, cut it out of that, or keep what both have in common; the other keeps its name. */
+export function joined(name: string, shape: string, shapes: Table): ShapeVerb[] {
   const whole = freeName(`${shape}-whole`, Object.keys(shapes));
+  const own = shapes[shape] as Table;
   return (
     [
-      ["Join it to", "union"],
-      ["Cut it out of", "difference"],
+      [`Join it to ${shape}`, "union"],
+      [`Cut it out of ${shape}`, "difference"],
+      [`Intersect ${shape} with it`, "intersection"],
     ] as const
-  ).map(([verb, kind]) => ({
-    label: `${verb} ${shape}`,
-    changes: [
-      { path: ["shapes", whole], value: shapes[shape] },
-      { path: ["shapes", shape], value: { kind, of: [whole, name] } },
-    ],
+  ).map(([label, kind]) => ({
+    label,
+    // One that is of this kind already takes it in.
+    changes:
+      own.kind === kind && Array.isArray(own.of) && !own.smooth
+        ? [{ path: ["shapes", shape, "of"], value: [...own.of, name] }]
+        : [
+            { path: ["shapes", whole], value: own },
+            { path: ["shapes", shape], value: { kind, of: [whole, name] } },
+          ],
   }));
+}
+
+/** Whether a shape is made of another, at any depth: joined to that, it would be made of itself. */
+export function isMadeOf(name: string, of: string, shapes: Table): boolean {
+  const seen = new Set<string>();
+  const reaches = (one: string): boolean => {
+    if (one === of) return true;
+    if (seen.has(one) || !(one in shapes)) return false;
+    seen.add(one);
+    return namesIn(shapes[one]).some(reaches);
+  };
+  return reaches(name);
 }
 
 /** A tool in the middle of the body: what cuts goes through it, what joins stands on its top. */

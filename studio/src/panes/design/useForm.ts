@@ -35,7 +35,7 @@ export function useFormOfDocument(): Form | null {
 }
 
 /** Parameters with their values; without them while the text is not good, as they may have changed. */
-function amountsOf(names: readonly string[], document: DocumentEvent): Amounts {
+export function amountsOf(names: readonly string[], document: DocumentEvent): Amounts {
   const known = new Map(document.valid ? document.parameters.map((one) => [one.name, one]) : []);
   return Object.fromEntries(
     names.map((name) => {
