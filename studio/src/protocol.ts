@@ -1224,7 +1224,8 @@ export interface TextChange {
  * Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
  * `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
  * `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
- * how many there are.
+ * how many there are. `refining` halves the voxels that hold most of the error; it is empty where
+ * voxels cannot have two sizes, or have them.
  */
 export interface FinenessEvent {
   t: "fineness";
@@ -1242,6 +1243,7 @@ export interface FinenessEvent {
   refinable: string[];
   not_refined: string;
   refinements: number;
+  refining: TextChange[];
 }
 
 /**

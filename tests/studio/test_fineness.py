@@ -12,6 +12,7 @@ from own_loop import run
 import voxsoft as vs
 from voxsoft.comparison import error_bars
 from voxsoft.comparison.error_bar import ErrorBar, share_of
+from voxsoft.comparison.refining import refined
 from voxsoft.design import families
 from voxsoft.errors import DesignError
 from voxsoft.files.toml_edits import with_value
@@ -119,9 +120,18 @@ def test_parts_can_be_refined_where_that_is_known() -> None:
     state, document, _ = shown(TWO_PARTS)
     found = fineness_of(state, document)
     assert found.refinable == ["low", "high"]
-    refined = changed(TWO_PARTS, [(["refine", found.refinements], {"part": "high"})])
-    assert refined.refine[0].part == "high"
+    design = changed(TWO_PARTS, [(["refine", found.refinements], {"part": "high"})])
+    assert design.refine[0].part == "high"
     assert fineness_of(*shown(TWO_PARTS + '\n[[refine]]\npart = "low"\n')[:2]).refinable == ["high"]
+
+
+def test_the_voxels_with_most_of_the_error_can_be_refined() -> None:
+    state, document, result = shown(TWO_PARTS)
+    found = fineness_of(state, document)
+    design = changed(TWO_PARTS, [(each.path, each.value) for each in found.refining])
+    assert design.refine == refined(result).refine != ()
+    for more in ('[[refine]]\npart = "low"', '[[symmetry]]\nplane = "y"\nat = "4 mm"'):
+        assert fineness_of(*shown(f"{TWO_PARTS}\n{more}\n")[:2]).refining == []
 
 
 @pytest.mark.parametrize(

@@ -646,7 +646,8 @@ class Fineness(Event):
     Sizes in m, memory in bytes, `seconds` of the solution, null where no solver found the state.
     `halving` makes the voxels half as large; where it is empty `not_halved` says why. Parts of
     `refinable` can be refined alone; where there is none `not_refined` says why. `refinements` is
-    how many there are.
+    how many there are. `refining` halves the voxels that hold most of the error; it is empty where
+    voxels cannot have two sizes, or have them.
     """
 
     topology: int
@@ -663,6 +664,7 @@ class Fineness(Event):
     refinable: list[str]
     not_refined: str
     refinements: int
+    refining: list[TextChange]
 
 
 class Vibration(Event):

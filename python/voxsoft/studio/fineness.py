@@ -8,11 +8,12 @@ from typing import Any, Final
 
 from voxsoft._memory import memory_limit
 from voxsoft.comparison.other_voxels import cost_on_voxels
+from voxsoft.comparison.refining import refined
 from voxsoft.design import Design, Refinement
 from voxsoft.design.formula import is_formula
 from voxsoft.errors import DesignError, VoxSoftError
 from voxsoft.materials import Hyperelastic
-from voxsoft.simulation import Setup
+from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.choice import STATICS, kind_of
 from voxsoft.simulation.large_voxels import unknown_with_refinement
 from voxsoft.studio import events
@@ -69,7 +70,19 @@ def fineness_of(shown: Shown, document: DesignDocument) -> events.Fineness:
         refinable=refinable,
         not_refined=not_refined,
         refinements=len(design.refine),
+        refining=_refining(result),
     )
+
+
+def _refining(result: Result) -> list[events.TextChange]:
+    """The change of a text that halves the voxels with most of the error, where that can be."""
+    if kind_of(result.design, result.design.solver) not in STATICS:
+        return []
+    try:
+        design = refined(result)
+    except DesignError:
+        return []
+    return [events.TextChange(path=["refine"], value=design.document["refine"])]
 
 
 def _halving(source: Mapping[str, Any], design: Design) -> tuple[list[events.TextChange], str]:
@@ -143,11 +156,11 @@ def _refinable(design: Design) -> tuple[list[str], str]:
         return [], "Local refinement is not known for several bodies yet."
     if len(design.parts) < 2:
         return [], "The design has one part: local refinement takes a region of it, in the form."
-    refined = {refinement.part for refinement in design.refine if refinement.region is None}
+    done = {refinement.part for refinement in design.refine if refinement.region is None}
     found: list[str] = []
     for part in design.parts:
         soft = isinstance(design.material_of(part), Hyperelastic)
-        if part.label and part.label not in {*found, *refined} and soft:
+        if part.label and part.label not in {*found, *done} and soft:
             found.append(part.label)
     if not found:
         return [], "No other part with a name is of rubber."

@@ -141,6 +141,18 @@ function Finer({ cost }: { cost: FinenessEvent }) {
         >
           Halve the voxels
         </Button>
+        {cost.refining.length > 0 && (
+          <Button
+            testId="refine-worst"
+            title="Half the edge for the voxels that hold 90 % of the estimated error; Ctrl+Z takes it back"
+            onClick={() => {
+              editAll(cost.refining);
+              tell("The voxels with most of the error are half as large");
+            }}
+          >
+            Refine where the error is
+          </Button>
+        )}
         {cost.refinable.length > 0 && (
           <Select
             bare

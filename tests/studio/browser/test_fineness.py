@@ -36,6 +36,11 @@ def test_errors_and_costs_are_there_and_halving_is_one_step(opened, coarse, sche
     tab.until("voxsoft.triangles > 400")
     tab.page.keyboard.press("Control+z")
     tab.until("voxsoft.triangles < 400")
+    tab.page.keyboard.press("r")
+    tab.find("fineness").wait_for()
+    tab.find("refine-worst").click()
+    tab.find("toast").get_by_text("most of the error").wait_for()
+    tab.find("fineness").wait_for(state="detached")
     assert tab.errors == []
 
 
