@@ -65,7 +65,9 @@ def test_named_histories_say_what_follows_them(document: DesignDocument) -> None
         ("Gravity", "9.81 m/s^2"),
         ("Tendon flexor", "6 N"),
     ]
-    assert [use.title for use in found["breath"].used_by] == ["Motion of clamp 2"]
+    assert [(use.title, use.amount) for use in found["breath"].used_by] == [
+        ("Motion of clamp 2", "(0, 0, 1 mm)")
+    ]
     assert found["gait"].used_by == []
 
 

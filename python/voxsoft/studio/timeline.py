@@ -28,7 +28,10 @@ _SECTIONS: Final = {
 #: Of a curve so many points are drawn at most; those that can be dragged are all sent.
 _DRAWN: Final = 2_000
 #: Keys under which an entry says how much it is.
-_AMOUNTS: Final = ("value", "tension", "length", "shortening", "source", "displacement")
+_AMOUNTS: Final = (
+    *("value", "tension", "length", "shortening", "source", "displacement"),
+    *("conductance", "area"),
+)
 
 Path = list[str | int]
 Source = Mapping[str, Any]
@@ -163,9 +166,15 @@ def _amount(design: Design, section: str, index: int, path: Path, source: Source
     table = _at(source, path)
     if isinstance(table, Mapping):
         given = (table.get(key) for key in _AMOUNTS)
-        texts = (each for each in given if isinstance(each, str) and not is_formula(each))
-        return next(texts, "")
+        return next(filter(None, map(_written, given)), "")
     return ""
+
+
+def _written(value: object) -> str:
+    """An amount or the components of one as they are written; "" where that is no number."""
+    if isinstance(value, list):
+        return "" if any(map(is_formula, value)) else f"({', '.join(map(str, value))})"
+    return value if isinstance(value, str) and not is_formula(value) else ""
 
 
 def _bounds(owner: object) -> tuple[float | None, float | None]:

@@ -156,6 +156,7 @@ function options(element: HTMLElement, latest: { current: PlotProps }): uPlot.Op
         label: one.label,
         stroke: css(one.color),
         width: 1.5,
+        pxAlign: 0, // whole pixels would make waves of smooth curves
         dash: one.dashed ? [5, 4] : undefined,
         // A single row, as an equilibrium leaves it, is no line.
         points: { show: (plot: uPlot) => one.points === true || plot.data[0].length < 2, size: 5 },

@@ -45,6 +45,10 @@ def take(tab, name):
 def designed(tab):
     tab.find("pane-text").locator(".cm-content").wait_for()
     take(tab, "design")
+    tab.page.get_by_role("tab", name="Materials").click()
+    tab.find("materials-pane").get_by_label("Search materials").fill("dragon")
+    tab.find("material-dragon-skin-20").get_by_role("button", expanded=False).click()
+    take(tab, "materials")
     tab.find("export").click()
     tab.find("export-list").wait_for()
     take(tab, "export")
@@ -153,6 +157,9 @@ def test_picture_of_the_gripper(robot):
     robot.page.mouse.click(bar["x"] + 0.7 * bar["width"], bar["y"] + bar["height"] / 2)
     robot.page.get_by_text("sticks").first.wait_for()  # while it is held
     take(robot, "gripper")
+    robot.page.get_by_role("tab", name="Timeline").click()
+    robot.find("timeline-pane").get_by_role("slider").nth(1).focus()
+    take(robot, "timeline")
     assert robot.errors == []
 
 
