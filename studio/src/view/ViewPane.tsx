@@ -180,30 +180,32 @@ function Picked() {
           ×
         </Button>
       </header>
-      <FaceCard />
-      <dl className="facts">
-        <div>
-          <dt>Unloaded</dt>
-          <dd>{place(picked.rest)} mm</dd>
-        </div>
-        <div>
-          <dt>Now</dt>
-          <dd>{place(picked.position)} mm</dd>
-        </div>
-        {picked.values.map((value) => (
-          <div key={value.field}>
-            <dt>{fields?.find((one) => one.id === value.field)?.title ?? value.name}</dt>
-            <dd>
-              {value.value === null
-                ? "–"
-                : formatQuantity(cleaned(value.value, value.unit), value.unit)}
-            </dd>
+      <div className="picked-facts">
+        <FaceCard />
+        <dl className="facts">
+          <div>
+            <dt>Unloaded</dt>
+            <dd>{place(picked.rest)} mm</dd>
           </div>
-        ))}
-      </dl>
-      <Button testId="plot-picked" onClick={() => send({ t: "probe", vertex: picked.vertex })}>
-        Plot over time
-      </Button>
+          <div>
+            <dt>Now</dt>
+            <dd>{place(picked.position)} mm</dd>
+          </div>
+          {picked.values.map((value) => (
+            <div key={value.field}>
+              <dt>{fields?.find((one) => one.id === value.field)?.title ?? value.name}</dt>
+              <dd>
+                {value.value === null
+                  ? "–"
+                  : formatQuantity(cleaned(value.value, value.unit), value.unit)}
+              </dd>
+            </div>
+          ))}
+        </dl>
+        <Button testId="plot-picked" onClick={() => send({ t: "probe", vertex: picked.vertex })}>
+          Plot over time
+        </Button>
+      </div>
     </aside>
   );
 }

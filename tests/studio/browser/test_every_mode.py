@@ -7,6 +7,7 @@ profile and one server, as a user works.
 import re
 
 import pytest
+from over_panels import OVER_PANELS
 from waiting import until
 
 pytestmark = pytest.mark.browser
@@ -40,19 +41,12 @@ FAULTS = """((mode) => {
   }
   const wide = document.documentElement.scrollWidth;
   if (wide > innerWidth) return `the page is ${wide} pixels wide in a window of ${innerWidth}`;
-  const panels = [...document.querySelectorAll(
-    '.view-stage :is(.view-bar, .legend, .cube, .force-legend, .scale-bar, .badges, .picked, ' +
-    '.view-banner)')];
-  const meet = (a, b) => a.left < b.right - 1 && b.left < a.right - 1 &&
-    a.top < b.bottom - 1 && b.top < a.bottom - 1;
-  for (const word of document.querySelectorAll('.view-label:not([hidden], .crowded)'))
-    for (const panel of panels)
-      if (meet(word.getBoundingClientRect(), panel.getBoundingClientRect()))
-        return `the word "${word.textContent}" lies over ${panel.className}`;
+  const over = OVER_PANELS;
+  if (over) return over;
   for (const key of Object.keys(localStorage).filter((key) => key.startsWith('voxsoft.layout')))
     if (localStorage[key].includes('"views":[]')) return `${key} is kept without views`;
   return '';
-})"""
+})""".replace("OVER_PANELS", OVER_PANELS)
 
 
 def visit(tab, mode):

@@ -4,6 +4,7 @@ import io
 
 import numpy as np
 import pytest
+from over_panels import OVER_PANELS
 from PIL import Image
 
 pytestmark = pytest.mark.browser
@@ -316,3 +317,39 @@ def test_a_plane_of_symmetry_is_drawn_with_its_place(serving, tmp_path, open_tab
         assert tab.errors == []
     finally:
         server.stop()
+
+
+PANELS = (".legend", ".view-bar", ".cube", ".scale-bar", "[data-testid=picked]")
+
+
+def test_words_keep_out_of_panels_wherever_the_body_is(served, open_tab):
+    tab = open_tab(served.address, size=(1280, 720))
+    page = tab.page
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.find("rest").click()
+    tab.until("voxsoft.state === 'at-rest'")
+    page.mouse.click(*tab.middle())
+    tab.find("picked").wait_for()
+    # The card, which is higher than this view, scrolls below the bar.
+    bar, card = (page.locator(one).bounding_box() for one in (".view-bar", ".picked"))
+    assert card["y"] > bar["y"] + bar["height"]
+    tab.until(f"{OVER_PANELS} === ''")
+    word = page.locator(".view-label", has_text="gravity")
+    for panel in PANELS:
+        page.locator(".viewport canvas").focus()
+        page.keyboard.press("f")  # the word is in the middle again
+        word.wait_for()
+        tab.until(f"{OVER_PANELS} === ''")
+        box, at = page.locator(panel).bounding_box(), word.bounding_box()
+        x, y = tab.middle()
+        places = page.evaluate("String(voxsoft.screenOf(0))")
+        page.mouse.move(x, y)
+        page.mouse.down(button="middle")  # moves the picture
+        across = box["x"] + box["width"] / 2 - at["x"] - at["width"] / 2
+        down = box["y"] + box["height"] / 2 - at["y"] - at["height"] / 2
+        page.mouse.move(x + across, y + down, steps=4)
+        page.mouse.up(button="middle")
+        tab.until(f"String(voxsoft.screenOf(0)) !== '{places}'")
+        tab.until(f"{OVER_PANELS} === ''", patience=20)
+    tab.shot("words-beside-panels")
+    assert tab.errors == []
