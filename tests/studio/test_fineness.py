@@ -11,7 +11,7 @@ from own_loop import run
 
 import voxsoft as vs
 from voxsoft.comparison import error_bars
-from voxsoft.comparison.error_bar import ErrorBar, share_of
+from voxsoft.comparison.error_bar import ErrorBar, ErrorBars, share_of
 from voxsoft.comparison.refining import refined
 from voxsoft.design import families
 from voxsoft.errors import DesignError
@@ -177,6 +177,8 @@ def test_error_bars_can_be_asked_for_where_there_are_none() -> None:
     assert first.probes[0].share is None
     asked = with_error(result, "finer")
     assert equilibrium_of(asked, 1, 1).looking
+    # What was tried on finer voxels and failed would fail again.
+    assert not equilibrium_of(asked, 1, 1, ErrorBars.none("it failed", "larger voxels")).askable
     found = equilibrium_of(asked, 1, 1, error_bars(asked))
     assert not found.askable
     assert not found.looking

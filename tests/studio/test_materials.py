@@ -29,6 +29,7 @@ def test_every_card_is_there_once() -> None:
     shown = {one.name for one in found} | {one.same_as for one in found}
     assert shown - {""} == set(card_names())
     assert len(found) == len({one.name for one in found})
+    assert not {one.name for one in found} & {one.same_as for one in found}
 
 
 def test_what_no_card_states_is_left_open() -> None:

@@ -35,7 +35,7 @@ function Answer({ of: found }: { of: EquilibriumEvent }) {
   const groups: [string, string][] = [
     ["Within 2 %", inWords(rating.small)],
     ["Within 5 %", inWords(rating.fair)],
-    ["Beyond", inWords(rating.beyond)],
+    ["Beyond 5 %", inWords(rating.beyond)],
   ];
   return (
     <div data-testid="fineness">

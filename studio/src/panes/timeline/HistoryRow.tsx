@@ -14,6 +14,7 @@ import {
   rangeOf,
   removed,
   roomOf,
+  round,
   snapped,
   snapStep,
   whole,
@@ -98,7 +99,6 @@ export function HistoryRow({ line, axis, source }: HistoryRowProps) {
       const by = (count: number, span: number) => count * snapStep(span, event.shiftKey);
       const time = point.time + by(steps[0], axis.end);
       const factor = point.factor + by(steps[1], range[1] - range[0]);
-      const round = (x: number) => Number(x.toPrecision(12));
       nudged.current = true;
       setDraft(moved(points, index, round(time), round(factor), line));
     } else if (event.key === "Delete" || event.key === "Backspace") remove(index);

@@ -20,6 +20,12 @@ export interface Point {
   readonly units: { readonly time: string; readonly factor: string };
 }
 
+/** How near two points may be: a round part of the time that all of them take, s. */
+function gapOf(points: readonly Point[]): number {
+  const span = Math.max(points.at(-1)!.time - points[0]!.time, 1e-3);
+  return 10 ** Math.floor(Math.log10(span)) / 1e3;
+}
+
 /** Between which values a point may be moved. */
 export interface Room {
   readonly time: readonly [number, number];
@@ -51,11 +57,14 @@ export function isFormula(written: unknown): boolean {
 /** How far a point can go: never past its neighbors, nor where what follows the history cannot. */
 export function roomOf(points: readonly Point[], index: number, line: HistoryLine): Room {
   const point = points[index]!;
-  const gap = 1e-4 * Math.max(points.at(-1)!.time - points[0]!.time, 1e-3);
+  const gap = gapOf(points);
   const before = points[index - 1];
   const after = points[index + 1];
   const free: Room = {
-    time: [before ? before.time + gap : 0, after ? after.time - gap : Number.POSITIVE_INFINITY],
+    time: [
+      before ? round(before.time + gap) : 0,
+      after ? round(after.time - gap) : Number.POSITIVE_INFINITY,
+    ],
     factor: [line.low ?? Number.NEGATIVE_INFINITY, line.high ?? Number.POSITIVE_INFINITY],
   };
   // What a formula says, and the ends of what repeats, move with something else.
@@ -68,6 +77,9 @@ export function roomOf(points: readonly Point[], index: number, line: HistoryLin
     factor: fixed ? [point.factor, point.factor] : free.factor,
   };
 }
+
+/** A number without the noise of binary fractions. */
+export const round = (value: number): number => Number(value.toPrecision(12));
 
 const within = (value: number, [low, high]: readonly [number, number]) =>
   Math.min(Math.max(value, low), high);
@@ -112,7 +124,7 @@ export function added(
   line: HistoryLine,
 ): { readonly points: readonly Point[]; readonly index: number } | null {
   if (points.length >= MOST_POINTS || time < 0) return null;
-  const gap = 1e-4 * Math.max(points.at(-1)!.time - points[0]!.time, 1e-3);
+  const gap = gapOf(points);
   if (points.some((point) => Math.abs(point.time - time) < gap)) return null;
   const index = points.filter((point) => point.time < time).length;
   const high = line.high ?? Number.POSITIVE_INFINITY;
@@ -170,7 +182,7 @@ export function snapStep(span: number, fine: boolean): number {
 }
 
 export function snapped(value: number, step: number): number {
-  return Number((Math.round(value / step) * step).toPrecision(12));
+  return round(Math.round(value / step) * step);
 }
 
 /** The instants and factors of the whole, with all its repeats. */
