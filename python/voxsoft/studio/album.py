@@ -11,7 +11,7 @@ from typing import Any, Final, NamedTuple
 
 from voxsoft.design import Design
 from voxsoft.design.included import placed_document
-from voxsoft.errors import FileError
+from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.simulation import Result
 from voxsoft.studio import reopening
@@ -20,7 +20,7 @@ from voxsoft.studio.reopening import Known, is_given_by_positions, known_equilib
 from voxsoft.studio.runs import RunList
 from voxsoft.studio.stills import design_in
 from voxsoft.studio.studying import stored_study
-from voxsoft.studio.thumbnails import FOLDER, MOST, Thumbnail, Thumbnails
+from voxsoft.studio.thumbnails import FOLDER, MOST, NoPictureError, Thumbnail, Thumbnails
 from voxsoft.study import equilibria
 from voxsoft.study.equilibria import Equilibria, Equilibrium
 
@@ -78,7 +78,7 @@ class Album:
 
         Raises
         ------
-        VoxSoftError
+        NoPictureError
             It is no design, or cannot be drawn.
         NoLongerWantedError
             `cancelled` was set before it was begun.
@@ -88,15 +88,20 @@ class Album:
         def design() -> Design:
             return Design.from_document(placed_document(read_document(text, name), folder))
 
-        return self._own.of(content[:32], design, [self._solved], cancelled)
+        try:
+            return self._own.of(content[:32], design, [self._solved], cancelled)
+        except VoxSoftError as error:
+            raise NoPictureError(error.where, error.what, error.hint) from None
 
     def of_file(self, path: Path, cancelled: threading.Event) -> Thumbnail:
         """Draw a design file.
 
         Raises
         ------
-        VoxSoftError
-            It cannot be read, is no design, or cannot be drawn.
+        FileError
+            It cannot be read.
+        NoPictureError
+            It is no design, or cannot be drawn.
         NoLongerWantedError
             `cancelled` was set before it was begun.
         """

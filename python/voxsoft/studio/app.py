@@ -25,6 +25,7 @@ from voxsoft.studio.protocol import ProtocolError, decode, encode
 from voxsoft.studio.security import Guard, cookie_name
 from voxsoft.studio.session import Session
 from voxsoft.studio.tab import Tab
+from voxsoft.studio.thumbnails import NoPictureError
 from voxsoft.studio.uploads import safe_name
 from voxsoft.studio.wire import LARGEST_UPLOAD, PROTOCOL, CloseCode
 
@@ -153,6 +154,8 @@ class _Pages:
         """Answer with a small picture of a design; one that nobody waits for is not begun."""
         try:
             found = await self._awaited(self._pictures, self._session.picture, request)
+        except NoPictureError:
+            return Response(status_code=204)  # the list shows it without one
         except VoxSoftError as error:
             return _problem(422, error.where, error.what, error.hint)
         if found is None:

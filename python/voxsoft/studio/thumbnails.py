@@ -27,6 +27,10 @@ class NoLongerWantedError(Exception):
     """Nobody waits for the picture any more."""
 
 
+class NoPictureError(FileError):
+    """What is listed is no design that can be drawn, which is no fault of the list."""
+
+
 @dataclass(frozen=True)
 class Thumbnail:
     """A picture of a design.
