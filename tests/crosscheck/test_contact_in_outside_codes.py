@@ -55,6 +55,7 @@ def slid(friction):
     )
 
 
+@pytest.mark.slow
 def test_what_slides_has_the_friction_of_coulomb_in_both():
     found = compare(slid(0.1), solvers=["statics"], voxel_sizes=[], splits=[1, 2])
     own, outside = found.base, found.yardstick

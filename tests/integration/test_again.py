@@ -94,6 +94,7 @@ def test_a_job_is_repeated_to_the_same_bits_also_from_a_folder_that_was_moved(jo
         assert printed("again", "elsewhere/moved-again", "--out", "third")["same"]
 
 
+@pytest.mark.slow
 def test_a_study_that_was_resumed_is_repeated_the_way_it_went():
     """A budget that was raised leaves a cut batch: other suggestions than those in one go."""
     # The third changes nothing.
@@ -109,6 +110,7 @@ def test_a_study_that_was_resumed_is_repeated_the_way_it_went():
     assert [trial.parameters for trial in in_one_go.found.trials] != went[:16]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
 def test_a_study_that_was_interrupted_keeps_its_tables_and_is_repeated_once_it_is_done():
     command = [sys.executable, "-c", SCRIPT, "sweep", str(CYLINDER)]

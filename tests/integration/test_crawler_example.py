@@ -24,6 +24,7 @@ def middle(result):
     return float(volumes @ moved / volumes.sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.5, 0.0])
 def test_the_rear_bends_and_the_front_holds_by_friction(friction):
     result = crawled(friction, end_time=0.3, time_step=0.05)

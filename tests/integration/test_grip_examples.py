@@ -29,6 +29,7 @@ def test_a_pinched_plate_hangs_on_friction():
     assert abs(heights[-1] - heights[-10]) < 1e-3 * mm
 
 
+@pytest.mark.slow
 def test_without_enough_friction_it_falls_and_is_named():
     result = vs.simulate(vs.load("examples/pinch.toml").with_parameters(friction=0.02))
     assert result.status == "diverged"

@@ -53,6 +53,7 @@ def warned(seed):
     return result, [str(each) for each in result.warnings]
 
 
+@pytest.mark.slow
 def test_what_snaps_says_so():
     # It buckles on its way.
     result, warnings = warned(7)

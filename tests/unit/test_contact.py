@@ -214,6 +214,7 @@ def test_a_side_of_an_object_that_goes_through_samples_is_there():
     assert (np.unique(ends, axis=0, return_counts=True)[1] == 2).all()  # closed
 
 
+@pytest.mark.slow
 def test_a_path_that_ends_early_proposes_what_knows_contact():
     # The plate ends 0.3 mm below the ground that the block stands on.
     result = simulate(pressed(way=-SIDE - 0.8 * mm))

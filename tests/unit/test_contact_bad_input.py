@@ -42,6 +42,7 @@ def test_a_plate_thinner_than_a_step_does_not_pass_through(friction):
     assert np.allclose(found.objects["plate"].position[2], 9.75 * mm, atol=1e-6 * mm)
 
 
+@pytest.mark.slow
 def test_a_plate_that_moves_through_the_body_is_not_let_through():
     through = Object(
         name="plate",

@@ -262,6 +262,7 @@ def test_chambers_have_columns():
     assert small < middle < large
 
 
+@pytest.mark.slow
 def test_tendons_pull_along_a_path_and_friction_makes_a_loop():
     def arm(friction):
         bends = [("40 mm", 0, "10 mm"), ("80 mm", 0, "10 mm")]

@@ -95,6 +95,7 @@ def test_worker_processes_know_it(tmp_path):
     assert len({trial.objectives["where"] for trial in result.trials} | {os.getpid()}) == 3
 
 
+@pytest.mark.slow
 def test_a_script_may_hold_its_metrics_itself(tmp_path):
     script = tmp_path / "study.py"
     script.write_text(SCRIPT, encoding="utf-8")

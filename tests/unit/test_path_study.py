@@ -71,6 +71,7 @@ def test_its_folder_holds_the_paths_and_their_picture(tmp_path):
         plot_paths(without)
 
 
+@pytest.mark.slow
 def test_a_path_that_is_lost_is_not_ok(tmp_path):
     # No pneunet holds a hundred atmospheres.
     found = run(study_in(tmp_path, over="loads[0].value=0..10 MPa/3"))

@@ -19,6 +19,8 @@ from voxsoft.voxels import Voxels
 
 EXAMPLES = sorted(Path("examples").glob("*.toml"))
 
+#: Examples of many voxels.
+LARGE = {"bellows", "starfish"}
 PUSHED = Path(__file__).parents[1] / "data" / "pushed.toml"
 
 
@@ -31,7 +33,13 @@ def pressed():
     return simulate(files.load(PUSHED))
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=pytest.mark.slow if path.stem in LARGE else (), id=path.stem)
+        for path in EXAMPLES
+    ],
+)
 def test_no_shipped_example_is_in_itself_unloaded(path):
     setup = Setup.of(files.load(path), allow_loose=True)
     found = penetration_of(setup.design, setup.mesh, setup.mesh.vertices)

@@ -72,6 +72,7 @@ def test_objects_are_where_the_result_has_them(result):
     assert plate.min() == pytest.approx(SIDE - 1.5 * mm, abs=5e-3 * mm)
 
 
+@pytest.mark.slow
 def test_what_draws_pressure_leaves_objects_out_unless_they_are_asked_for(result):
     def gray_of(*args, **options):
         return gray(np.asarray(255 * plot_body(result, *args, **options).axes[0].images[0]._A))

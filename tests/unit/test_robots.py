@@ -13,8 +13,10 @@ from voxsoft.simulation import check, simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 NAMES = [robot.name for robot in robots.ROBOTS]
+#: Those whose many voxels take seconds to look at alone.
+LARGE = {"bellows", "starfish"}
 #: Those that take more than some seconds; tests/integration drives the crawler and the gripper too.
-LONG = {"pumped_gripper", "crawler", "wound_tube", "wound_bender"}
+LONG = LARGE | {"pumped_gripper", "crawler", "wound_tube", "wound_bender"}
 
 
 def started(start):
@@ -26,7 +28,9 @@ def test_a_robot_is_the_example_of_its_name(name):
     assert robots.robot_text(name) == (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(each, marks=pytest.mark.slow if each in LARGE else ()) for each in NAMES]
+)
 def test_a_robot_opens_without_a_warning(name):
     report = check(Design.from_document(tomllib.loads(robots.robot_text(name))))
     assert report.findings == ()
@@ -68,7 +72,13 @@ def test_each_combination_of_answers_leads_to_one_robot():
     assert {start.robot for start in robots.STARTS} <= set(NAMES)
 
 
-@pytest.mark.parametrize("start", robots.STARTS, ids=lambda start: start.name)
+@pytest.mark.parametrize(
+    "start",
+    [
+        pytest.param(each, marks=pytest.mark.slow if each.robot in LARGE else (), id=each.name)
+        for each in robots.STARTS
+    ],
+)
 def test_answers_lead_to_a_design_without_a_warning(start):
     assert check(started(start)).findings == ()
 

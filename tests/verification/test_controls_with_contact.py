@@ -159,6 +159,7 @@ def test_clamp_and_wall_carry_one_another(past_the_limit):
     assert carried == pytest.approx(-contact.force[2], rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_step_that_is_too_long_is_cut_and_forgotten():
     """All of the growth in one step is lost; cut ones lead to the state that short ones find."""
     # At 12 times its volume one side bulges, and which way it snaps depends on the way there.

@@ -1,4 +1,7 @@
-"""Commands: what the page asks of the server. All quantities are SI."""
+"""Commands: what the page asks of the server. All quantities are SI.
+
+Long because each command is a class with its documentation, and the union of all stands at the end.
+"""
 
 from __future__ import annotations
 
