@@ -8,6 +8,7 @@ import {
   verbsAt,
   verbsIn,
 } from "../src/panes/design/here";
+import { canHaveTendons, placeIn, tendonBetween, tendonOn } from "../src/panes/design/tendonHere";
 import type { Parameter } from "../src/protocol";
 import { type Face, faceAt, triangleAt } from "../src/view/face";
 
@@ -141,5 +142,57 @@ describe("what is written of it", () => {
     const known = verbsIn(face, "left", { chambers: { left: {} } });
     expect(known).toHaveLength(1);
     expect(known[0]?.changes[0]?.value).toMatchObject({ cavity: "left" });
+  });
+});
+
+describe("a tendon through places that were pressed", () => {
+  const bar = boxes({ low: [0, 0, 0], high: [0.04, 0.01, 0.01] });
+  const left = faceAt(bar, 0);
+
+  it("begins half a voxel inside of the material", () => {
+    const inside = left.point.map((x, i) => x - 0.0025 * left.normal[i]!);
+    const place = placeIn(left).map((one) =>
+      one === 0 ? 0 : Number.parseFloat(String(one)) / 1e3,
+    );
+    for (const axis of [0, 1, 2]) expect(place[axis]).toBeCloseTo(inside[axis]!, 6);
+  });
+
+  it("is pulled at the first and anchored around the last", () => {
+    const source = { tendons: [{ name: "tendon" }] };
+    const { path, value } = tendonBetween([0, 0, "2 mm"], ["40 mm", 0, "2 mm"], 0.005, source);
+    expect(path).toEqual(["tendons", 1]);
+    expect(value).toMatchObject({
+      guide: "eyelets",
+      through: [[0, 0, "2 mm"], { point: ["40 mm", 0, "2 mm"], radius: "7.5 mm" }],
+    });
+    expect((value as { name: string }).name).not.toBe("tendon");
+  });
+
+  it("goes on from its anchor, which becomes a place on the way", () => {
+    const { value } = tendonBetween([0, 0, 0], ["20 mm", 0, 0], 0.005, {});
+    const on = tendonOn(["40 mm", 0, 0], 0.005, { tendons: [value] });
+    expect(on).toEqual([
+      { path: ["tendons", 0, "through", 1], value: ["20 mm", 0, 0] },
+      { path: ["tendons", 0, "through", 2], value: { point: ["40 mm", 0, 0], radius: "7.5 mm" } },
+    ]);
+  });
+
+  it("does not go on from what was not pressed, and has no place among several bodies", () => {
+    expect(tendonOn([0, 0, 0], 0.005, {})).toBeNull();
+    expect(
+      tendonOn([0, 0, 0], 0.005, {
+        tendons: [
+          {
+            through: [
+              [0, 0, 0],
+              [1, 0, 0],
+            ],
+          },
+        ],
+      }),
+    ).toBeNull();
+    expect(tendonOn([0, 0, 0], 0.005, { tendons: [{ through: "x" }] })).toBeNull();
+    expect(canHaveTendons({ bodies: [{ name: "left" }] })).toBe(false);
+    expect(canHaveTendons({})).toBe(true);
   });
 });

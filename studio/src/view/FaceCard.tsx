@@ -14,6 +14,7 @@ import { toast, useStudio } from "../store/studio";
 import { setView } from "../store/view";
 import type { Face } from "./face";
 import { viewport } from "./instance";
+import { TendonHere } from "./TendonHere";
 
 export function FaceCard() {
   const face = useFace((state) => state.face);
@@ -49,6 +50,11 @@ export function FaceCard() {
         title="Here"
         verbs={[...verbsAt(region, face.normal, source), ...mirrorVerb(face, document, body)]}
       >
+        <TendonHere
+          face={face}
+          document={document}
+          run={(label, changes) => run({ label, changes })}
+        />
         <Gripping face={face} document={document} body={body} />
       </Verbs>
     </>

@@ -90,3 +90,34 @@ def test_a_chamber_is_filled_from_within(chamber, open_tab):
     assert result.status == "ok"
     assert result.cavity_volumes[0] > 8e-6
     assert tab.errors == []
+
+
+def test_a_tendon_runs_through_places_that_are_pressed(chamber, open_tab):
+    tab = open_tab(chamber.address, symbols=False)
+    tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+    tab.page.locator(".viewport canvas").focus()
+    tab.page.keyboard.press("5")  # from above
+    x, y = tab.middle()
+    pressed(tab, x - 80, y)
+    tab.find("here-tendon").click()
+    pressed(tab, x, y)
+    tab.shot("tendon-to")
+    tab.find("here-tendon-to").click()
+    saved(tab, chamber, lambda design: design.tendons)
+    tab.page.get_by_text("tension of tendon").wait_for()  # the body that has it is there
+    pressed(tab, x + 80, y)
+    tab.find("here-tendon-on").click()
+    design = saved(
+        tab, chamber, lambda design: design.tendons and len(design.tendons[0].through) == 3
+    )
+    [tendon] = design.tendons
+    begin, middle, end = tendon.through
+    assert begin[0] < middle[0] < end.point[0]
+    # Half a voxel below the roof, pulled by its other end.
+    assert begin[2] == middle[2] == end.point[2] == pytest.approx(0.0275)
+    result = vs.simulate(design)
+    assert result.status == "ok"
+    assert result.tendons[tendon.name].tension == pytest.approx(0.1)
+    tab.page.keyboard.press("2")
+    tab.shot("tendon-on")
+    assert tab.errors == []
