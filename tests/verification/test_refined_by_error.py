@@ -142,3 +142,11 @@ def test_the_command_keeps_the_text_and_adds_boxes(tmp_path):
     again = vs.load(tmp_path / "block-refined.toml")
     assert Setup.of(again).elements == summary["refined_voxels"] < summary["everywhere"]
     assert again.replace(refine=()) == vs.load(file)
+
+
+@pytest.mark.parametrize(("share", "most"), [("97 %", True), ("40 %", False)])
+def test_the_command_says_where_small_voxels_everywhere_are_as_quick(tmp_path, share, most):
+    vs.save(families.pneunet(chambers=2), tmp_path / "finger.toml")
+    outcome = CliRunner().invoke(app, ["refine", str(tmp_path / "finger.toml"), "--share", share])
+    assert outcome.exit_code == 0, outcome.output
+    assert ("refine = 2 under [solver]" in " ".join(outcome.output.split())) == most
