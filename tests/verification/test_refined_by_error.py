@@ -99,6 +99,8 @@ def test_images_of_each_other_are_taken_together(run):
 def test_more_of_the_error_takes_more_voxels(run):
     counts = [Setup.of(refined(run, share)).elements for share in (0.3, 0.6, 0.9)]
     assert counts == sorted(counts)
+    # Rounding of the sum leaves no share without a voxel that reaches it.
+    assert Setup.of(refined(run, 1.0 - 2.0**-53)).elements >= counts[-1]
     assert counts[0] > Setup.of(block()).elements
 
 
@@ -150,3 +152,20 @@ def test_the_command_says_where_small_voxels_everywhere_are_as_quick(tmp_path, s
     outcome = CliRunner().invoke(app, ["refine", str(tmp_path / "finger.toml"), "--share", share])
     assert outcome.exit_code == 0, outcome.output
     assert ("refine = 2 under [solver]" in " ".join(outcome.output.split())) == most
+
+
+def test_the_command_replaces_no_file_unasked_and_knows_how_fine_a_design_is(tmp_path):
+    fine = families.beam(length="40 mm").replace(solver={"refine": 2})
+    vs.save(fine, tmp_path / "my beam.toml")
+    call = ["refine", str(tmp_path / "my beam.toml"), "--share", "99.9 %"]
+    first = CliRunner().invoke(app, call)
+    assert first.exit_code == 0, first.output
+    assert "refine = 4 under [solver]" in " ".join(first.output.split())
+    made = tmp_path / "my beam-refined.toml"
+    made.write_text(made.read_text() + "# mine")
+    again = CliRunner().invoke(app, call)
+    assert again.exit_code != 0
+    assert "is there already" in " ".join(again.output.split())
+    assert made.read_text().endswith("# mine")
+    assert CliRunner().invoke(app, [*call, "--out", str(made)]).exit_code == 0
+    assert not made.read_text().endswith("# mine")

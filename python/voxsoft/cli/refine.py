@@ -27,7 +27,8 @@ def refine(
         str, typer.Option("--share", help="Of the estimated error that small voxels are to hold.")
     ] = "90 %",
     out: Annotated[
-        Path | None, typer.Option("--out", "-o", help="File; default: DESIGN-refined.toml.")
+        Path | None,
+        typer.Option("--out", "-o", help="File, replaced if it is there; default: DESIGN-refined."),
     ] = None,
     json: Json = False,
 ) -> None:
@@ -39,6 +40,7 @@ def refine(
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison import refined
     from voxsoft.comparison.refining import check_refinable
+    from voxsoft.errors import FileError
     from voxsoft.files.atomic import write_atomically
     from voxsoft.files.designs import read_text
     from voxsoft.files.toml_edits import with_document
@@ -49,17 +51,23 @@ def refine(
         part = si_value(share, "number", "--share")
         loaded = files.load(design, assignments=sets or [])
         check_refinable(loaded, part)
+        target = out or design.with_name(f"{design.stem}-refined.toml")
+        if out is None and target.exists():
+            what = "is there already, and its boxes may have been changed by hand"
+            raise FileError(str(target), what, f"remove it, or write --out {target.name}")
         with ProgressBar("refining", 3, transient=True) as bar:
             bar.advance_to(1, "solving on the design's own voxels")
             result = simulate(loaded)
             if result.status != "ok":
-                say(f"[red]{result.status}[/red]: {plain(result.message)}")
+                if json:
+                    print_json({"status": result.status, "message": result.message})
+                else:
+                    say(f"[red]{result.status}[/red]: {plain(result.message)}")
                 raise typer.Exit(NOT_AT_REST)
             bar.advance_to(2, "looking where the error is")
             found = refined(result, part)
             report = check(found)
             bar.advance_to(3)
-        target = out or design.with_name(f"{design.stem}-refined.toml")
         text = with_document(read_text(design), found.document)
         write_atomically(target, text)
         before = Setup.of(loaded).elements
@@ -69,6 +77,7 @@ def refine(
             "voxels": before,
             "refined_voxels": Setup.of(found).elements,
             "everywhere": 8 * before,
+            "instead": f"refine = {2 * loaded.solver.refine} under [solver]",
         }
         if json:
             print_json(summary)
@@ -82,7 +91,7 @@ def _show(summary: dict[str, Any], report: CheckReport) -> None:
         f"of {summary['voxels']:,}; small ones everywhere would be {summary['everywhere']:,}"
     )
     if summary["refined_voxels"] > _MOST * summary["everywhere"]:
-        instead = plain("refine = 2 under [solver]")
+        instead = plain(summary["instead"])
         say(f"[yellow]that is most of them[/yellow]: {instead} is likely as quick, and better")
     if report.cost is not None:
         say(f"one run: {report.cost.sentence}")

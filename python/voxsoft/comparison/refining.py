@@ -71,7 +71,8 @@ def refined(result: Result, share: float = SHARE) -> Design:
     if not errors.any():
         raise DesignError("", "has no strain that differs from place to place", "load it first")
     falling = -np.sort(-errors)
-    least = falling[int(np.searchsorted(np.cumsum(falling), share * errors.sum()))]
+    held = np.cumsum(falling)
+    least = falling[int(np.searchsorted(held, share * held[-1]))]
     # Images of each other, which differ by rounding, are taken together.
     worst = np.flatnonzero(errors >= (1.0 - _ALIKE) * least)
     return design.replace(refine=[Refinement(region=region) for region in _boxes(result, worst)])
