@@ -16,6 +16,10 @@ BENCHMARKS := pipeline step_rate time_to_rest calibration study growth peers
 RUST := $(shell sed -n 's/^rust-version = "\([0-9.]*\)".*/\1/p' Cargo.toml)
 RUST_SOURCES := $(shell find crates -name '*.rs' -o -name 'Cargo.toml')
 
+# Tests start hundreds of Python processes, and each would compile the package anew where this is set, as in many
+# images of containers.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help install page demo test test-rust test-python test-studio test-browser test-all lint format bench docs studio wasm clean
 
 help:

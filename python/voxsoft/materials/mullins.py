@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, ClassVar, Final, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pydantic import model_validator
-from scipy.special import erf
 
 from voxsoft.errors import MaterialError, VoxSoftError
 from voxsoft.records import Record
@@ -15,7 +15,7 @@ from voxsoft.units import UnitOf
 
 Floats = NDArray[np.float64]
 
-_ROOT_PI: Final = float(np.sqrt(np.pi))
+_ROOT_PI: Final = math.sqrt(math.pi)
 
 
 class Mullins(Record):
@@ -78,6 +78,8 @@ of the stress at least
 
     def remaining(self, energy: ArrayLike, peak: ArrayLike) -> Floats:
         """The part ``η`` of the stress that is left, at energies below or at the peak in J/m³."""
+        from scipy.special import erf  # slow to load
+
         energy, peak = np.asarray(energy, dtype=np.float64), np.asarray(peak, dtype=np.float64)
         below = np.maximum(peak - energy, 0.0)
         scale = np.maximum(self.m + self.beta * peak, np.finfo(float).tiny)
@@ -100,4 +102,4 @@ of the stress at least
         if scale == 0.0:
             return 0.0
         x = peak / scale
-        return float(scale / self.r * (x * erf(x) + (np.exp(-x * x) - 1.0) / _ROOT_PI))
+        return float(scale / self.r * (x * math.erf(x) + (math.exp(-x * x) - 1.0) / _ROOT_PI))

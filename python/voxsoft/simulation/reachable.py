@@ -10,7 +10,6 @@ from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from voxsoft.design import Design, require_design
 from voxsoft.errors import SimulationError
@@ -94,6 +93,8 @@ class Workspace:
 
         It is no less than what can be reached: a bowl is filled.
         """
+        from scipy.spatial import ConvexHull, QhullError  # slow to load
+
         points = self.points.reshape(-1, 3)
         points = points[np.isfinite(points[:, 0])]
         if len(points) < 4:
