@@ -1,4 +1,4 @@
-"""``python -m voxsoft`` is ``voxsoft``, also where the folder of programs is not on the search path."""
+"""``python -m voxsoft`` is ``voxsoft``, also where programs are not on the search path."""
 
 from voxsoft.cli import main
 
