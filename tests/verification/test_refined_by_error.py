@@ -8,6 +8,7 @@ import tomllib
 
 import numpy as np
 import pytest
+import trimesh
 from typer.testing import CliRunner
 
 import voxsoft as vs
@@ -169,3 +170,33 @@ def test_the_command_replaces_no_file_unasked_and_knows_how_fine_a_design_is(tmp
     assert made.read_text().endswith("# mine")
     assert CliRunner().invoke(app, [*call, "--out", str(made)]).exit_code == 0
     assert not made.read_text().endswith("# mine")
+
+
+BAR = """
+schema = "voxsoft/1"
+name = "bar"
+voxel_size = "5 mm"
+shapes = { bar = { kind = "mesh", path = "bar.stl", unit = "m" } }
+clamps = [{ region = { x = [0, 0] } }]
+loads = [{ kind = "gravity" }]
+probes = { tip = { point = ["40 mm", "5 mm", "5 mm"] } }
+
+[[parts]]
+shape = "bar"
+material = "ecoflex-00-30"
+"""
+
+
+def test_the_command_keeps_paths_beside_the_design_and_finds_them_from_elsewhere(tmp_path):
+    beside, elsewhere = tmp_path / "mine", tmp_path / "other"
+    beside.mkdir()
+    elsewhere.mkdir()
+    bar = trimesh.creation.box(extents=(0.04, 0.02, 0.02))
+    bar.apply_translation((0.02, 0.01, 0.01))
+    bar.export(beside / "bar.stl")
+    (beside / "bar.toml").write_text(BAR, encoding="utf-8")
+    for out in (beside / "fine.toml", elsewhere / "fine.toml"):
+        outcome = CliRunner().invoke(app, ["refine", str(beside / "bar.toml"), "--out", str(out)])
+        assert outcome.exit_code == 0, outcome.output
+        assert vs.load(out).refine
+    assert 'path = "bar.stl"' in (beside / "fine.toml").read_text(encoding="utf-8")

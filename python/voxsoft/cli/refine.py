@@ -40,6 +40,7 @@ def refine(
     from voxsoft.cli.progress import ProgressBar
     from voxsoft.comparison import refined
     from voxsoft.comparison.refining import check_refinable
+    from voxsoft.design.documents import with_paths_from
     from voxsoft.errors import FileError
     from voxsoft.files.atomic import write_atomically
     from voxsoft.files.designs import read_text
@@ -68,7 +69,7 @@ def refine(
             found = refined(result, part)
             report = check(found)
             bar.advance_to(3)
-        text = with_document(read_text(design), found.document)
+        text = with_document(read_text(design), with_paths_from(found.document, target.parent))
         write_atomically(target, text)
         before = Setup.of(loaded).elements
         summary: dict[str, Any] = {
