@@ -462,6 +462,7 @@ class Body(Event):
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
     shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
     `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
+    `floor` is the height of the floor in m; null where there is none.
     """
 
     topology: int
@@ -492,6 +493,7 @@ class Body(Event):
     smooth: bool = False
     bodies: list[BodyOfSeveral] = field(default_factory=list)
     planes: list[BodyPlane] = field(default_factory=list)
+    floor: float | None = None
 
 
 class GrabState(Entry):

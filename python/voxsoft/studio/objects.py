@@ -119,6 +119,18 @@ def moments_of(result: Result, last: int) -> list[events.Moment]:
     return [*found, end]
 
 
+def poses_in(moment: events.Moment | None, design: Design) -> dict[str, Pose]:
+    """Where the objects of a design are at a moment, by name; empty where that is not known."""
+    if moment is None:
+        return {}
+    return {
+        each.name: Pose(
+            pose.position, tuple(_triple(row) for row in np.reshape(pose.rotation, (3, 3)))
+        )
+        for each, pose in zip(design.objects, moment.poses, strict=True)
+    }
+
+
 def _moment(
     frame: int,
     time: float,
