@@ -1194,7 +1194,8 @@ export interface Grip {
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
  * `error_bars` says where error bars come from, or why there are none; told a second time once
  * they are known. `looking` while they are being looked for, and `askable` where none were found
- * and smaller voxels could still give them.
+ * and smaller voxels could still give them. `missing` is what of a state that was stored is not
+ * there, in a sentence; empty where all is.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -1215,6 +1216,7 @@ export interface EquilibriumEvent {
   error_bars: string;
   looking: boolean;
   askable: boolean;
+  missing: string;
 }
 
 /** A value of the document at a path, as an edit of it. */

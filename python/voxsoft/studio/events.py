@@ -613,7 +613,8 @@ class Equilibrium(Event):
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
     `error_bars` says where error bars come from, or why there are none; told a second time once
     they are known. `looking` while they are being looked for, and `askable` where none were found
-    and smaller voxels could still give them.
+    and smaller voxels could still give them. `missing` is what of a state that was stored is not
+    there, in a sentence; empty where all is.
     """
 
     topology: int
@@ -633,6 +634,7 @@ class Equilibrium(Event):
     error_bars: str = ""
     looking: bool = False
     askable: bool = False
+    missing: str = ""
 
 
 class TextChange(Entry):

@@ -112,17 +112,18 @@ class Thumbnails:
         if before is not None:
             return before
         mesh = filled_within_memory(design.assembled).mesh()
-        found = (each.find(design.hash, mesh) for each in holders)
-        positions = next((each for each in found if each is not None), None)
+        equilibria = (each.find(design.hash, mesh) for each in holders)
+        found = next((each for each in equilibria if each is not None), None)
         around = Surroundings()
         with suppress(VoxSoftError):  # an object without a surface: the check says so
-            around = Surroundings.of(design, {})
+            around = Surroundings.of(design, {} if found is None else found.objects)
+        positions = None if found is None else found.positions
         picture = cutout(mesh, positions, colors=PART_COLORS, around=around)
-        file = self._file(name, at_rest=positions is not None)
+        file = self._file(name, at_rest=found is not None)
         make_folder(self._folder)
         save_cutout(picture, file)
         self._make_room()
-        return Thumbnail(file.read_bytes(), positions is not None, picture.per_meter)
+        return Thumbnail(file.read_bytes(), found is not None, picture.per_meter)
 
     def _found(self, name: str, *, at_rest: bool) -> Thumbnail | None:
         with suppress(OSError):
