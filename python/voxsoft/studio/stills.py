@@ -224,8 +224,8 @@ def _of_run(folder: Path) -> Still:
     setup = Setup(design, mesh)
     if next(softening_parts(design), None) is not None:
         # The mesh file does not say what the voxels remember, and so not their stress.
-        told = (FIELDS[DISPLACEMENT].name,)
-        return Still(setup, positions, status, told, poses)
+        shown = (FIELDS[DISPLACEMENT].name,)
+        return Still(setup, positions, status, shown, poses)
     return Still(setup, positions, status, poses=poses)
 
 
