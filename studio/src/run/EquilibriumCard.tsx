@@ -52,7 +52,7 @@ export function EquilibriumCard() {
         {found.missing && (
           <p className="run-sentence is-doubtful" data-testid="missing">
             {found.missing}{" "}
-            <Button kind="quiet" testId="solve-again" onClick={() => send({ t: "rest" })}>
+            <Button testId="solve-again" onClick={() => send({ t: "rest" })}>
               Solve again
             </Button>
           </p>
