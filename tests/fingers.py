@@ -21,7 +21,7 @@ def study_fingers(text, folder):
     return text
 
 
-def open_atlas(tab, count=len(LENGTHS)):
+def open_atlas(tab, count=None):
     """Open the one study of the list of runs, and wait for so many pictures of its designs."""
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     tab.find("mode-runs").click()
@@ -29,4 +29,4 @@ def open_atlas(tab, count=len(LENGTHS)):
     tab.find("mode-optimize").click()
     tab.page.get_by_role("tab", name="Atlas").click()
     tab.find("atlas").wait_for()
-    tab.until(f"{SEEN} === {count}")
+    tab.until(f"{SEEN} === {count or len(LENGTHS)}")

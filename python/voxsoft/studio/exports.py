@@ -24,7 +24,7 @@ from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState
 from voxsoft.studio.html import export_page, page_of_body
-from voxsoft.studio.objects import poses_in
+from voxsoft.studio.objects import poses_in, surroundings_of
 from voxsoft.units import parse
 
 #: What can be written of the body that is shown.
@@ -231,7 +231,7 @@ def _draw(shown: Shown, target: Path, scale: object) -> None:
         design = shown.body.setup.design
         # Of a moment in the past it may not be known where objects were.
         known = shown.moment is not None or shown.time == 0.0
-        around = Surroundings.of(design, poses_in(shown.moment, design))
+        around = surroundings_of(design, poses_in(shown.moment, design))
         figure = plot_body(
             replace(mesh, vertices=shown.positions),
             1e3 * moved,

@@ -24,13 +24,13 @@ from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
-from voxsoft.plot.objects import Surroundings
 from voxsoft.simulation import Setup, simulate
 from voxsoft.simulation.fields import remember
 from voxsoft.simulation.softening import softening_parts
 from voxsoft.simulation.touching import Pose
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
+from voxsoft.studio.objects import surroundings_of
 from voxsoft.studio.reopening import Known, known_equilibrium, run_positions, stored_in
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
@@ -106,10 +106,7 @@ class Still:
 
     def _objects(self) -> Iterator[bytes]:
         """The surface of all rigid objects where they are, if there are any."""
-        try:
-            found = Surroundings.of(self.setup.design, self.poses).objects
-        except VoxSoftError:  # an object without a surface: the check says so
-            return
+        found = surroundings_of(self.setup.design, self.poses).objects
         if found is not None:
             tags = np.zeros(len(found.triangles), dtype=np.uint8)
             outline = _core.Outline.surface(found.vertices, found.triangles, tags, 0.0)

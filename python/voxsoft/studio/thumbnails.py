@@ -14,8 +14,8 @@ from voxsoft.errors import FileError, MeshError, SimulationError, VoxSoftError
 from voxsoft.files.figures import save_cutout, scale_of
 from voxsoft.files.run_folder import make_folder
 from voxsoft.plot.cutout import cutout
-from voxsoft.plot.objects import Surroundings
 from voxsoft.studio.body import PART_COLORS, filled_within_memory
+from voxsoft.studio.objects import surroundings_of
 from voxsoft.study.equilibria import Equilibria
 
 #: Name of a folder of pictures, in that of a study and in the studio's own.
@@ -114,9 +114,7 @@ class Thumbnails:
         mesh = filled_within_memory(design.assembled).mesh()
         equilibria = (each.find(design.hash, mesh) for each in holders)
         found = next((each for each in equilibria if each is not None), None)
-        around = Surroundings()
-        with suppress(VoxSoftError):  # an object without a surface: the check says so
-            around = Surroundings.of(design, {} if found is None else found.objects)
+        around = surroundings_of(design, {} if found is None else found.objects)
         positions = None if found is None else found.positions
         picture = cutout(mesh, positions, colors=PART_COLORS, around=around)
         file = self._file(name, at_rest=found is not None)
