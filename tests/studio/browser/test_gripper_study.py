@@ -39,8 +39,6 @@ def test_a_gripper_of_a_study_opens_as_it_was_solved(studied, open_tab, scheme):
     checks.nth(2).check()
     tab.find("compare-pinned").click()
     tab.page.locator("[data-testid^=largest]").nth(1).wait_for()
-    tab.page.mouse.move(2, 400)
-    tab.page.wait_for_timeout(700)  # a picture, not a check
     tab.shot(f"gripper-study-compare-{scheme}")
     tab.page.get_by_role("tab", name="Atlas").click()
     tab.page.locator(".trial-frame.is-best").dblclick()
