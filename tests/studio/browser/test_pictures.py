@@ -5,12 +5,15 @@ one. The run fails where a page logs an error; whether it is beautiful, people m
 """
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
 
 EXAMPLES = Path(__file__).parents[3] / "examples"
 MEASURED = EXAMPLES / "data/paper_beams/ecoflex-00-30.csv"
+# Files that a design is made of, beside its own.
+FILES = {"gripper_three.toml": ["gripper_finger.toml"]}
 SIZES = {"": (1600, 900), "_narrow": (1280, 720)}
 # A study of 105 designs and a search of 1,500 candidates on a busy machine, in ms.
 JOB = 240_000
@@ -123,6 +126,8 @@ def listed(tab):
 def robot(request, tmp_path, serving, open_tab):
     """The design of a tutorial, solved."""
     name = request.param
+    for part in FILES.get(name, ()):
+        shutil.copy(EXAMPLES / part, tmp_path)
     server = serving(tmp_path, (EXAMPLES / name).read_text(), name)
     # Words of clamps, layers and chambers of three fingers would hide what touches.
     tab = open_tab(server.address, symbols=name != "gripper_three.toml")
