@@ -9,9 +9,11 @@ from pressed import PLATE, POST, SIDE, pressed
 import voxsoft as vs
 from voxsoft.plot import plot_body
 from voxsoft.plot.body import body_image
+from voxsoft.plot.camera import Camera
 from voxsoft.plot.cutout import cutout
 from voxsoft.plot.frames import at_frame
 from voxsoft.plot.objects import Surroundings, cut
+from voxsoft.plot.raster import rasterize
 from voxsoft.simulation import simulate
 from voxsoft.units import mm
 
@@ -153,3 +155,21 @@ def test_a_picture_without_a_background_holds_objects_that_the_body_shows_throug
     post = aside[..., 3][(aside[..., 3] > 0) & (aside[..., 3] < 255)]
     assert len(post) > 200  # translucent, and so on any color of a page
     assert 100 < np.median(post) < 160
+
+
+def test_a_floor_lies_behind_the_undeformed_body(result):
+    under, mesh = Surroundings(floor=-0.1 * mm), result.mesh
+    aside = mesh.vertices + np.array([2 * SIDE, 0.0, 0.0])
+    camera = Camera.around(under.near(np.concatenate([aside, mesh.vertices])), (0.0, 90.0), 200)
+    triangles = mesh.triangles.astype(np.int64)
+    seen, ghost = (
+        rasterize(camera.project(points), triangles, camera.width, camera.height)
+        for points in (aside, mesh.vertices)
+    )
+    white = np.ones((camera.height, camera.width, 3))
+    both = under.drawn_over(
+        white, seen, camera, np.concatenate([aside, mesh.vertices]), None, ghost
+    )
+    drawn = (both < 1.0).any(axis=2)
+    assert not drawn[ghost.covered | seen.covered].any()
+    assert drawn.sum() > 1_000

@@ -136,9 +136,12 @@ def plot_body(
     colors = _colors(body, mesh, surface, field, label)
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, lines)
+    before = None
     if has_ghost:
-        picture = _with_ghost(picture, seen, mesh, surface, camera)
-    picture = around.drawn_over(picture, seen, camera, positions, plane)
+        points = camera.project(mesh.vertices)
+        before = rasterize(points, surface.triangles, camera.width, camera.height)
+        picture = _with_ghost(picture, seen, before, mesh, surface, camera)
+    picture = around.drawn_over(picture, seen, camera, positions, plane, before)
     name = body.design.name if isinstance(body, Result) else ""
     figure = _figure(picture, camera, colors, name if title is None else title)
     draw_tendons(figure.axes[0], tendons, camera, _FINER)
@@ -336,12 +339,9 @@ def _long_enough(flat: Floats) -> bool:
 
 
 def _with_ghost(
-    picture: Floats, seen: Raster, mesh: Mesh, surface: Boundary, camera: Camera
+    picture: Floats, seen: Raster, before: Raster, mesh: Mesh, surface: Boundary, camera: Camera
 ) -> Floats:
-    """Draw the undeformed body pale behind the deformed one."""
-    before = rasterize(
-        camera.project(mesh.vertices), surface.triangles, camera.width, camera.height
-    )
+    """Draw the undeformed body, as it is seen before, pale behind the deformed one."""
     normals = shading.normals_of(mesh.vertices[surface.triangles])
     light = shading.lit(normals, camera)[before.triangle] * shading.outlines(before)
     pale = before.spread(_PALEST + (1.0 - _PALEST) * light, 1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple, Self
 
@@ -78,6 +78,7 @@ class Surroundings:
         camera: Camera,
         body: Floats,
         plane: tuple[Axis, float, int] | None = None,
+        ghost: Raster | None = None,
     ) -> Floats:
         """Draw them over a picture where they are in front of its body.
 
@@ -93,19 +94,21 @@ class Surroundings:
             The vertices of the body, (n, 3), m.
         plane
             Where a section cuts: the axis, the position on it, and the side that stays.
+        ghost
+            What the picture shows of the undeformed body, which hides the floor too.
         """
-        for surface, look in self._looks(body):
-            left = surface if plane is None else cut(surface, *plane)
-            picture = _drawn(picture, seen, left, look, camera)
-        return picture
-
-    def _looks(self, body: Floats) -> Iterator[tuple[Surface, _Look]]:
-        """Each surface with its look, the floor first: objects stand on it."""
+        depth = seen.spread(seen.depth, np.inf).ravel()
         floor = self._floor_under(body)
-        if floor is not None:
-            yield floor, _FLOOR
+        if floor is not None:  # first: objects stand on it
+            own = depth
+            if ghost is not None:
+                own = np.minimum(depth, ghost.spread(ghost.depth, np.inf).ravel())
+            floor = floor if plane is None else cut(floor, *plane)
+            picture = _drawn(picture, own, floor, _FLOOR, camera)
         if self.objects is not None:
-            yield self.objects, _OBJECT
+            objects = self.objects if plane is None else cut(self.objects, *plane)
+            picture = _drawn(picture, depth, objects, _OBJECT, camera)
+        return picture
 
     def _standing(self, body: Floats) -> Floats:
         """Body and objects, as far as a picture shows them."""
@@ -164,8 +167,8 @@ def cut(surface: Surface, axis: Axis, position: float, side: int) -> Surface:
     return Surface(corners, np.concatenate([triangles, triangles[:, ::-1]]))
 
 
-def _drawn(picture: Floats, seen: Raster, surface: Surface, look: _Look, camera: Camera) -> Floats:
-    """Draw a surface over a picture where it is in front of the body."""
+def _drawn(picture: Floats, depth: Floats, surface: Surface, look: _Look, camera: Camera) -> Floats:
+    """Draw a surface over a picture where it is in front of what is so deep there, (h * w,)."""
     if len(surface.triangles) == 0:
         return picture
     points, triangles = camera.project(surface.vertices), surface.triangles.astype(np.int64)
@@ -176,7 +179,7 @@ def _drawn(picture: Floats, seen: Raster, surface: Surface, look: _Look, camera:
     light = shading.lit(normals, camera)[before.triangle]
     outlines = shading.outlines(before)
     opacity = np.where(outlines < 1.0, look.outline, look.opacity)
-    in_front = before.depth < seen.spread(seen.depth, np.inf).ravel()[before.pixels]
+    in_front = before.depth < depth[before.pixels]
     opacity = before.spread(np.where(in_front, opacity, 0.0), 0.0)[..., None]
     color = np.ones_like(picture)
     color[..., :3] = before.spread(look.gray * light * outlines, 0.0)[..., None]
