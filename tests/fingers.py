@@ -21,12 +21,12 @@ def study_fingers(text, folder):
     return text
 
 
-def open_atlas(tab):
-    """Open the one study of the list of runs, and wait for the pictures of its designs."""
+def open_atlas(tab, count=None):
+    """Open the one study of the list of runs, and wait for so many pictures of its designs."""
     tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
     tab.find("mode-runs").click()
     tab.find("runs-table").locator("tbody tr").first.click()
     tab.find("mode-optimize").click()
     tab.page.get_by_role("tab", name="Atlas").click()
     tab.find("atlas").wait_for()
-    tab.until(f"{SEEN} === {len(LENGTHS)}")
+    tab.until(f"{SEEN} === {count or len(LENGTHS)}")

@@ -15,6 +15,9 @@ export const MAGIC = 826693718;
 /** Length of the head of a binary message, bytes. */
 export const HEADER = 64;
 
+/** Topology of the objects around a body at rest. */
+export const STILL_OBJECTS = 2;
+
 /** Bit of a triangle's tag that says that it faces a cavity. */
 export const CAVITY = 128;
 
@@ -1039,6 +1042,7 @@ export interface BodyPlane {
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
  * shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
  * `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
+ * `floor` is the height of the floor in m; null where there is none.
  */
 export interface BodyEvent {
   t: "body";
@@ -1070,6 +1074,7 @@ export interface BodyEvent {
   smooth: boolean;
   bodies: BodyOfSeveral[];
   planes: BodyPlane[];
+  floor: number | null;
 }
 
 /**
@@ -1189,7 +1194,8 @@ export interface Grip {
  * `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
  * `error_bars` says where error bars come from, or why there are none; told a second time once
  * they are known. `looking` while they are being looked for, and `askable` where none were found
- * and smaller voxels could still give them.
+ * and smaller voxels could still give them. `missing` is what of a state that was stored is not
+ * there, in a sentence; empty where all is.
  */
 export interface EquilibriumEvent {
   t: "equilibrium";
@@ -1210,6 +1216,7 @@ export interface EquilibriumEvent {
   error_bars: string;
   looking: boolean;
   askable: boolean;
+  missing: string;
 }
 
 /** A value of the document at a path, as an edit of it. */

@@ -22,6 +22,7 @@ const BODY: BodyEvent = {
     objects: [],
     bodies: [],
     planes: [],
+    floor: null,
     not_live: "",
     touches: false,
     parts: [],

@@ -3,18 +3,18 @@ import { commonRange, stillOf } from "../src/view/still/fetchStill";
 
 const MAGIC = 0x31465856;
 
-function head(bytes: number, kind: number, field = 0): DataView {
+function head(bytes: number, kind: number, field = 0, id = 1): DataView {
   const view = new DataView(new ArrayBuffer(bytes));
   view.setUint32(0, MAGIC, true);
   view.setUint8(4, kind);
   view.setUint16(6, field, true);
-  view.setUint32(8, 1, true);
+  view.setUint32(8, id, true);
   return view;
 }
 
 // Three vertices and one triangle: one byte for its owner, and three to fill up.
-function topology(): DataView {
-  const view = head(64 + 36 + 12 + 8 + 4, 1);
+function topology(id = 1): DataView {
+  const view = head(64 + 36 + 12 + 8 + 4, 1, 0, id);
   view.setUint32(24, 3, true);
   view.setUint32(28, 1, true);
   view.setUint32(32, 1, true);
@@ -49,6 +49,17 @@ describe("a body at rest", () => {
     expect([...still.frames.keys()]).toEqual([0, 5]);
     expect(still.frames.get(5)?.max).toBe(2);
     expect(still.frames.get(5)?.packed[3]).toBe(35);
+  });
+
+  it("has the objects around it, where there are any", () => {
+    const alone = stillOf(joined(topology(), frame(0, 0.5)));
+    expect(alone.objects).toBeNull();
+    const beside = stillOf(joined(topology(), frame(0, 0.5), topology(2)));
+    expect(beside.topology.id).toBe(1);
+    expect(beside.objects?.id).toBe(2);
+    expect([...(beside.objects?.triangles ?? [])]).toEqual([0, 1, 2]);
+    // Objects alone are no body.
+    expect(() => stillOf(joined(topology(2), frame(0, 1)))).toThrow("without a shape");
   });
 
   it("is refused where a part is missing", () => {

@@ -6,12 +6,16 @@ import zlib
 from concurrent.futures import ThreadPoolExecutor
 
 import httpx
+import msgspec
 import numpy as np
 import pytest
+from gripped_ball import GRIPPER
 from own_loop import run
 
 from voxsoft.design import Design
+from voxsoft.simulation import simulate
 from voxsoft.studio import rest
+from voxsoft.studio.equilibrium import equilibrium_of
 from voxsoft.study import Study
 
 BAR = """
@@ -298,3 +302,67 @@ def test_a_design_without_those_parameters_takes_none(barred):
             assert page.document.text == before
 
     run(scenario())
+
+
+@pytest.fixture
+def gripping(make_studio, tmp_path):
+    """A studio with a bar open, and a study of grippers with a ball."""
+    file = tmp_path / "bar.toml"
+    file.write_text(BAR)
+    studio = make_studio(file)
+    design = Design.from_document(tomllib.loads(GRIPPER))
+    with ThreadPoolExecutor(1) as threads:
+        study = Study(design, {"squeeze": [0.5e-3]}, folder=studio.session.runs / "grips")
+        (trial,) = study.grid(executor=threads).trials
+    return studio, design.with_parameters(**trial.parameters)
+
+
+def test_a_gripper_of_a_study_opens_with_all_its_numbers_and_is_not_solved_again(
+    gripping, searches
+):
+    studio, design = gripping
+
+    async def scenario():
+        async with studio.page() as page:
+            await page.shown(lambda s: s.state == "paused")
+            stat, _ = await opened(page, "trial", "grips/0")
+            assert "as it was solved before" in stat.sentence
+            assert stat.time == pytest.approx(0.15)
+            card = await page.until("equilibrium")
+            moments = next(each for each in reversed(page.log) if each["t"] == "moments")
+            assert searches == []
+            await page.send("rest")
+            again, _ = await page.shown(lambda s: s.state == "at-rest" and s.frame > stat.frame)
+            full = await page.until("equilibrium", lambda e: e.frame == again.frame)
+            film = next(each for each in reversed(page.log) if each["t"] == "moments")
+            return card, moments, full, film
+
+    card, moments, full, film = run(scenario(), 120)
+    solved = equilibrium_of(simulate(design), card.topology, card.frame)
+    for name in ("residual", "probes", "metrics", "chambers", "largest_strain", "warnings"):
+        assert plain(getattr(card, name)) == plain(getattr(solved, name)), name
+        assert plain(getattr(card, name)) == plain(getattr(full, name)), name
+    assert plain(card.grips) == plain(solved.grips) == plain(full.grips)
+    assert card.grips[0]["verdict"] == "held"
+    assert "Only the end" in card.missing
+    assert full.missing == ""
+    (end,) = moments["moments"]
+    last = film["moments"][-1]
+    assert len(film["moments"]) > 5
+    for name in ("poses", "contacts", "time", "fields"):
+        assert end[name] == last[name], name
+    assert end["fields"] is True
+
+
+def plain(value):
+    return msgspec.json.decode(msgspec.json.encode(value))
+
+
+def test_a_gripper_of_a_study_is_pictured_with_its_ball(gripping):
+    studio, _ = gripping
+    answer = picture(studio, "trial/grips/0")
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["x-voxsoft-state"] == "rest"
+    drawn = pixels(answer.content).astype(int)
+    ball = (np.ptp(drawn[..., :3], axis=2) <= 3) & (drawn[..., 3] > 100)
+    assert ball.sum() > 500  # gray, between the pads that have the color of their part

@@ -3,10 +3,12 @@
 import base64
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.image import imread
 from own_loop import run
 
 import voxsoft as vs
@@ -18,8 +20,9 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.posed import posed_surface
 from voxsoft.studio import commands, events
 from voxsoft.studio.body import StudioBody
+from voxsoft.studio.exports import export_shown
 from voxsoft.studio.fields import CONTACT_FIELDS, FIELDS, contact_values
-from voxsoft.studio.objects import moments_of
+from voxsoft.studio.objects import moments_of, poses_in, surroundings_of
 from voxsoft.studio.playback import Playback
 from voxsoft.studio.protocol import decode
 from voxsoft.studio.rest import RestSearch
@@ -299,3 +302,33 @@ def test_only_the_end_of_a_solution_knows_its_fields(solved):
     assert [moment.fields for moment in solved.moments] == [True]
     solved.reset()
     assert (solved.moments, solved.contact_fields) == ([], {})
+
+
+def gray_in(png):
+    """How many pixels of a picture are of the gray of objects."""
+    picture = (255 * imread(png)[..., :3]).astype(int)
+    gray = (np.ptp(picture, axis=2) <= 2) & (picture[..., 0] > 120) & (picture[..., 0] < 240)
+    return int(gray.sum())
+
+
+@pytest.mark.parametrize("as_solved", [False, True])
+def test_an_exported_picture_of_a_moment_has_its_objects(tmp_path, pressed, as_solved):
+    playback, design = Playback(), load(pressed)
+    playback.begin(StudioBody.of(design, 1, 1))
+    result = simulate(design)
+    if as_solved:
+        playback.go_to_rest(result)
+        playback.result = None  # as it stands, which no solver is asked about
+    shown = playback.shown_as("pressed", "")
+    drawn = gray_in(export_shown(shown, "png", {}, tmp_path))
+    bare = replace(shown, moment=None, time=1.0)  # where objects were then is not known
+    assert drawn > gray_in(export_shown(bare, "png", {}, tmp_path)) + 3_000
+    if as_solved:
+        assert poses_in(shown.moment, design) == result.objects
+
+
+def test_an_object_without_a_surface_leaves_the_body_in_its_pictures():
+    speck = Object(name="speck", shape=vs.Sphere(radius="0.01 mm"), voxel_size="4 mm")
+    floor = vs.design.Floor(z=-1 * mm)
+    found = surroundings_of(families.beam().replace(floor=floor, objects=[speck]), {})
+    assert (found.objects, found.floor) == (None, floor.z)

@@ -4,11 +4,13 @@ import json
 import struct
 import threading
 import tomllib
+from concurrent.futures import ThreadPoolExecutor
 
 import httpx
 import lattice_families as families
 import numpy as np
 import pytest
+from gripped_ball import GRIPPER
 from own_loop import run
 
 from voxsoft import files
@@ -47,6 +49,13 @@ def asked(studio, name):
 
 def read(content):
     """Points at rest, and positions, largest value and flags by field, of an answer."""
+    rest, frames, objects = parts_of(content)
+    assert objects == b""
+    return rest, frames
+
+
+def parts_of(content):
+    """The same, and what stands behind the frames: the objects around the body."""
     points, triangles, edges = struct.unpack_from("<3I", content, 24)
     rest = np.frombuffer(content, "<f4", 3 * points, 64).reshape(-1, 3)
     at = 64 + 12 * points + 12 * triangles + 8 * edges + triangles
@@ -54,14 +63,15 @@ def read(content):
     frames = {}
     while at < len(content):
         kind, flags, field = struct.unpack_from("<BBH", content, at + 4)
+        if kind == 1:
+            break
         assert kind == 2
         origin, scale = np.frombuffer(content, "<f4", 6, at + 32).reshape(2, 3).astype(float)
         steps = np.frombuffer(content, "<u2", 4 * points, at + 64).reshape(-1, 4)
         largest = struct.unpack_from("<2f", content, at + 56)[1]
         frames[field] = (origin + scale * steps[:, :3] / 65535, largest, flags)
         at += 64 + 8 * points
-    assert at == len(content)
-    return rest, frames
+    return rest, frames, content[at:]
 
 
 def make_study(folder):
@@ -268,3 +278,24 @@ def test_a_damaged_specimen_is_reported(studio):
         assert "is damaged" in asked(studio, "fit").json()["what"]
     np.savez(folder / "specimen.npz", positions=np.zeros((3, 3)))
     assert "is not of this design" in asked(studio, "fit").json()["what"]
+
+
+@pytest.mark.parametrize("what", ["run", "study"])
+def test_objects_stand_where_they_are_at_the_end(studio, what, monkeypatch):
+    design = Design.from_document(tomllib.loads(GRIPPER))
+    result = simulate(design)
+    lifted = result.objects["ball"].position
+    assert lifted[2] > 0.001
+    folder = studio.session.runs / f"grip-{what}"
+    if what == "run":
+        files.write_run(result, folder)
+    else:
+        with ThreadPoolExecutor(1) as threads:
+            Study(design, {"squeeze": [0.5e-3]}, folder=folder).grid(executor=threads)
+        monkeypatch.setattr(stills, "simulate", lambda *_, **__: pytest.fail("solved again"))
+    rest, frames, objects = parts_of(asked(studio, folder.name).content)
+    assert struct.unpack_from("<I", objects, 8) == (2,)
+    (count,) = struct.unpack_from("<I", objects, 24)
+    points = np.frombuffer(objects, "<f4", 3 * count, 64).reshape(-1, 3)
+    assert (points.min(axis=0) + points.max(axis=0)) / 2 == pytest.approx(lifted, abs=2e-5)
+    assert frames[0][0][:, 2].max() - rest[:, 2].max() == pytest.approx(0.002, abs=2e-4)

@@ -9,8 +9,11 @@ from pressed import PLATE, POST, SIDE, pressed
 import voxsoft as vs
 from voxsoft.plot import plot_body
 from voxsoft.plot.body import body_image
+from voxsoft.plot.camera import Camera
+from voxsoft.plot.cutout import cutout
 from voxsoft.plot.frames import at_frame
-from voxsoft.plot.objects import cut, near, objects_of
+from voxsoft.plot.objects import Surroundings, cut
+from voxsoft.plot.raster import rasterize
 from voxsoft.simulation import simulate
 from voxsoft.units import mm
 
@@ -25,6 +28,10 @@ def result():
 @pytest.fixture(scope="module")
 def beside():
     return simulate(pressed(objects=[POST], loads=[vs.Gravity()]))
+
+
+def around(result):
+    return Surroundings.of(result.design, result.objects)
 
 
 def gray(image):
@@ -67,7 +74,7 @@ def test_a_frame_has_objects_where_they_were(beside):
 
 
 def test_objects_are_where_the_result_has_them(result):
-    bottom = objects_of(result).vertices[:, 2]
+    bottom = around(result).objects.vertices[:, 2]
     plate = bottom[bottom > SIDE - 3 * mm]
     assert plate.min() == pytest.approx(SIDE - 1.5 * mm, abs=5e-3 * mm)
 
@@ -91,13 +98,13 @@ def test_a_large_object_does_not_dwarf_the_body():
         voxel_size=8 * mm,
     )
     found = simulate(pressed(objects=[floor], loads=[vs.Gravity()]))
-    shown = near(objects_of(found), found.positions)
+    shown = around(found).near(found.positions)
     assert np.ptp(shown, axis=0).max() < 3.1 * SIDE
     assert max(body_image(found, pixels=64).shape) <= 80
 
 
 def test_a_section_cuts_objects_where_it_cuts_the_body(result):
-    whole, at = objects_of(result), 6.1 * mm
+    whole, at = around(result).objects, 6.1 * mm
     left, right = (cut(whole, "y", at, side) for side in (-1, 1))
     assert left.vertices[:, 1].max() == pytest.approx(at, abs=1e-12)
     assert right.vertices[:, 1].min() == pytest.approx(at, abs=1e-12)
@@ -109,3 +116,60 @@ def test_a_section_cuts_objects_where_it_cuts_the_body(result):
     # Both halves have both sides of their triangles.
     assert area(left) + area(right) == pytest.approx(2 * area(whole), rel=1e-9)
     assert plot_body(result, section="y").axes
+
+
+def test_a_floor_is_under_what_stands_on_it_and_no_farther_away_than_objects_are(beside):
+    def under(z):
+        design = beside.design.replace(floor=vs.design.Floor(z=z))
+        return Surroundings.of(design, beside.objects)
+
+    near = under(-1 * mm).near(beside.positions)
+    standing = under(-1 * mm).objects.vertices
+    assert near[:, 2].min() == pytest.approx(-1 * mm)
+    assert near[:, 0].min() < standing[:, 0].min()  # a margin around the post
+    far = under(-3 * SIDE).near(beside.positions)
+    assert far[:, 2].min() == pytest.approx(0.0)
+    on_floor = replace(beside, design=beside.design.replace(floor=vs.design.Floor(z=-1 * mm)))
+    assert gray(body_image(on_floor)) > 1.5 * gray(body_image(beside))
+    # From below the body shows through its floor.
+    below = body_image(on_floor, view=(-60.0, -60.0)).astype(int)
+    assert (np.ptp(below, axis=-1) > 30).sum() > 5_000
+
+
+def test_a_mesh_is_drawn_with_the_surroundings_that_are_given(beside):
+    def drawn(**options):
+        return np.asarray(255 * plot_body(beside.mesh, **options).axes[0].images[0]._A)
+
+    surroundings = Surroundings.of(beside.design, {})
+    assert gray(drawn(objects=surroundings)) > gray(drawn()) + 5_000
+
+
+def test_a_picture_without_a_background_holds_objects_that_the_body_shows_through(beside):
+    alone = cutout(beside.mesh, view=FRONT, pixels=100).pixels
+    both = cutout(beside.mesh, view=FRONT, pixels=100, around=around(beside)).pixels
+    assert alone.shape == both.shape  # the post stands before the block, seen from there
+    assert np.array_equal(alone[..., 3], both[..., 3])
+    changed = np.abs(alone[..., :3].astype(int) - both[..., :3]).max(axis=2) > 10
+    assert changed.sum() == pytest.approx((100 * 4 / 12.5) ** 2, rel=0.2)
+    aside = cutout(beside.mesh, view=(90.0, 0.0), pixels=100, around=around(beside)).pixels
+    post = aside[..., 3][(aside[..., 3] > 0) & (aside[..., 3] < 255)]
+    assert len(post) > 200  # translucent, and so on any color of a page
+    assert 100 < np.median(post) < 160
+
+
+def test_a_floor_lies_behind_the_undeformed_body(result):
+    under, mesh = Surroundings(floor=-0.1 * mm), result.mesh
+    aside = mesh.vertices + np.array([2 * SIDE, 0.0, 0.0])
+    camera = Camera.around(under.near(np.concatenate([aside, mesh.vertices])), (0.0, 90.0), 200)
+    triangles = mesh.triangles.astype(np.int64)
+    seen, ghost = (
+        rasterize(camera.project(points), triangles, camera.width, camera.height)
+        for points in (aside, mesh.vertices)
+    )
+    white = np.ones((camera.height, camera.width, 3))
+    both = under.drawn_over(
+        white, seen, camera, np.concatenate([aside, mesh.vertices]), None, ghost
+    )
+    drawn = (both < 1.0).any(axis=2)
+    assert not drawn[ghost.covered | seen.covered].any()
+    assert drawn.sum() > 1_000

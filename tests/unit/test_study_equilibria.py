@@ -7,9 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from gripped_ball import GRIPPER
+from pressed import pressed
 
 from voxsoft.design import Design, families
-from voxsoft.simulation import simulate
+from voxsoft.simulation import Setup, simulate
 from voxsoft.study import Outcome, Study, evaluate_design
 from voxsoft.study.equilibria import FOLDER, Equilibria, Equilibrium
 
@@ -52,7 +54,33 @@ def test_a_study_keeps_the_state_of_each_design_that_came_to_rest(tmp_path):
         assert known.holds(trial.hash) == (trial.status == "ok")
     solved = simulate(bar.with_parameters(**result.best.parameters))
     found = known.find(result.best.hash, solved.mesh)
-    np.testing.assert_array_equal(found, solved.positions)
+    np.testing.assert_array_equal(found.positions, solved.positions)
+    assert found.state is None  # these are measured anew
+
+
+def test_a_study_keeps_all_that_was_found_of_a_design_with_contact(tmp_path):
+    gripper = Design.from_document(tomllib.loads(GRIPPER))
+    study = Study(gripper, {"squeeze": [0.4e-3, 0.6e-3]}, folder=tmp_path)
+    with ThreadPoolExecutor(1) as threads:
+        best = study.grid(executor=threads).best
+    solved = simulate(gripper.with_parameters(**best.parameters))
+    found = Equilibria(tmp_path / FOLDER).find(best.hash, solved.mesh)
+    assert found.objects == solved.objects
+    result = found.result(Setup.of(solved.design))
+    np.testing.assert_array_equal(result.positions, solved.positions)
+    assert result.contacts == solved.contacts
+    assert len(result.contacts) == 1
+    assert result.metrics == solved.metrics
+    assert result.metrics["grip"] == best.objectives["grip"]
+    np.testing.assert_array_equal(result.contact_field.pressure, solved.contact_field.pressure)
+
+
+def test_what_is_stored_is_a_small_part_of_a_motion(tmp_path):
+    gripper = Design.from_document(tomllib.loads(GRIPPER))
+    result = simulate(gripper, frames=True)
+    Equilibria(tmp_path).keep("a", Equilibrium.of(result))
+    (file,) = tmp_path.iterdir()
+    assert file.stat().st_size < 0.5 * result.recording.frames.nbytes
 
 
 def test_a_trial_that_is_not_at_rest_and_a_path_keep_no_state():
@@ -81,9 +109,23 @@ def test_a_damaged_file_is_as_none(tmp_path, rested, content):
     assert known.find("a", rested.mesh) is None
 
 
+@pytest.mark.parametrize("missing", ["state", "arrays", "array0", "positions"])
+def test_a_file_without_a_part_of_what_was_found_gives_no_result(tmp_path, missing):
+    result = simulate(pressed())
+    known = Equilibria(tmp_path)
+    known.keep("a", Equilibrium.of(result))
+    with np.load(tmp_path / "a.npz") as content:
+        left = {name: content[name] for name in content.files if name != missing}
+    np.savez(tmp_path / "a.npz", **left)
+    found = known.find("a", result.mesh)
+    # Without what else was found, its positions are no result of a design with contact.
+    assert found is None or found.result(Setup.of(result.design)) is None
+
+
 def test_the_oldest_are_dropped_where_there_is_no_room(tmp_path, rested):
     state = Equilibrium.of(rested)
-    size = state.positions.nbytes
+    Equilibria(tmp_path).keep("a", state)
+    size = (tmp_path / "a.npz").stat().st_size
     known = Equilibria(tmp_path, room=4 * size)
     for number, name in enumerate("abcdefgh"):
         known.keep(name, state)

@@ -15,8 +15,9 @@ from voxsoft.jobs.folder import kind_of_job, load, write_job
 from voxsoft.jobs.outcome import JobOutcome
 from voxsoft.jobs.spec import Stage, StudySpec
 from voxsoft.metrics import METRICS
-from voxsoft.simulation import check_solver, check_targets, simulate
+from voxsoft.simulation import Result, Setup, check_solver, check_targets, simulate
 from voxsoft.study import Study, StudyResult, TrialEvent
+from voxsoft.study.equilibria import FOLDER, Equilibria
 from voxsoft.study.event import ProgressCallback
 from voxsoft.study.gate import Gate
 from voxsoft.study.trial import Trial
@@ -146,13 +147,20 @@ def _write(study: Study, folder: Path, notify: Listener) -> tuple[StudyResult, l
 
 
 def _draw_best(study: Study, result: StudyResult, folder: Path, notify: Listener) -> None:
-    """Solve the best design once more, for its picture; a study does not fail for want of it."""
+    """Draw the best design at rest; a study does not fail for want of its picture."""
     if result.best is None or not isinstance(study.family, Design):
         return
     notify(_ended(study, result, "drawing the best design"))
     design = study.family.with_parameters(**result.best.parameters)
     with suppress(VoxSoftError):
-        save_thumbnail(simulate(design), folder)
+        save_thumbnail(_at_rest(design, folder), folder)
+
+
+def _at_rest(design: Design, folder: Path) -> Result:
+    """The equilibrium of a design of a study, as the study found it where it has kept that."""
+    setup = Setup.of(design)
+    found = Equilibria(folder / FOLDER).find(design.hash, setup.mesh)
+    return (None if found is None else found.result(setup)) or simulate(setup)
 
 
 def _confirmed(

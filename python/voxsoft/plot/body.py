@@ -16,7 +16,7 @@ from voxsoft.plot.boundary import Axis, Boundary, beyond, boundary_of
 from voxsoft.plot.camera import Camera
 from voxsoft.plot.color_range import CLIP, ColorRange, color_range
 from voxsoft.plot.frames import at_frame
-from voxsoft.plot.objects import cut, near, objects_of, with_objects
+from voxsoft.plot.objects import Surroundings
 from voxsoft.plot.quantities import Scale, scale_for
 from voxsoft.plot.raster import Raster, rasterize
 from voxsoft.plot.style import COLOR_MAP, SERIES, empty_figure
@@ -59,7 +59,7 @@ def plot_body(
     view: tuple[float, float] = (-60.0, 25.0),
     ghost: bool = True,
     lines: bool | None = None,
-    objects: bool | None = None,
+    objects: bool | Surroundings | None = None,
     frame: int | None = None,
     title: str | None = None,
 ) -> Figure:
@@ -88,8 +88,9 @@ def plot_body(
     lines
         Whether to draw the edges of triangles; default: where they are long enough to be seen.
     objects
-        Whether to draw the rigid objects of a result, gray; default: but where the color says what
-        they press.
+        Whether to draw the rigid objects and the floor of a result, gray; default: but where the
+        color says what they press. Those of a mesh are given, ``Surroundings.of(design, {})`` of
+        ``voxsoft.plot.objects``: a mesh does not know them.
     frame
         Which recorded frame of a result to draw, in place of its end: a run with ``frames=True``
         has one for each of ``result.recording.times``. Tendons are drawn at the end alone.
@@ -123,10 +124,10 @@ def plot_body(
     positions = body.positions if isinstance(body, Result) else mesh.vertices
     has_ghost = ghost and isinstance(body, Result) and section is None
     shown = [positions, mesh.vertices] if has_ghost else [positions]
-    covered = objects if objects is not None else not _is(field, "contact_pressure")
-    rigid = objects_of(body) if covered and isinstance(body, Result) else None
-    if rigid is not None:
-        shown.append(near(rigid, positions))
+    if objects is None:
+        objects = not _is(field, "contact_pressure")
+    around = _around(body, shown=objects) if isinstance(objects, bool) else objects
+    shown.append(around.near(positions))
     tendons = body.tendons if isinstance(body, Result) else {}
     shown += [tendon.points for tendon in tendons.values()]
     camera = Camera.around(np.concatenate(shown), view, PIXELS * _FINER)
@@ -135,10 +136,12 @@ def plot_body(
     colors = _colors(body, mesh, surface, field, label)
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, lines)
+    before = None
     if has_ghost:
-        picture = _with_ghost(picture, seen, mesh, surface, camera)
-    if rigid is not None:
-        picture = with_objects(picture, seen, cut(rigid, *plane) if plane else rigid, camera)
+        points = camera.project(mesh.vertices)
+        before = rasterize(points, surface.triangles, camera.width, camera.height)
+        picture = _with_ghost(picture, seen, before, mesh, surface, camera)
+    picture = around.drawn_over(picture, seen, camera, positions, plane, before)
     name = body.design.name if isinstance(body, Result) else ""
     figure = _figure(picture, camera, colors, name if title is None else title)
     draw_tendons(figure.axes[0], tendons, camera, _FINER)
@@ -173,15 +176,13 @@ def body_image(
     """
     mesh = body.mesh if isinstance(body, Result) else body
     positions = body.positions if isinstance(body, Result) else mesh.vertices
-    rigid = objects_of(body) if isinstance(body, Result) else None
-    shown = [positions] if rigid is None else [positions, near(rigid, positions)]
-    camera = Camera.around(np.concatenate(shown), view, pixels * _FINER)
+    around = _around(body)
+    camera = Camera.around(around.near(positions), view, pixels * _FINER)
     surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
     colors = _colors(body, mesh, surface, None, "")
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     picture = _paint(seen, positions, surface, colors, camera, None)
-    if rigid is not None:
-        picture = with_objects(picture, seen, rigid, camera)
+    picture = around.drawn_over(picture, seen, camera, positions)
     return np.rint(255.0 * np.clip(_averaged(picture), 0.0, 1.0)).astype(np.uint8)
 
 
@@ -196,6 +197,13 @@ class _Colors:
     colored: NDArray[np.bool_] | None = None  # (t,) where the values count
     extend: str = "neither"
     clipped: str = ""  # what lies beyond the colors
+
+
+def _around(body: Result | Mesh, *, shown: bool = True) -> Surroundings:
+    """What is around a body and shown."""
+    if not shown or not isinstance(body, Result):
+        return Surroundings()
+    return Surroundings.of(body.design, body.objects)
 
 
 def _is(field: str | ArrayLike | None, name: str) -> bool:
@@ -331,12 +339,9 @@ def _long_enough(flat: Floats) -> bool:
 
 
 def _with_ghost(
-    picture: Floats, seen: Raster, mesh: Mesh, surface: Boundary, camera: Camera
+    picture: Floats, seen: Raster, before: Raster, mesh: Mesh, surface: Boundary, camera: Camera
 ) -> Floats:
-    """Draw the undeformed body pale behind the deformed one."""
-    before = rasterize(
-        camera.project(mesh.vertices), surface.triangles, camera.width, camera.height
-    )
+    """Draw the undeformed body, as it is seen before, pale behind the deformed one."""
     normals = shading.normals_of(mesh.vertices[surface.triangles])
     light = shading.lit(normals, camera)[before.triangle] * shading.outlines(before)
     pale = before.spread(_PALEST + (1.0 - _PALEST) * light, 1.0)

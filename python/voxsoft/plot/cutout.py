@@ -13,6 +13,7 @@ from voxsoft.mesh import Mesh
 from voxsoft.plot import shading
 from voxsoft.plot.boundary import boundary_of
 from voxsoft.plot.camera import Camera
+from voxsoft.plot.objects import Surroundings
 from voxsoft.plot.raster import rasterize
 
 Floats = NDArray[np.float64]
@@ -47,8 +48,9 @@ def cutout(
     pixels: int = PIXELS,
     colors: Sequence[str] = _COLORS,
     view: tuple[float, float] = (-60.0, 25.0),
+    around: Surroundings | None = None,
 ) -> Cutout:
-    """Draw a body in the colors of its parts, and nothing around it.
+    """Draw a body in the colors of its parts, with what it is to touch and nothing else around it.
 
     Parameters
     ----------
@@ -62,6 +64,8 @@ def cutout(
         Of the parts in turn, as ``"#rrggbb"``.
     view
         Azimuth and elevation of the eye in degrees.
+    around
+        Rigid objects and the floor; default: none.
 
     Examples
     --------
@@ -72,16 +76,19 @@ def cutout(
     (4, 0, 255)
     """
     positions = mesh.vertices if positions is None else positions
-    camera = Camera.around(positions, view, pixels * _FINER)
+    around = around or Surroundings()
+    camera = Camera.around(around.near(positions), view, pixels * _FINER)
     surface = boundary_of(mesh, np.ones(len(mesh.tets), dtype=bool))
     seen = rasterize(camera.project(positions), surface.triangles, camera.width, camera.height)
     light = shading.lit(shading.normals_of(positions[surface.triangles]), camera)[seen.triangle]
     light *= shading.depth_contrast(seen) * shading.outlines(seen)
     palette = np.array([[int(color[at : at + 2], 16) for at in (1, 3, 5)] for color in colors])
     of_part = palette[(surface.part.astype(np.int64) - 1) % len(palette)] / 255.0
-    opacity = _averaged(seen.covered[..., None].astype(np.float64))
+    solid = np.concatenate([of_part[seen.triangle] * light[:, None], np.ones((len(light), 1))], 1)
+    drawn = around.drawn_over(seen.spread(solid, 0.0), seen, camera, positions)
     # Colors are averaged over what is covered alone, so that no seam of another color shows.
-    sums = _averaged(seen.spread(of_part[seen.triangle] * light[:, None], 0.0))
+    sums = _averaged(drawn)
+    sums, opacity = sums[..., :3], sums[..., 3:]
     color = np.divide(sums, opacity, out=np.zeros_like(sums), where=opacity > 0.0)
     picture = np.clip(np.concatenate([color, opacity], axis=2), 0.0, 1.0)
     return Cutout(np.rint(255.0 * picture).astype(np.uint8), 1.0 / (camera.pixel * _FINER))

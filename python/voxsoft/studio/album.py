@@ -16,7 +16,7 @@ from voxsoft.files.designs import read_document, read_text
 from voxsoft.simulation import Result
 from voxsoft.studio import reopening
 from voxsoft.studio.body import StudioBody
-from voxsoft.studio.reopening import Known, is_given_by_positions, known_equilibrium
+from voxsoft.studio.reopening import Known, known_equilibrium
 from voxsoft.studio.runs import RunList
 from voxsoft.studio.stills import design_in
 from voxsoft.studio.studying import stored_study
@@ -113,8 +113,7 @@ class Album:
 
     def solved(self, body: StudioBody, result: Result) -> None:
         """Keep an equilibrium that was solved for."""
-        if is_given_by_positions(body):
-            self._solved.keep(body.setup.design.hash, Equilibrium.of(result))
+        self._solved.keep(body.setup.design.hash, Equilibrium.of(result))
 
     def _design_of(self, folder: Path, number: str) -> Design:
         """The design of a trial, without reading a study anew for each of its trials."""

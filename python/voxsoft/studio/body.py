@@ -207,6 +207,7 @@ class StudioBody:
             planes=[
                 events.BodyPlane(axis=plane.axis, at=plane.at) for plane in setup.design.symmetry
             ],
+            floor=None if setup.design.floor is None else setup.design.floor.z,
         )
 
     def _probes(self) -> list[events.BodyProbe]:

@@ -9,7 +9,7 @@ from voxsoft.studio import events
 def chambers_of(result: Result, topology: int) -> events.Chambers:
     """The curves of a motion that was solved for; none of an equilibrium."""
     recording = result.recording
-    moved = len(recording.frames) > 0
+    moved = result.solver["way"] == "dynamics"
     return events.Chambers(
         topology=topology,
         times=recording.times.tolist() if moved and recording.chambers else [],

@@ -14,6 +14,7 @@ from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
 from voxsoft.studio import events
 from voxsoft.studio.grips import grips_of
+from voxsoft.studio.objects import is_filmed
 from voxsoft.units import format_percent
 
 
@@ -138,7 +139,16 @@ def equilibrium_of(
             events.Summarized(name=supply.name, words=supply.words) for supply in result.supplies
         ],
         grips=grips_of(result),
+        missing=_missing(result),
     )
+
+
+def _missing(result: Result) -> str:
+    """What of a state that was stored is not there, in a sentence; empty where all is."""
+    filmed = is_filmed(result.design) and result.solver["way"] == "dynamics"
+    if not filmed or len(result.recording.frames) > 0:
+        return ""
+    return "Only the end of this motion was stored, not the way there."
 
 
 def finding_of(diagnostic: Diagnostic) -> events.Finding:

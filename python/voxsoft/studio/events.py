@@ -462,6 +462,7 @@ class Body(Event):
     `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
     shapes follows as well (kind 3). `not_live` is why time does not run, or an empty text;
     `touches` tells whether anything of the design may touch. `bodies` is empty where there is one.
+    `floor` is the height of the floor in m; null where there is none.
     """
 
     topology: int
@@ -492,6 +493,7 @@ class Body(Event):
     smooth: bool = False
     bodies: list[BodyOfSeveral] = field(default_factory=list)
     planes: list[BodyPlane] = field(default_factory=list)
+    floor: float | None = None
 
 
 class GrabState(Entry):
@@ -611,7 +613,8 @@ class Equilibrium(Event):
     `residual` is a share of the load in words, `largest_strain` that of the largest stretch.
     `error_bars` says where error bars come from, or why there are none; told a second time once
     they are known. `looking` while they are being looked for, and `askable` where none were found
-    and smaller voxels could still give them.
+    and smaller voxels could still give them. `missing` is what of a state that was stored is not
+    there, in a sentence; empty where all is.
     """
 
     topology: int
@@ -631,6 +634,7 @@ class Equilibrium(Event):
     error_bars: str = ""
     looking: bool = False
     askable: bool = False
+    missing: str = ""
 
 
 class TextChange(Entry):

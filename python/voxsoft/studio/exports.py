@@ -24,6 +24,7 @@ from voxsoft.studio import events
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.events import GrabState
 from voxsoft.studio.html import export_page, page_of_body
+from voxsoft.studio.objects import poses_in, surroundings_of
 from voxsoft.units import parse
 
 #: What can be written of the body that is shown.
@@ -218,6 +219,7 @@ def _archive(folder: Path, target: Path) -> Path:
 def _draw(shown: Shown, target: Path, scale: object) -> None:
     from voxsoft.files.figures import save_figure
     from voxsoft.plot import plot_body
+    from voxsoft.plot.objects import Surroundings
 
     if not isinstance(scale, (int, float)) or not 0 < scale <= 8:
         raise FileError("scale", f"{scale!r} is no scale", "use a number up to 8")
@@ -226,8 +228,15 @@ def _draw(shown: Shown, target: Path, scale: object) -> None:
     else:
         mesh = shown.body.mesh
         moved = np.linalg.norm(shown.positions - mesh.vertices, axis=1)
+        design = shown.body.setup.design
+        # Of a moment in the past it may not be known where objects were.
+        known = shown.moment is not None or shown.time == 0.0
+        around = surroundings_of(design, poses_in(shown.moment, design))
         figure = plot_body(
-            replace(mesh, vertices=shown.positions), 1e3 * moved, label="displacement (mm)"
+            replace(mesh, vertices=shown.positions),
+            1e3 * moved,
+            label="displacement (mm)",
+            objects=around if known else Surroundings(floor=around.floor),
         )
     figure.set_dpi(_DPI * float(scale))
     save_figure(figure, target)

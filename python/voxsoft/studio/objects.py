@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from voxsoft.design import Design
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import Lattice
+from voxsoft.plot.objects import Surroundings
 from voxsoft.simulation import Result, Setup
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.growth import grows_over_time, has_profiles
@@ -117,6 +118,26 @@ def moments_of(result: Result, last: int) -> list[events.Moment]:
     end = _moment(last, result.time, names, result.objects, result.contacts)
     end.fields = result.contact_field is not None
     return [*found, end]
+
+
+def surroundings_of(design: Design, poses: Mapping[str, Pose]) -> Surroundings:
+    """Objects and floor in pictures; without the objects where one has no surface to be drawn."""
+    try:
+        return Surroundings.of(design, poses)
+    except VoxSoftError:  # a finding of the check
+        return Surroundings(floor=None if design.floor is None else design.floor.z)
+
+
+def poses_in(moment: events.Moment | None, design: Design) -> dict[str, Pose]:
+    """Where the objects of a design are at a moment, by name; empty where that is not known."""
+    if moment is None:
+        return {}
+    return {
+        each.name: Pose(
+            pose.position, tuple(_triple(row) for row in np.reshape(pose.rotation, (3, 3)))
+        )
+        for each, pose in zip(design.objects, moment.poses, strict=True)
+    }
 
 
 def _moment(

@@ -10,6 +10,7 @@ from voxsoft import _core
 from voxsoft.errors import SimulationError
 from voxsoft.simulation import Result
 from voxsoft.simulation.contact_field import ContactField
+from voxsoft.simulation.fields import remember
 from voxsoft.simulation.fluids import has_supplies
 from voxsoft.simulation.result import Status
 from voxsoft.studio import commands, events
@@ -200,13 +201,14 @@ class Playback:
         times, frames = film_of(result)
         if len(times) > 0:
             player.take_motion(times, frames)
+        remember(self.require_body().setup.problem_alone, result.peaks)
         reported = player.go_to_rest(
             result.positions,
             _STATES.get(result.status, "paused"),
             f"{sentence}, in {time_text(result.seconds)}." if result.seconds else f"{sentence}.",
             residual=result.residual,
             elastic=result.elastic_energy,
-            time=result.time if len(times) > 0 else None,
+            time=result.time if is_filmed(result.design) and result.time > 0.0 else None,
             poses=list(result.objects.values()),
         )
         self.moments += moments_of(result, player.frame)

@@ -13,14 +13,9 @@ from voxsoft.errors import FileError, VoxSoftError
 from voxsoft.files.meshes import read_mesh_file
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Result
-from voxsoft.simulation.fluids import has_supplies
-from voxsoft.simulation.result import LARGE_RESIDUAL
-from voxsoft.simulation.softening import softening_parts
-from voxsoft.simulation.state import result_at
-from voxsoft.simulation.touching import has_contact
 from voxsoft.studio.body import StudioBody
 from voxsoft.study import equilibria
-from voxsoft.study.equilibria import Equilibria
+from voxsoft.study.equilibria import Equilibria, Equilibrium, checksum
 
 #: Where the studio keeps those that it solved for, in its own folder.
 FOLDER: Final = "equilibria"
@@ -31,8 +26,8 @@ RESULT: Final = "result.vtu"
 class Known(Protocol):
     """Where equilibria are stored."""
 
-    def find(self, design_hash: str, mesh: Mesh) -> NDArray[np.float64] | None:
-        """Where the vertices of a mesh are when its design is at rest, (n, 3) in m, if known."""
+    def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
+        """Where the body of a mesh is at rest under the loads of its design, if that is known."""
         ...
 
 
@@ -42,31 +37,20 @@ class RunState:
     def __init__(self, folder: Path) -> None:
         self._folder = folder
 
-    def find(self, design_hash: str, mesh: Mesh) -> NDArray[np.float64] | None:
-        """Where the vertices are, (n, 3) in m, if the run left them for this mesh."""
+    def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
+        """Where the body is, if the run left that for this mesh."""
         try:
             rest, positions = run_positions(self._folder)
         except VoxSoftError:
             return None
         same = rest.vertices.shape == mesh.vertices.shape
-        return positions if same and np.allclose(rest.vertices, mesh.vertices, atol=1e-9) else None
-
-
-def is_given_by_positions(body: StudioBody) -> bool:
-    """Whether the places of all vertices say all of an equilibrium.
-
-    Objects have poses of their own, supplies have what they gave, and a material that softens
-    remembers how far it was stretched: such designs are solved again.
-    """
-    design = body.setup.design
-    softens = next(softening_parts(design), None) is not None
-    return not (has_contact(design) or has_supplies(design) or softens)
+        if not same or not np.allclose(rest.vertices, mesh.vertices, atol=1e-9):
+            return None
+        return Equilibrium(positions, checksum(mesh))
 
 
 def known_equilibrium(body: StudioBody, places: Sequence[Known]) -> Result | None:
-    """The equilibrium of a body as it was found before, measured anew; None where none is known.
-
-    A state whose forces do not balance under the loads of the design is none.
+    """The equilibrium of a body as it was found before; None where none is known.
 
     Parameters
     ----------
@@ -75,18 +59,15 @@ def known_equilibrium(body: StudioBody, places: Sequence[Known]) -> Result | Non
     places
         Where to look, one after the other.
     """
-    if body.refusal is not None or not is_given_by_positions(body):
+    if body.refusal is not None:
         return None
     try:
         identity = body.setup.design.hash
         for place in places:
-            positions = place.find(identity, body.mesh)
-            if positions is None:
-                continue
-            message = "at rest, as it was solved before"
-            found = result_at(body.setup, positions, status="ok", message=message)
-            if found.residual <= LARGE_RESIDUAL:
-                return found
+            found = place.find(identity, body.mesh)
+            result = None if found is None else found.result(body.setup)
+            if result is not None:
+                return result
     except VoxSoftError:  # it is solved, which says what is wrong
         return None
     return None

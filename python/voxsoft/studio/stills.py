@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import threading
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -24,20 +25,21 @@ from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.specimen import read_specimen
 from voxsoft.jobs import load
 from voxsoft.simulation import Setup, simulate
+from voxsoft.simulation.fields import remember
 from voxsoft.simulation.softening import softening_parts
+from voxsoft.simulation.touching import Pose
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.fields import DISPLACEMENT, FIELDS
+from voxsoft.studio.objects import surroundings_of
 from voxsoft.studio.reopening import Known, known_equilibrium, run_positions, stored_in
 from voxsoft.studio.runs import RunList, kind_of, read_summary
 from voxsoft.studio.studying import design_text_of, stored_study, stored_trial
 from voxsoft.studio.surface import Surface
-from voxsoft.studio.wire import FrameFlag
+from voxsoft.studio.wire import STILL_BODY, STILL_OBJECTS, FrameFlag
 from voxsoft.study.trial import Trial
 
 #: Bodies that were solved for a picture and are kept, so that another look costs nothing.
 MOST_KEPT: Final = 4
-#: The number of the one topology of an answer, which its frames name.
-_TOPOLOGY: Final = 1
 #: Fields that tell something of a body at rest.
 _FIELDS: Final = tuple(each for each in FIELDS if each.name != "speed")
 _FLAGS: Final = {
@@ -64,18 +66,21 @@ class Still:
         How the solution ended: ``ok``, ``not-at-rest`` or ``diverged``.
     fields
         What can be told of that state.
+    poses
+        Where rigid objects are, by name; others are where they are at first.
     """
 
     setup: Setup = field(repr=False)
     positions: NDArray[np.float64] = field(repr=False)
     status: str = "ok"
     fields: tuple[str, ...] = tuple(each.name for each in _FIELDS)
+    poses: Mapping[str, Pose] = field(default_factory=dict, repr=False)
 
     def packed(self) -> bytes:
-        """Write it as the page reads it: the surface, then a frame for each field."""
+        """Write it as the page reads it: the surface, a frame for each field, then objects."""
         mesh, flags = self.setup.mesh, _FLAGS.get(self.status, FrameFlag.PAUSED)
         surface = Surface.of(mesh)
-        messages = [surface.outline.pack_topology(_TOPOLOGY)]
+        messages = [surface.outline.pack_topology(STILL_BODY)]
         try:
             triangles, size = mesh.triangles.astype(np.uint32), mesh.voxel_size or 0.0
             problem = self.setup.problem_alone
@@ -84,20 +89,28 @@ class Still:
             moved = np.linalg.norm(self.positions - mesh.vertices, axis=1)
             shape = surface.outline.pack_frame(
                 self.positions,
-                topology=_TOPOLOGY,
+                topology=STILL_BODY,
                 field=DISPLACEMENT,
                 values=moved[surface.vertices],
                 flags=flags,
             )
-            return b"".join([*messages, shape])
+            return b"".join([*messages, shape, *self._objects()])
         messages += [
             display.pack_frame(
-                self.positions, topology=_TOPOLOGY, frame=0, field=each.id, flags=flags
+                self.positions, topology=STILL_BODY, frame=0, field=each.id, flags=flags
             )
             for each in _FIELDS
             if each.name in self.fields
         ]
-        return b"".join(messages)
+        return b"".join([*messages, *self._objects()])
+
+    def _objects(self) -> Iterator[bytes]:
+        """The surface of all rigid objects where they are, if there are any."""
+        found = surroundings_of(self.setup.design, self.poses).objects
+        if found is not None:
+            tags = np.zeros(len(found.triangles), dtype=np.uint8)
+            outline = _core.Outline.surface(found.vertices, found.triangles, tags, 0.0)
+            yield outline.pack_topology(STILL_OBJECTS)
 
 
 class Stills:
@@ -201,19 +214,29 @@ def _of_run(folder: Path) -> Still:
     mesh, positions = run_positions(folder)
     design = design_in(folder)
     try:
-        status = str(read_summary(folder).get("status", "ok"))
+        summary = read_summary(folder)
     except OSError:
-        status = "ok"
+        summary = {}
+    status, poses = str(summary.get("status", "ok")), _poses_in(summary)
     setup = Setup(design, mesh)
     if next(softening_parts(design), None) is not None:
         # The mesh file does not say what the voxels remember, and so not their stress.
-        return Still(setup, positions, status, fields=(FIELDS[DISPLACEMENT].name,))
-    return Still(setup, positions, status)
+        shown = (FIELDS[DISPLACEMENT].name,)
+        return Still(setup, positions, status, shown, poses)
+    return Still(setup, positions, status, poses=poses)
+
+
+def _poses_in(summary: Mapping[str, Any]) -> dict[str, Pose]:
+    """Where a run left the rigid objects, by name; empty where that cannot be read."""
+    try:
+        return msgspec.convert(summary.get("objects", {}), dict[str, Pose])
+    except msgspec.ValidationError:
+        return {}
 
 
 def _at_rest(design: Design, stored: Sequence[Known], cancelled: threading.Event) -> Still:
     """Mesh a design, and take its stored equilibrium, or solve it as its study did."""
-    body = StudioBody.of(design, rev=0, topology=_TOPOLOGY)
+    body = StudioBody.of(design, rev=0, topology=STILL_BODY)
     if body.refusal is not None:
         raise body.refusal
 
@@ -225,4 +248,5 @@ def _at_rest(design: Design, stored: Sequence[Known], cancelled: threading.Event
     result = known_equilibrium(body, stored) or simulate(body.setup, progress=look)
     if not np.isfinite(result.positions).all():
         raise SimulationError(design.name, result.message, "look at a design with a smaller load")
-    return Still(body.setup, result.positions, result.status)
+    remember(body.setup.problem_alone, result.peaks)
+    return Still(body.setup, result.positions, result.status, poses=result.objects)

@@ -15,10 +15,13 @@ from voxsoft.files.figures import save_cutout, scale_of
 from voxsoft.files.run_folder import make_folder
 from voxsoft.plot.cutout import cutout
 from voxsoft.studio.body import PART_COLORS, filled_within_memory
+from voxsoft.studio.objects import surroundings_of
 from voxsoft.study.equilibria import Equilibria
 
 #: Name of a folder of pictures, in that of a study and in the studio's own.
 FOLDER: Final = "thumbnails"
+#: What pictures show; those of another edition are drawn anew.
+_EDITION: Final = "with-objects"
 #: How many pictures the studio's own folder holds; those of a study are as many as its designs.
 MOST: Final = 500
 
@@ -109,14 +112,16 @@ class Thumbnails:
         if before is not None:
             return before
         mesh = filled_within_memory(design.assembled).mesh()
-        found = (each.find(design.hash, mesh) for each in holders)
-        positions = next((each for each in found if each is not None), None)
-        picture = cutout(mesh, positions, colors=PART_COLORS)
-        file = self._file(name, at_rest=positions is not None)
+        equilibria = (each.find(design.hash, mesh) for each in holders)
+        found = next((each for each in equilibria if each is not None), None)
+        around = surroundings_of(design, {} if found is None else found.objects)
+        positions = None if found is None else found.positions
+        picture = cutout(mesh, positions, colors=PART_COLORS, around=around)
+        file = self._file(name, at_rest=found is not None)
         make_folder(self._folder)
         save_cutout(picture, file)
         self._make_room()
-        return Thumbnail(file.read_bytes(), positions is not None, picture.per_meter)
+        return Thumbnail(file.read_bytes(), found is not None, picture.per_meter)
 
     def _found(self, name: str, *, at_rest: bool) -> Thumbnail | None:
         with suppress(OSError):
@@ -127,7 +132,7 @@ class Thumbnails:
     def _file(self, name: str, *, at_rest: bool) -> Path:
         if not name.isalnum():
             raise FileError(name[:80], "is no name of a picture")
-        return self._folder / f"{name}-{'rest' if at_rest else 'unloaded'}.png"
+        return self._folder / f"{name}-{_EDITION}-{'rest' if at_rest else 'unloaded'}.png"
 
     def _make_room(self) -> None:
         if self._most is None:

@@ -27,6 +27,7 @@ from voxsoft.studio.wire import (
     MAGIC,
     PACES,
     PROTOCOL,
+    STILL_OBJECTS,
     CloseCode,
     FrameFlag,
     MessageKind,
@@ -53,6 +54,7 @@ _NUMBERS: Final = {
     "LARGEST_UPLOAD": (LARGEST_UPLOAD, "Largest file that the server takes, bytes."),
     "MAGIC": (MAGIC, "First four bytes of a binary message."),
     "HEADER": (HEADER, "Length of the head of a binary message, bytes."),
+    "STILL_OBJECTS": (STILL_OBJECTS, "Topology of the objects around a body at rest."),
     "CAVITY": (CAVITY, "Bit of a triangle's tag that says that it faces a cavity."),
 }
 

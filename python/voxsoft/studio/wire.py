@@ -23,6 +23,9 @@ PACES: Final = _core.PACES
 #: The first four bytes of a binary message, and the length of its head.
 MAGIC: Final = _core.MAGIC
 HEADER: Final = _core.HEADER
+#: The topologies of a body at rest beside the view: its own, and that of the objects around it.
+STILL_BODY: Final = 1
+STILL_OBJECTS: Final = 2
 #: Bit of a triangle's tag that says that it faces a cavity.
 CAVITY: Final = 0x80
 

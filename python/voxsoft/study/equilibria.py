@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import uuid
 import zlib
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, Self
 from zipfile import BadZipFile
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.mesh import Mesh
-from voxsoft.simulation import Result
+from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.result import LARGE_RESIDUAL
+from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
+from voxsoft.simulation.state import result_at
+from voxsoft.simulation.touching import Pose
 
 Floats = NDArray[np.float64]
 
@@ -35,15 +40,76 @@ class Equilibrium:
         Of its vertices in m, (n, 3).
     mesh
         A checksum of the vertices at rest: the positions are those of this mesh and no other.
+    state
+        What else was found, of a design whose positions do not say it: contact, supplies, what
+        softened. None of other designs, whose positions are measured anew.
     """
 
     positions: Floats = field(repr=False)
     mesh: int
+    state: SolvedState | None = field(default=None, repr=False)
 
     @classmethod
-    def of(cls, result: Result) -> Equilibrium:
+    def of(cls, result: Result) -> Self:
         """Take the state of a result."""
-        return cls(result.positions, checksum(result.mesh))
+        state = None if is_given_by_positions(result.design) else SolvedState.of(result)
+        return cls(result.positions, checksum(result.mesh), state)
+
+    @classmethod
+    def read(cls, content: Mapping[str, NDArray[Any]]) -> Self:
+        """Read what :meth:`written` gives.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError
+            It is damaged.
+        """
+        positions = np.asarray(content["positions"], dtype=np.float64)
+        state = None
+        if "state" in content:
+            text = np.asarray(content["state"], dtype=np.uint8).tobytes().decode()
+            arrays = [content[f"array{at}"] for at in range(int(content["arrays"]))]
+            state = SolvedState(text, tuple(arrays))
+        return cls(positions, int(content["mesh"]), state)
+
+    def result(self, setup: Setup) -> Result | None:
+        """The equilibrium of a body as a result; None where it is not that, or not all is known.
+
+        One that positions give is measured anew, and is none where forces do not balance under the
+        loads of the design. Of others, with contact, supplies or softening, all is as it was found.
+
+        Parameters
+        ----------
+        setup
+            The body, on the mesh that was solved.
+
+        Raises
+        ------
+        VoxSoftError
+            The body cannot be solved, or what was stored is damaged or of another version.
+        """
+        if is_given_by_positions(setup.design):
+            message = "at rest, as it was solved before"
+            measured = result_at(setup, self.positions, status="ok", message=message)
+            return measured if measured.residual <= LARGE_RESIDUAL else None
+        if self.state is None:
+            return None
+        found = self.state.result(setup, self.positions)
+        return replace(found, message=f"{found.message}, as it was solved before")
+
+    @property
+    def objects(self) -> Mapping[str, Pose]:
+        """Where the rigid objects are, by name; empty where there is none."""
+        return {} if self.state is None else self.state.objects
+
+    def written(self) -> dict[str, Any]:
+        """Write it as arrays by name."""
+        written: dict[str, Any] = {"positions": self.positions, "mesh": self.mesh}
+        if self.state is not None:
+            written["state"] = np.frombuffer(self.state.text.encode(), dtype=np.uint8)
+            written["arrays"] = len(self.state.arrays)
+            written |= {f"array{at}": each for at, each in enumerate(self.state.arrays)}
+        return written
 
 
 def checksum(mesh: Mesh) -> int:
@@ -71,7 +137,7 @@ class Equilibria:
     ...     known = Equilibria(Path(folder))
     ...     known.keep(result.design.hash, Equilibrium.of(result))
     ...     found = known.find(result.design.hash, result.mesh)
-    >>> bool((found == result.positions).all())
+    >>> bool((found.positions == result.positions).all())
     True
     """
 
@@ -86,7 +152,7 @@ class Equilibria:
             self._folder.mkdir(parents=True, exist_ok=True)
             try:
                 with beside.open("wb") as file:
-                    np.savez(file, positions=equilibrium.positions, mesh=equilibrium.mesh)
+                    np.savez_compressed(file, **equilibrium.written())
                 size = beside.stat().st_size
                 beside.replace(self._file(design_hash))
             finally:
@@ -95,19 +161,19 @@ class Equilibria:
             if self._used > self._room:
                 self._make_room()
 
-    def find(self, design_hash: str, mesh: Mesh) -> Floats | None:
-        """Where the vertices of a mesh are when its design is at rest, (n, 3) in m, if known."""
+    def find(self, design_hash: str, mesh: Mesh) -> Equilibrium | None:
+        """Where the body of a mesh is at rest under the loads of its design, if that is known."""
         file = self._file(design_hash)
         try:
             with np.load(file, allow_pickle=False) as content:
-                positions, of = content["positions"], int(content["mesh"])
+                found = Equilibrium.read(content)
         except (OSError, ValueError, KeyError, TypeError, EOFError, BadZipFile, zlib.error):
             return None
-        if of != checksum(mesh) or positions.shape != mesh.vertices.shape:
+        if found.mesh != checksum(mesh) or found.positions.shape != mesh.vertices.shape:
             return None
         with suppress(OSError):
             file.touch()  # what is looked at is the last to go
-        return np.asarray(positions, dtype=np.float64)
+        return found
 
     def holds(self, design_hash: str) -> bool:
         """Whether there is something to be found of a design."""

@@ -1,8 +1,9 @@
-import { Section } from "../controls/Choice";
+import { Button, Section } from "../controls/Choice";
 import { formatKind, siUnit } from "../controls/kinds";
 import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { Findings } from "../panes/body/Findings";
 import type { EquilibriumEvent } from "../protocol";
+import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { FinenessCheck } from "./FinenessCheck";
 
@@ -48,6 +49,14 @@ export function EquilibriumCard() {
   return (
     <Section title="Result">
       <div data-testid="equilibrium">
+        {found.missing && (
+          <p className="run-sentence is-doubtful" data-testid="missing">
+            {found.missing}{" "}
+            <Button testId="solve-again" onClick={() => send({ t: "rest" })}>
+              Solve again
+            </Button>
+          </p>
+        )}
         <Findings findings={found.warnings} />
         <dl className="facts">
           {facts.map(([name, value, estimate]) => (

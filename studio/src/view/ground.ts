@@ -77,8 +77,8 @@ export class Ground {
     this.mesh.material.uniforms.uInk!.value = themeColor("--grid");
   }
 
-  /** Lay the grid under the body at rest. */
-  lay(box: Box3): void {
+  /** Lay the grid under the body at rest: on its floor, where that is near. */
+  lay(box: Box3, floor: number | null = null): void {
     const size = box.getSize(new Vector3());
     const center = box.getCenter(new Vector3());
     const longest = Math.max(size.x, size.y, size.z);
@@ -87,7 +87,9 @@ export class Ground {
     uCell!.value = this.cell;
     (uCenter!.value as Vector2).set(center.x, center.y);
     uReach!.value = 4.5 * longest;
-    this.mesh.position.set(center.x, center.y, box.min.z - 1e-4 * longest);
+    const near = floor !== null && box.min.z - floor < longest;
+    const height = near ? floor : box.min.z;
+    this.mesh.position.set(center.x, center.y, height - 1e-4 * longest);
     this.mesh.scale.setScalar(9 * longest);
   }
 

@@ -88,9 +88,54 @@ export function placedBy(
   return out;
 }
 
+export type ObjectMesh = Mesh<BufferGeometry, ShaderMaterial>;
+
+/** Where a section cuts, and whether it does. */
+export interface Cut {
+  readonly plane: IUniform<Vector4>;
+  readonly on: IUniform<number>;
+}
+
+/** A surface as objects are drawn. */
+export function objectMesh(vertices: Float32Array, triangles: Uint32Array, cut: Cut): ObjectMesh {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(vertices, 3));
+  geometry.setIndex(new BufferAttribute(triangles, 1));
+  geometry.computeVertexNormals();
+  geometry.computeBoundingBox();
+  const material = new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    side: DoubleSide,
+    transparent: true,
+    uniforms: {
+      uPlane: cut.plane,
+      uSection: cut.on,
+      uOwn: { value: new Color(COLOR) },
+      uAlpha: { value: OPACITY },
+    },
+  });
+  material.forceSinglePass = false; // its far side first
+  const mesh = new Mesh(geometry, material);
+  mesh.renderOrder = 7;
+  mesh.frustumCulled = false;
+  return mesh;
+}
+
+/** A box with boxes of objects, as far as they do not dwarf the body in `box`. */
+export function around(box: Box3, objects: Iterable<Box3 | undefined>): Box3 {
+  const size = box.getSize(new Vector3());
+  const limits = box.clone().expandByScalar(AROUND * Math.max(size.x, size.y, size.z));
+  const all = box.clone();
+  for (const own of objects)
+    if (own?.intersectsBox(limits)) all.union(own.clone().intersect(limits));
+  return all;
+}
+
 interface Drawn {
   readonly object: BodyObject;
-  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  readonly mesh: ObjectMesh;
   readonly middle: Vector3;
 }
 
@@ -101,7 +146,7 @@ export class RigidObjects {
   /** One that is drawn some times as large, while it is sized. */
   sized: { readonly name: string; readonly factor: number } | null = null;
 
-  constructor(private readonly section: { plane: IUniform<Vector4>; on: IUniform<number> }) {}
+  constructor(private readonly section: Cut) {}
 
   build(objects: readonly BodyObject[]): void {
     // What the check reports of a body comes with the same objects again.
@@ -110,29 +155,9 @@ export class RigidObjects {
     this.clear();
     this.built = objects;
     this.drawn = objects.map((object) => {
-      const geometry = new BufferGeometry();
       const vertices = new Float32Array(bytesOf(object.vertices));
-      geometry.setAttribute("position", new BufferAttribute(vertices, 3));
-      geometry.setIndex(new BufferAttribute(new Uint32Array(bytesOf(object.triangles)), 1));
-      geometry.computeVertexNormals();
-      geometry.computeBoundingBox();
-      const material = new ShaderMaterial({
-        glslVersion: GLSL3,
-        vertexShader: VERTEX,
-        fragmentShader: FRAGMENT,
-        side: DoubleSide,
-        transparent: true,
-        uniforms: {
-          uPlane: this.section.plane,
-          uSection: this.section.on,
-          uOwn: { value: new Color(COLOR) },
-          uAlpha: { value: OPACITY },
-        },
-      });
-      material.forceSinglePass = false; // its far side first
-      const mesh = new Mesh(geometry, material);
-      mesh.renderOrder = 7;
-      mesh.frustumCulled = false;
+      const triangles = new Uint32Array(bytesOf(object.triangles));
+      const mesh = objectMesh(vertices, triangles, this.section);
       mesh.matrixAutoUpdate = false;
       this.group.add(mesh);
       return { object, mesh, middle: new Vector3() };
@@ -166,15 +191,10 @@ export class RigidObjects {
 
   /** A box with all of them, as far as they do not dwarf the body in `box`. */
   around(box: Box3): Box3 {
-    const size = box.getSize(new Vector3());
-    const reach = AROUND * Math.max(size.x, size.y, size.z);
-    const limits = box.clone().expandByScalar(reach);
-    const all = box.clone();
-    for (const { mesh } of this.drawn) {
-      const own = mesh.geometry.boundingBox?.clone().applyMatrix4(mesh.matrix);
-      if (own?.intersectsBox(limits)) all.union(own.intersect(limits));
-    }
-    return all;
+    const boxes = this.drawn.map(({ mesh }) =>
+      mesh.geometry.boundingBox?.clone().applyMatrix4(mesh.matrix),
+    );
+    return around(box, boxes);
   }
 
   labels(): Label[] {

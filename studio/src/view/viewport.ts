@@ -352,13 +352,15 @@ export class Viewport {
     const { body } = useStudio.getState();
     const mesh = this.shownMesh();
     if (!mesh || body?.topology !== mesh.topology.id) return;
-    if (body.objects.length + body.bodies.length === 0) return;
+    const alone = body.objects.length + body.bodies.length === 0;
+    if (alone && body.floor === null) return;
     const box = this.objects.around(mesh.box(1).clone());
-    this.painter.backdrop.ground.lay(box);
+    this.painter.backdrop.ground.lay(box, body.floor);
+    if (alone) return;
     this.rig.setReach(box.getSize(new Vector3()).length() || 0.1);
-    const alone = this.fitted === mesh.topology.id;
-    if (this.rig.steered || (!alone && this.rig.holds(box))) return;
-    this.rig.fit(box, alone);
+    const fitted = this.fitted === mesh.topology.id;
+    if (this.rig.steered || (!fitted && this.rig.holds(box))) return;
+    this.rig.fit(box, fitted);
     this.fitted = 0;
   }
 

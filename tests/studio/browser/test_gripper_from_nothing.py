@@ -238,6 +238,7 @@ def test_its_study_for_grip_force_and_what_is_taken_away(serving, open_tab, alon
         hand.actions += 1
         tab.find("document-name").get_by_text(re.compile("study-")).wait_for()
         tab.until("voxsoft.state === 'at-rest'", patience=SOLVED)
+        tab.find("legend").get_by_text("everywhere").wait_for(state="detached")
         tab.shot("study-3-best")
         hand.press(test_id="export")
         hand.choose("Unit of the surface", "mm")

@@ -15,6 +15,7 @@ import { BodyMesh } from "../body";
 import { CameraRig, type StandardView } from "../camera";
 import { Ground, Sky } from "../ground";
 import { Labels } from "../labels";
+import { around, type ObjectMesh, objectMesh } from "../objects";
 import { themeColor } from "../theme";
 import { commonRange, type Still } from "./fetchStill";
 import { type Mark, Marks } from "./marks";
@@ -39,6 +40,7 @@ export interface StillScene {
 interface Shown {
   readonly still: Still;
   readonly mesh: BodyMesh;
+  readonly objects: ObjectMesh | null;
   readonly scene: Scene;
 }
 
@@ -158,11 +160,18 @@ export class StillStage {
     const mesh = new BodyMesh(still.topology, uncut);
     const scene = new Scene();
     scene.add(mesh.group);
-    return { still, mesh, scene };
+    const { rest, triangles } = still.objects ?? {};
+    const cut = { plane: uncut.plane, on: uncut.section };
+    const objects = rest && triangles ? objectMesh(rest, triangles, cut) : null;
+    if (objects) scene.add(objects);
+    return { still, mesh, objects, scene };
   }
 
   private drop(index: number): void {
-    this.shown[index]?.mesh.dispose();
+    const gone = this.shown[index];
+    gone?.mesh.dispose();
+    gone?.objects?.geometry.dispose();
+    gone?.objects?.material.dispose();
     this.shown[index] = null;
   }
 
@@ -185,7 +194,7 @@ export class StillStage {
       if (!one) continue;
       // Whatever the field, the places are the same.
       if (!one.mesh.frame) one.mesh.setFrame(anyFrame(one.still));
-      box.union(one.mesh.box(1));
+      box.union(around(one.mesh.box(1), [one.objects?.geometry.boundingBox ?? undefined]));
     }
     for (const { measured } of this.scene?.marks ?? []) box.expandByPoint(new Vector3(...measured));
     return box;
