@@ -1034,6 +1034,17 @@ export interface BodyPlane {
 }
 
 /**
+ * Two things that are bonded, and points of the unloaded first one where they are, m.
+ *
+ * `strength` is the traction at which it lets go, Pa; null for one that does not.
+ */
+export interface BodyBond {
+  of: [string, string];
+  strength: number | null;
+  points: Triple[];
+}
+
+/**
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
@@ -1070,6 +1081,7 @@ export interface BodyEvent {
   smooth: boolean;
   bodies: BodyOfSeveral[];
   planes: BodyPlane[];
+  bonds: BodyBond[];
 }
 
 /**

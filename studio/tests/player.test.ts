@@ -22,6 +22,7 @@ const BODY: BodyEvent = {
     objects: [],
     bodies: [],
     planes: [],
+    bonds: [],
     not_live: "",
     touches: false,
     parts: [],

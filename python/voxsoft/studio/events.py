@@ -439,6 +439,17 @@ class BodyObject(Entry):
     triangles: str
 
 
+class BodyBond(Entry):
+    """Two things that are bonded, and points of the unloaded first one where they are, m.
+
+    `strength` is the traction at which it lets go, Pa; null for one that does not.
+    """
+
+    of: tuple[str, str]
+    strength: float | None
+    points: list[Triple]
+
+
 class BodyPart(Entry):
     """A part; `color` is a CSS color, and `body` the body that it is of where there are several."""
 
@@ -492,6 +503,7 @@ class Body(Event):
     smooth: bool = False
     bodies: list[BodyOfSeveral] = field(default_factory=list)
     planes: list[BodyPlane] = field(default_factory=list)
+    bonds: list[BodyBond] = field(default_factory=list)
 
 
 class GrabState(Entry):

@@ -28,6 +28,7 @@ import { Attachments } from "./attachments";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { type ColorRange, colorRange } from "./colorRange";
+import { ContactMarks } from "./contactMarks";
 import { withoutDust } from "./dust";
 import { faceAt, triangleAt } from "./face";
 import { FaceMark } from "./faceMark";
@@ -129,6 +130,7 @@ export class Viewport {
   private shapeGrips: { key: unknown; shape: string; grips: ShapeGrip[] } | null = null;
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
+  private readonly contactMarks = new ContactMarks();
   private readonly objects = new RigidObjects(this.section);
   private readonly several = new Several();
   private readonly ghosts = new Ghosts();
@@ -194,6 +196,7 @@ export class Viewport {
       this.section.group,
       this.fill.mesh,
       this.symbols.group,
+      this.contactMarks.group,
       this.objects.group,
       this.several.group,
       this.forces.group,
@@ -336,6 +339,8 @@ export class Viewport {
     const { body, hello } = useStudio.getState();
     if (body) this.symbols.build(body);
     else this.symbols.clear();
+    const design = useStudio.getState().document?.design ?? null;
+    this.contactMarks.build(body?.bonds ?? [], body?.bounds ?? null, design);
     this.attachments.build(body?.attachments ?? []);
     this.objects.build(body?.objects ?? []);
     // Only what may touch something has fields of contact.
@@ -651,6 +656,8 @@ export class Viewport {
     this.ghosts.place(view.shape, this.shaper.preview, this.pixels);
     this.faceMark.place(useFace.getState().face, this.surface, view.exaggeration);
     this.symbols.group.visible = view.symbols;
+    // They stay where the unloaded body has them.
+    this.contactMarks.group.visible = view.symbols && isAsBuilt(useStudio.getState().stat);
     this.attachments.group.visible = view.symbols;
   }
 
@@ -695,6 +702,10 @@ export class Viewport {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
       labels.push(...this.attachments.update(mesh, view.exaggeration, body.loads, stat));
       labels.push(...this.objects.labels());
+      if (this.contactMarks.group.visible) {
+        const design = useStudio.getState().document?.design ?? null;
+        labels.push(...this.contactMarks.labels(body, design, view.chosen));
+      }
       if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
@@ -802,7 +813,8 @@ export class Viewport {
     if (!topology || currentEngine()?.kind !== "server") return;
     const { x, y, z } = this.rig.toEye;
     const triangle = triangleAt(topology, hit.triangle, [x, y, z]);
-    chooseFace(triangle === null ? null : faceAt(topology, triangle));
+    const smooth = this.smooth?.vertices ?? null;
+    chooseFace(triangle === null ? null : faceAt(topology, triangle, smooth));
     this.request();
   }
 

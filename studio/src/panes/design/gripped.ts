@@ -1,6 +1,7 @@
 // Objects to grip: what is written of a new one, of another motion, and of its friction.
 import { parseQuantity } from "../../controls/units";
 import type { BodyEvent, Triple } from "../../protocol";
+import { pairsOf as allPairs } from "./pairs";
 import { type Surroundings, sideFor, spotFor, wayInto, written, writtenPlace } from "./placing";
 
 export type Table = Readonly<Record<string, unknown>>;
@@ -118,8 +119,7 @@ interface Pair {
   readonly friction?: number;
 }
 
-const pairsOf = (contact: unknown): readonly Pair[] =>
-  ((contact as { pairs?: readonly Pair[] } | undefined)?.pairs ?? []) as readonly Pair[];
+const pairsOf = (contact: unknown) => allPairs(contact) as unknown as readonly Pair[];
 
 const isPair = (pair: Pair, name: string, body: string) =>
   pair.of.length === 2 && pair.of.includes(name) && pair.of.includes(body);
