@@ -208,7 +208,9 @@ describe("what is bonded", () => {
     const pairs = [{ of: ["ball", "body"], kind: "bonded" }];
     const bonded = around(ABOVE, { ...near, source: { ...SOURCE, contact: { pairs } } });
     expect(byId(bondOffers(bonded))["thing-ball"]).toMatchObject({ disabled: true });
-    expect(byId(bondOffers(around(BELOW, { body: near.body })))["thing-ball"]?.label).toContain("12 mm away");
+    expect(byId(bondOffers(around(BELOW, { body: near.body })))["thing-ball"]?.label).toContain(
+      "12 mm away",
+    );
   });
 });
 

@@ -14,7 +14,8 @@ import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../
 import { edit, editAll } from "../panes/design/edits";
 import { resized } from "../panes/design/gripped";
 import { BODY, roomOf } from "../panes/design/several";
-import { type ShapeGrip, shapeGrips } from "../panes/design/shapeGrips";
+import { shapeGrips } from "../panes/design/shapeGrips";
+import type { ShapeGrip } from "../panes/design/shapeReader";
 import { typedChanges } from "../panes/design/typedNumber";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
@@ -121,13 +122,13 @@ export class Viewport {
       else for (const change of changes) edit(change.path, change.value);
     },
     typed: (grip, text) => {
-      const read = typedChanges(grip.number, text, useStudio.getState().document);
+      const read = typedChanges(grip, text, useStudio.getState().document);
       if ("problem" in read) return read.problem;
       editAll(read.changes);
       return null;
     },
   });
-  private shapeGrips: { key: unknown; shape: string; grips: ShapeGrip[] } | null = null;
+  private shapeGrips: { key: readonly unknown[]; grips: ShapeGrip[] } | null = null;
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
   private readonly contactMarks = new ContactMarks();
@@ -561,10 +562,11 @@ export class Viewport {
     const frame = view.shape !== null && this.asBuilt ? this.ghosts.frameOf(view.shape) : null;
     if (!frame || view.shape === null) return null;
     const { document } = useStudio.getState();
-    if (this.shapeGrips?.key !== document || this.shapeGrips?.shape !== view.shape) {
+    const key = [document, frame.box, view.shape];
+    if (!this.shapeGrips || key.some((one, i) => one !== this.shapeGrips?.key[i])) {
       const { source, design, parameters } = document!;
-      const grips = shapeGrips(view.shape, source ?? {}, design, parameters);
-      this.shapeGrips = { key: document, shape: view.shape, grips };
+      const grips = shapeGrips(view.shape, source ?? {}, design, parameters, frame.box);
+      this.shapeGrips = { key, grips };
     }
     return { ...frame, grips: this.shapeGrips.grips };
   }
