@@ -31,7 +31,7 @@ export function meetingOf(contact: unknown, a: string, b: string): Meeting {
 export function pairChanges(
   contact: unknown,
   of: readonly [string, string],
-  says: Readonly<{ kind?: PairKind; friction?: number }>,
+  says: Readonly<{ kind?: PairKind; friction?: number | string }>,
 ): Change[] {
   const pairs = pairsOf(contact);
   const value = { of: [...of], ...says };
