@@ -784,6 +784,7 @@ export interface HistoryUse {
  *
  * `path` is where it is written. Points can be moved; `words` is the text of the other ways.
  * `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+ * `lives` names the file of a body that it is written in, where it is changed; "" in the document.
  */
 export interface HistoryLine {
   path: (string | number)[];
@@ -796,6 +797,7 @@ export interface HistoryLine {
   repeat: number;
   low: number | null;
   high: number | null;
+  lives: string;
 }
 
 /**
@@ -1104,7 +1106,8 @@ export interface GrabState {
  *
  * `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
  * `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
- * for this body. Stored frames run from `first_frame` to `last_frame`.
+ * for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: what is shown
+ * was found without time, and `time` is that of what was played before.
  */
 export interface StatEvent {
   t: "stat";
@@ -1112,6 +1115,7 @@ export interface StatEvent {
   state: "at-rest" | "diverged" | "empty" | "meshing" | "past" | "paused" | "playing" | "solving";
   sentence: string;
   time: number;
+  untimed: boolean;
   step_ms: number;
   substeps: number;
   real_time_factor: number;
