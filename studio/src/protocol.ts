@@ -18,6 +18,15 @@ export const HEADER = 64;
 /** Bit of a triangle's tag that says that it faces a cavity. */
 export const CAVITY = 128;
 
+/** Endings of files of CAD programs. */
+export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp", ".fcstd", ".sldprt", ".sldasm", ".ipt", ".f3d", ".x_t", ".x_b", ".sat", ".3dm"] as const;
+
+/** Why they are not read. */
+export const CAD_WHAT = "is a CAD model, whose faces are formulas: only triangles are read";
+
+/** What to do with them. */
+export const CAD_HINT = "export the part as STL or OBJ in the CAD program, or open it in FreeCAD, choose the body and take File, Export";
+
 /** Speeds of time: simulated seconds for each of the clock. */
 export const PACES = [1.0, 0.5, 0.2, 0.1, 0.02, 0.005] as const;
 

@@ -61,7 +61,7 @@ def timeline_of(
         The design, and the document that it was read from. Histories of the designs of bodies come
         last: those of a file once, however many bodies are made of it.
     included
-        Whether it is that of a body, whose gravity and objects are left out.
+        Whether it is that of a body: its objects, and loads on everything, are left out.
     """
     places = [
         place for place in _places(design, source) if not (included and _left_out(design, place))
@@ -87,8 +87,10 @@ def timeline_of(
 def _left_out(design: Design, place: _Place) -> bool:
     """Whether a place of a design is without use where the design is that of a body."""
     section, index = place.path[:2]
-    is_gravity = section == "loads" and readings(design)[int(index)].quantity == "acceleration"
-    return section == "objects" or is_gravity
+    if section == "loads":  # those that act on everything are the outer design's
+        fields = type(design.loads[int(index)]).model_fields
+        return "region" not in fields and "cavity" not in fields
+    return section == "objects"
 
 
 def _of_bodies(design: Design) -> list[events.HistoryLine]:

@@ -2,7 +2,7 @@
 import { useRef } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
 import { bytesOf } from "../../engine/base64";
-import { sendFile } from "../../shell/DropZone";
+import { refusalOf, sendFile } from "../../shell/DropZone";
 import { toast, useStudio } from "../../store/studio";
 import { setView } from "../../store/view";
 import { CopyTools } from "./CopyTools";
@@ -124,6 +124,10 @@ async function readObject(
   around: () => Surroundings | null,
   add: (name: string, shape: Table) => void,
 ): Promise<void> {
+  if (!/\.stl$/i.test(file.name)) {
+    toast({ level: "warning", ...refusalOf(file.name) });
+    return;
+  }
   // Three's reader of STL is wanted by few: it is fetched when one is.
   const { STLLoader } = await import("three/examples/jsm/loaders/STLLoader.js");
   try {
