@@ -21,6 +21,15 @@ export const STILL_OBJECTS = 2;
 /** Bit of a triangle's tag that says that it faces a cavity. */
 export const CAVITY = 128;
 
+/** Endings of files of CAD programs. */
+export const CAD_SUFFIXES = [".step", ".stp", ".p21", ".iges", ".igs", ".brep", ".brp", ".fcstd", ".sldprt", ".sldasm", ".ipt", ".f3d", ".x_t", ".x_b", ".sat", ".3dm"] as const;
+
+/** Why they are not read. */
+export const CAD_WHAT = "is a CAD model, whose faces are formulas: only triangles are read";
+
+/** What to do with them. */
+export const CAD_HINT = "export the part as STL or OBJ in the CAD program, or open it in FreeCAD, choose the body and take File, Export";
+
 /** Speeds of time: simulated seconds for each of the clock. */
 export const PACES = [1.0, 0.5, 0.2, 0.1, 0.02, 0.005] as const;
 
@@ -787,6 +796,7 @@ export interface HistoryUse {
  *
  * `path` is where it is written. Points can be moved; `words` is the text of the other ways.
  * `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+ * `lives` names the file of a body that it is written in, where it is changed; "" in the document.
  */
 export interface HistoryLine {
   path: (string | number)[];
@@ -799,6 +809,7 @@ export interface HistoryLine {
   repeat: number;
   low: number | null;
   high: number | null;
+  lives: string;
 }
 
 /**
@@ -1037,6 +1048,17 @@ export interface BodyPlane {
 }
 
 /**
+ * Two things that are bonded, and points of the unloaded first one where they are, m.
+ *
+ * `strength` is the traction at which it lets go, Pa; null for one that does not.
+ */
+export interface BodyBond {
+  of: [string, string];
+  strength: number | null;
+  points: Triple[];
+}
+
+/**
  * A new body: its topology follows as a binary message with the same id.
  *
  * `mass` is null where the body cannot be solved. `smooth` says that the smooth surface of the
@@ -1075,6 +1097,7 @@ export interface BodyEvent {
   bodies: BodyOfSeveral[];
   planes: BodyPlane[];
   floor: number | null;
+  bonds: BodyBond[];
 }
 
 /**
@@ -1097,7 +1120,8 @@ export interface GrabState {
  *
  * `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
  * `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
- * for this body. Stored frames run from `first_frame` to `last_frame`.
+ * for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: what is shown
+ * was found without time, and `time` is that of what was played before.
  */
 export interface StatEvent {
   t: "stat";
@@ -1105,6 +1129,7 @@ export interface StatEvent {
   state: "at-rest" | "diverged" | "empty" | "meshing" | "past" | "paused" | "playing" | "solving";
   sentence: string;
   time: number;
+  untimed: boolean;
   step_ms: number;
   substeps: number;
   real_time_factor: number;

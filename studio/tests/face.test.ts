@@ -1,5 +1,4 @@
 import { describe, expect, it } from "vitest";
-import type { Topology } from "../src/engine/frames";
 import {
   coordinate,
   pointInside,
@@ -11,42 +10,7 @@ import {
 import { canHaveTendons, placeIn, tendonBetween, tendonOn } from "../src/panes/design/tendonHere";
 import type { Parameter } from "../src/protocol";
 import { type Face, faceAt, triangleAt } from "../src/view/face";
-
-/** Faces of boxes as two triangles each, outward; vertices of one box are shared. */
-function boxes(...all: { low: number[]; high: number[]; owner?: number }[]): Topology {
-  const rest: number[] = [];
-  const triangles: number[] = [];
-  const owners: number[] = [];
-  for (const { low, high, owner = 0 } of all) {
-    const base = rest.length / 3;
-    for (let i = 0; i < 8; i++)
-      for (let axis = 0; axis < 3; axis++)
-        rest.push(((i >> axis) & 1 ? high : low)[axis] as number);
-    const quads = [
-      [0, 4, 6, 2],
-      [1, 3, 7, 5],
-      [0, 1, 5, 4],
-      [2, 6, 7, 3],
-      [0, 2, 3, 1],
-      [4, 5, 7, 6],
-    ];
-    for (const [a, b, c, d] of quads as [number, number, number, number][]) {
-      triangles.push(...[a, b, c, a, c, d].map((one) => base + one));
-      owners.push(owner, owner);
-    }
-  }
-  return {
-    kind: "topology",
-    id: 7,
-    tets: false,
-    voxelSize: 0.005,
-    rest: new Float32Array(rest),
-    triangles: new Uint32Array(triangles),
-    edges: new Uint32Array(),
-    voxels: new Uint32Array(0),
-    owners: new Uint8Array(owners),
-  };
-}
+import { boxes } from "./boxes";
 
 const length = (name: string, value: number) => ({ name, value, kind: "length" }) as Parameter;
 
@@ -103,6 +67,16 @@ describe("what is written of it", () => {
     expect(regionOfFace(end, [length("length", 0.04)])).toEqual({ x: ["= length", "= length"] });
     expect(coordinate(-0.02, [length("width", 0.04)], 0.005)).toBe("= -width/2");
     expect(coordinate(0, [length("nothing", 0)], 0.005)).toBe(0);
+  });
+
+  it("does not take a parameter of another axis, which has the same value by chance", () => {
+    const source = { shapes: { it: { kind: "box", size: ["40 mm", "10 mm", "= height"] } } };
+    expect(regionOfFace(end, [length("height", 0.04)], source)).toEqual({ x: ["40 mm", "40 mm"] });
+    const other = { shapes: { it: { kind: "box", size: ["= 2*height", "10 mm", "1 mm"] } } };
+    expect(regionOfFace(end, [length("height", 0.04)], other)).toEqual({
+      x: ["= height", "= height"],
+    });
+    expect(regionOfFace(end, [length("h", 0.04)], other)).toEqual({ x: ["40 mm", "40 mm"] });
   });
 
   it("does not guess between two", () => {

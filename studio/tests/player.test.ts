@@ -23,6 +23,7 @@ const BODY: BodyEvent = {
     bodies: [],
     planes: [],
     floor: null,
+    bonds: [],
     not_live: "",
     touches: false,
     parts: [],

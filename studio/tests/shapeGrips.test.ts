@@ -1,6 +1,7 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
-import { type ShapeGrip, shapeGrips, snappedValue } from "../src/panes/design/shapeGrips";
+import { shapeGrips, snappedValue } from "../src/panes/design/shapeGrips";
+import type { ShapeGrip } from "../src/panes/design/shapeReader";
 import { typedChanges } from "../src/panes/design/typedNumber";
 import type { DocumentEvent, Parameter } from "../src/protocol";
 import { gripLabel, numberText, previewOf } from "../src/view/shapeHandle";
@@ -149,11 +150,7 @@ describe("a number that is typed", () => {
     parameters: PARAMETERS,
   };
   const typed = (text: string) =>
-    typedChanges(
-      gripsOf(BOX, SOLVED)["size-x"]!.number,
-      text,
-      document as unknown as DocumentEvent,
-    );
+    typedChanges(gripsOf(BOX, SOLVED)["size-x"]!, text, document as unknown as DocumentEvent);
 
   it("is in millimeters where it has no unit", () => {
     expect(typed("55")).toEqual({

@@ -76,6 +76,28 @@ def numbers(text, kind):
     return np.frombuffer(base64.b64decode(text), kind).reshape(-1, 3)
 
 
+def test_bonds_come_with_points_of_the_body_that_they_hold(pressed):
+    bonded = """pairs = [{ of = ["plate", "body"], kind = "bonded", strength = "20 kPa" }]"""
+    pressed.write_text(f"{PRESSED.replace('12.5 mm', '13 mm')}{bonded}\n")
+    [bond] = StudioBody.of(load(pressed), 1, 1).event().bonds
+    assert (bond.of, bond.strength) == (("body", "plate"), 20e3)
+    points = np.array(bond.points)
+    # The plate is 1 mm above the block, within half a voxel; its sides are not.
+    assert np.allclose(points[:, 2], 0.012)
+    assert len(points) > 10
+    assert points[:, :2].min() < 0.002
+    assert points[:, :2].max() > 0.010
+
+
+def test_what_is_not_bonded_or_out_of_reach_has_no_points(pressed):
+    assert StudioBody.of(load(pressed), 1, 1).event().bonds == []
+    bonded = """pairs = [{ of = ["body", "plate"], kind = "bonded" }]"""
+    pressed.write_text(f"{PRESSED.replace('12.5 mm', '18 mm')}{bonded}\n")
+    body = StudioBody.of(load(pressed), 1, 1)
+    assert body.refusal is not None
+    assert body.event().bonds == []
+
+
 def test_an_object_comes_as_it_is_drawn_in_figures(pressed):
     design = load(pressed)
     [sent] = StudioBody.of(design, 1, 1).event().objects

@@ -122,3 +122,85 @@ def test_a_text_with_errors_keeps_the_last_good_lines(document: DesignDocument) 
     document.replace(document.text.replace('"200 ms"', '"-1 s"'))
     assert not document.valid
     assert {line.title: line for line in document.event().histories} == before
+
+
+PAIR = """
+schema = "voxsoft/1"
+name = "pair"
+voxel_size = "5 mm"
+
+[[bodies]]
+name = "left"
+design = "finger.toml"
+
+[[bodies]]
+name = "right"
+design = "finger.toml"
+position = ["80 mm", 0, 0]
+"""
+
+
+def test_histories_in_the_file_of_bodies_come_once_with_the_file(tmp_path: Path) -> None:
+    (tmp_path / "gait.csv").write_text("time_s,left\n0,0\n1,1\n2,0\n")
+    (tmp_path / "finger.toml").write_text(TEXT)
+    found = lines(DesignDocument(PAIR, "pair.toml", folder=tmp_path))
+    assert {line.lives for line in found.values()} == {"finger.toml"}
+    ramp = found["ramp"]
+    assert ramp.path == ["bodies", 0, "design", "histories", "ramp"]
+    # Gravity is that of the outer design.
+    users = [use.title for use in ramp.used_by]
+    assert users == ["Tendon flexor of left", "Tendon flexor of right"]
+    assert "Gravity" not in found
+    assert ramp.factors == [0.0, 1.0]
+    # What is constant in a file gets its history there.
+    assert all(line.way != "none" for line in found.values())
+
+
+def test_a_body_that_sets_a_value_of_its_history_has_a_line_of_its_own(tmp_path: Path) -> None:
+    file = families.family_text("pneunet").replace(
+        "[parameters]", '[parameters]\nlate = { value = "1 s" }', 1
+    )
+    ramp = '\n[[loads]]\nkind = "force"\nregion = { z = [0, 0] }\nvalue = ["1 mN", 0, 0]\n'
+    ramp += 'history = { time = ["0 s", "= late"], factor = [0, 1] }\n'
+    (tmp_path / "finger.toml").write_text(file + ramp)
+    later = PAIR.replace("position =", 'set = { late = "2 s" }\nposition =')
+    document = DesignDocument(later, "pair.toml", folder=tmp_path)
+    assert document.design is not None, document.diagnostics
+    found = [line for line in document.event().histories if line.lives]
+    assert [(line.times[-1], line.used_by[0].title) for line in found] == [
+        (1.0, "Force of left"),
+        (2.0, "Force of right"),
+    ]
+
+
+def test_histories_of_a_design_in_the_document_are_changed_there(tmp_path: Path) -> None:
+    text = """
+schema = "voxsoft/1"
+name = "one"
+voxel_size = "5 mm"
+
+[[bodies]]
+name = "only"
+
+[bodies.design]
+name = "inner"
+voxel_size = "5 mm"
+shapes = { block = { kind = "box", size = ["20 mm", "10 mm", "10 mm"] } }
+parts = [{ shape = "block", material = "ecoflex-00-30" }]
+clamps = [{ region = { z = [0, 0] } }]
+
+[[bodies.design.loads]]
+kind = "force"
+region = { z = ["10 mm", "10 mm"] }
+value = ["1 mN", 0, 0]
+history = { time = ["0 s", "1 s"], factor = [0, 1] }
+"""
+    document = DesignDocument(text, "one.toml", folder=tmp_path)
+    assert document.design is not None, document.diagnostics
+    [line] = [line for line in document.event().histories if line.way == "points"]
+    assert line.lives == ""
+    assert line.path == ["bodies", 0, "design", "loads", 0, "history"]
+    moved = with_value(text, [*line.path, "factor"], [0, 0.5])
+    again = DesignDocument(moved, "one.toml", folder=tmp_path)
+    [line] = [line for line in again.event().histories if line.way == "points"]
+    assert line.factors == [0.0, 0.5]

@@ -204,7 +204,7 @@ def test_a_format_that_needs_a_package_names_it(tmp_path, monkeypatch):
 
 
 def test_an_unknown_suffix_and_a_wrong_unit_are_named(tmp_path):
-    path = tmp_path / "part.step"
+    path = tmp_path / "part.xyz"
     path.write_text("ISO-10303-21;")
     with pytest.raises(ShapeError, match=r"none of .*\.stl"):
         TriangleMesh(path=str(path), unit="mm").build()

@@ -15,6 +15,7 @@ from voxsoft.errors import DesignError, ErrorDetail, FileError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.toml_text import line_of, write_toml
 from voxsoft.records import steps_of
+from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 
 if TYPE_CHECKING:
     from voxsoft.design.resolution import Document
@@ -120,9 +121,11 @@ def read_text(path: FilePath) -> str:
     Raises
     ------
     FileError
-        A missing, unreadable, too large or binary file.
+        A missing, unreadable, too large or binary file, or a CAD model.
     """
     file = Path(path)
+    if is_cad_file(file.name):
+        raise FileError(str(path), WHAT, HINT)
     try:
         with file.open("rb") as stream:
             content = stream.read(LARGEST_FILE + 1)

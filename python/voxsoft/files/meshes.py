@@ -31,6 +31,7 @@ from voxsoft.files.atomic import replace_whole
 from voxsoft.files.mesh_file import MeshFile, vertex_set
 from voxsoft.mesh import Mesh
 from voxsoft.records import check_name
+from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.surface_files import known_suffixes
 
 
@@ -158,6 +159,8 @@ def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
     if suffix in _ONLY_SURFACES:
         hint = "enter it as a shape and voxelize it"
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
+    if is_cad_file(source.name):
+        raise FileError(str(source), WHAT, HINT)
     reader = _READERS.get(suffix, _read_other)
     if suffix not in known_suffixes():
         raise _unknown_format(source, [*_READERS, *sorted(set(known_suffixes()) - set(_READERS))])

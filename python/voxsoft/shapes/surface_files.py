@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.errors import ShapeError
+from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.faces import faces_of
 
 #: What trimesh reads too, and takes some dialects of that meshio does not.
@@ -51,8 +52,11 @@ def read_surface(path: Path) -> Surface:
     Raises
     ------
     ShapeError
-        For an unknown suffix, an unreadable file, NaN, and a file without faces or volume cells.
+        For a CAD model, an unknown suffix, an unreadable file, NaN, and a file without faces or
+        volume cells.
     """
+    if is_cad_file(path.name):
+        raise ShapeError("path", f"{path.name} {WHAT}", HINT)
     if not path.name.lower().endswith(known_suffixes()):
         what = f"{path.name} is none of {' '.join(known_suffixes())}"
         raise ShapeError("path", what, "export the part as STL, or convert it with meshio")

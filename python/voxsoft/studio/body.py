@@ -28,6 +28,7 @@ from voxsoft.simulation.choice import method_of
 from voxsoft.simulation.loads import read
 from voxsoft.simulation.touching import has_contact
 from voxsoft.studio import events
+from voxsoft.studio.bonds import bonds_of
 from voxsoft.studio.equilibrium import finding_of
 from voxsoft.studio.message import Triple
 from voxsoft.studio.objects import not_live, objects_of, touches_live
@@ -131,6 +132,11 @@ class StudioBody:
         """The rigid objects beside it."""
         return objects_of(self.setup)
 
+    @cached_property
+    def bonds(self) -> list[events.BodyBond]:
+        """Where surfaces are bonded."""
+        return bonds_of(self.setup)
+
     @property
     def not_live(self) -> str:
         """Why time does not run, or an empty text."""
@@ -208,6 +214,7 @@ class StudioBody:
                 events.BodyPlane(axis=plane.axis, at=plane.at) for plane in setup.design.symmetry
             ],
             floor=None if setup.design.floor is None else setup.design.floor.z,
+            bonds=self.bonds,
         )
 
     def _probes(self) -> list[events.BodyProbe]:

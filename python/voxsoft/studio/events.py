@@ -229,6 +229,7 @@ class HistoryLine(Entry):
 
     `path` is where it is written. Points can be moved; `words` is the text of the other ways.
     `times` in s and `factors` are one cycle of `repeat`; factors stay between `low` and `high`.
+    `lives` names the file of a body that it is written in, where it is changed; "" in the document.
     """
 
     path: list[str | int]
@@ -241,6 +242,7 @@ class HistoryLine(Entry):
     repeat: int = 1
     low: float | None = None
     high: float | None = None
+    lives: str = ""
 
 
 class Document(Event):
@@ -439,6 +441,17 @@ class BodyObject(Entry):
     triangles: str
 
 
+class BodyBond(Entry):
+    """Two things that are bonded, and points of the unloaded first one where they are, m.
+
+    `strength` is the traction at which it lets go, Pa; null for one that does not.
+    """
+
+    of: tuple[str, str]
+    strength: float | None
+    points: list[Triple]
+
+
 class BodyPart(Entry):
     """A part; `color` is a CSS color, and `body` the body that it is of where there are several."""
 
@@ -494,6 +507,7 @@ class Body(Event):
     bodies: list[BodyOfSeveral] = field(default_factory=list)
     planes: list[BodyPlane] = field(default_factory=list)
     floor: float | None = None
+    bonds: list[BodyBond] = field(default_factory=list)
 
 
 class GrabState(Entry):
@@ -516,13 +530,15 @@ class Stat(Event):
 
     `real_time_factor` is simulated over wall-clock time, and `pace` what it shall be at most;
     `pace_chosen` is what the user chose, or null, and `pace_choices` how often there was a choice
-    for this body. Stored frames run from `first_frame` to `last_frame`.
+    for this body. Stored frames run from `first_frame` to `last_frame`. `untimed`: what is shown
+    was found without time, and `time` is that of what was played before.
     """
 
     topology: int
     state: SimulationState
     sentence: str
     time: float = 0.0
+    untimed: bool = False
     step_ms: float = 0.0
     substeps: int = 0
     real_time_factor: float = 0.0

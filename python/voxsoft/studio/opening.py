@@ -11,6 +11,7 @@ from voxsoft.design.resolution import Document as PlainDocument
 from voxsoft.errors import DesignError, FileError, VoxSoftError
 from voxsoft.files.toml_edits import with_value
 from voxsoft.jobs import load
+from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.studio.document import DesignDocument
 from voxsoft.studio.studying import design_text_of, stored_trial
 from voxsoft.studio.uploads import MESHES, design_of_array, design_of_mesh
@@ -82,6 +83,8 @@ def document_at(path: Path, home: Path) -> DesignDocument:
         is_folder = path.is_dir()
     except OSError as error:
         raise FileError(str(path)[:80], f"cannot be read: {error.strerror}") from None
+    if not is_folder and is_cad_file(path.name):
+        raise FileError(str(path)[:200], WHAT, HINT)
     if not is_folder and path.suffix.lower() != ".toml":
         hint = 'name a file that ends in ".toml", or a run folder; drop meshes on the page'
         raise FileError(str(path)[:200], "is no design file", hint)

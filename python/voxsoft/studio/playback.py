@@ -256,6 +256,13 @@ class Playback:
         return "empty" if self.body is None else "paused"
 
     @property
+    def untimed(self) -> bool:
+        """Whether what is shown was found without time: an equilibrium, not the end of a motion."""
+        if self.result is None or self.state == "past":
+            return False
+        return len(film_of(self.result)[0]) == 0
+
+    @property
     def frame(self) -> int:
         """The number of the frame that is looked at."""
         return 0 if self.player is None else self.player.frame
@@ -317,7 +324,7 @@ class Playback:
             pulls=[] if shown is None else [pull for pull in shown.grabs if pull.object is None],
             status=_KEPT.get(self.state, "not-at-rest"),
             sentence=self._standing(0.0 if shown is None else shown.time),
-            time=0.0 if shown is None else shown.time,
+            time=0.0 if shown is None or self.untimed else shown.time,
             moment=None if shown is None else self._moment_of(shown.frame),
         )
 
@@ -330,7 +337,7 @@ class Playback:
     def _standing(self, time: float) -> str:
         """How the shown state came about, in words."""
         if self.state == "at-rest":
-            return f"at rest after {time_text(time)}"
+            return "at rest" if self.untimed else f"at rest after {time_text(time)}"
         if self.player is None or self.player.unloaded:
             return "the unloaded shape"
         return f"as it stood at {time_text(time)}, not at rest"
@@ -338,7 +345,7 @@ class Playback:
     def complete(self, event: events.Event) -> events.Event:
         """Add to a statistic what the player does not know of."""
         if isinstance(event, events.Stat):
-            event.solver = self.method
+            event.solver, event.untimed = self.method, self.untimed
             if self.doing is not None and not self.moving:
                 event.state, event.sentence = self.doing, self.sentence
                 event.progress = self.progress

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import PurePath
 from typing import Any, Final
 
 from voxsoft.design import Design, History, Tendon
@@ -49,16 +50,22 @@ class _Place:
     high: float | None = None
 
 
-def timeline_of(design: Design, source: Source) -> list[events.HistoryLine]:
+def timeline_of(
+    design: Design, source: Source, *, included: bool = False
+) -> list[events.HistoryLine]:
     """All histories of a design, named ones first, and the places that have none yet.
 
     Parameters
     ----------
     design, source
-        The design, and the document that it was read from. Histories of the designs of bodies are
-        those of other files, and left out.
+        The design, and the document that it was read from. Histories of the designs of bodies come
+        last: those of a file once, however many bodies are made of it.
+    included
+        Whether it is that of a body: its objects, and loads on everything, are left out.
     """
-    places = list(_places(design, source))
+    places = [
+        place for place in _places(design, source) if not (included and _left_out(design, place))
+    ]
     named: dict[str, list[_Place]] = {name: [] for name in design.histories}
     alone: list[events.HistoryLine] = []
     for place in places:
@@ -73,7 +80,43 @@ def timeline_of(design: Design, source: Source) -> list[events.HistoryLine]:
         _line(["histories", name], name, history, _at(source, ["histories", name]), named[name])
         for name, history in design.histories.items()
     ]
-    return [*lines, *sorted(alone, key=lambda line: line.way == "none")]
+    inner = _of_bodies(design)
+    return [*lines, *sorted([*alone, *inner], key=lambda line: line.way == "none")]
+
+
+def _left_out(design: Design, place: _Place) -> bool:
+    """Whether a place of a design is without use where the design is that of a body."""
+    section, index = place.path[:2]
+    if section == "loads":  # those that act on everything are the outer design's
+        fields = type(design.loads[int(index)]).model_fields
+        return "region" not in fields and "cavity" not in fields
+    return section == "objects"
+
+
+def _of_bodies(design: Design) -> list[events.HistoryLine]:
+    """The histories in the designs of bodies, each with the bodies that follow it."""
+    found: dict[object, events.HistoryLine] = {}
+    for index, body in enumerate(design.bodies):
+        if body.included is None:
+            continue
+        is_file = isinstance(body.design, str)
+        file = PurePath(str(body.design)).name if is_file else ""
+        for line in timeline_of(body.included, body.included.document, included=True):
+            if is_file and line.way == "none":
+                continue  # it can get no history here
+            line.used_by = [
+                events.HistoryUse(title=f"{use.title} of {body.name}", amount=use.amount)
+                for use in line.used_by
+            ]
+            # What stands in a table of the document is changed there.
+            line.path = ["bodies", index, "design", *line.path]
+            line.lives = line.lives or file
+            where = (file, *line.path[3:]) if is_file else tuple(line.path)
+            key = (where, tuple(line.times), tuple(line.factors))
+            known = found.setdefault(key, line)
+            if known is not line:
+                known.used_by += line.used_by
+    return list(found.values())
 
 
 def _line(

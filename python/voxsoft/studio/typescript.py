@@ -17,6 +17,7 @@ from typing import Any, Final
 from msgspec import inspect as types
 
 from voxsoft.shapes import KINDS as SHAPES
+from voxsoft.shapes.cad_files import CAD_SUFFIXES, HINT, WHAT
 from voxsoft.studio.commands import AnyCommand, Command
 from voxsoft.studio.events import AnyEvent, Event
 from voxsoft.studio.wire import (
@@ -73,6 +74,9 @@ def typescript() -> str:
     blocks = [
         _HEAD,
         *(_constant(name, value, about) for name, (value, about) in _NUMBERS.items()),
+        _constant("CAD_SUFFIXES", CAD_SUFFIXES, "Endings of files of CAD programs."),
+        _constant("CAD_WHAT", WHAT, "Why they are not read."),
+        _constant("CAD_HINT", HINT, "What to do with them."),
         _constant("PACES", PACES, "Speeds of time: simulated seconds for each of the clock."),
         *(_codes(each) for each in (CloseCode, MessageKind, FrameFlag, TopologyFlag)),
         _constant("KINDS", _kinds(), "Kinds: SI unit, unit of bare numbers, exponents."),

@@ -17,6 +17,7 @@ from voxsoft.files import write_mesh
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.shapes import TriangleMesh
+from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Voxels
 
@@ -46,6 +47,8 @@ def safe_name(name: str) -> str:
     plain = name.replace("\\", "/").rpartition("/")[2]
     stem, _, suffix = plain.rpartition(".")
     suffix = f".{suffix.lower()}"
+    if is_cad_file(plain):
+        raise FileError(plain[:80], WHAT, HINT)
     if suffix not in KINDS:
         raise FileError(
             plain[:80] or "upload", "is no kind of file that is read here", f"use {' '.join(KINDS)}"

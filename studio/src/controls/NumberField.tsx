@@ -1,4 +1,11 @@
-import { type PointerEvent as ReactPointerEvent, useEffect, useId, useRef, useState } from "react";
+import {
+  type ReactNode,
+  type PointerEvent as ReactPointerEvent,
+  useEffect,
+  useId,
+  useRef,
+  useState,
+} from "react";
 import { PLAIN } from "./dimension";
 import { type Amounts, writtenFormula } from "./formula";
 import { factorOf, formatNumber, parseQuantity, shownUnit, unitText } from "./units";
@@ -24,6 +31,8 @@ export interface NumberFieldProps {
   disabled?: boolean;
   problem?: string | undefined;
   title?: string;
+  /** What is done with the value by a press within the field, while the pointer or the keyboard is there. */
+  tool?: ReactNode;
   /** Called with SI values; `settled` is false while a slider or label is being dragged. */
   onChange(value: number, settled: boolean): void;
 }
@@ -155,6 +164,7 @@ export function NumberField(props: NumberFieldProps) {
               event.stopPropagation();
             }}
           />
+          {props.tool}
         </span>
       </div>
       {note && <span className="field-note">{note}</span>}

@@ -1,5 +1,6 @@
 import { useEffect, useRef } from "react";
 import { Button, Progress } from "../controls/Choice";
+import type { StatEvent } from "../protocol";
 import { stepFrames, togglePlay } from "../shell/actions";
 import { Icon } from "../shell/icons";
 import { currentEngine, send } from "../store/session";
@@ -135,10 +136,15 @@ export function Transport() {
         <i /> LIVE
       </button>
       <output className="clock" data-testid="clock">
-        {stat?.state === "at-rest" && stat.time === 0
-          ? "at rest"
-          : `${(stat?.time ?? 0).toFixed(3)} s`}
+        {clockText(stat)}
       </output>
     </div>
   );
+}
+
+/** The time of what is shown; what was found without time has none. */
+export function clockText(stat: Pick<StatEvent, "state" | "time" | "untimed"> | null): string {
+  const resting = stat?.state === "at-rest";
+  if (stat?.untimed || (resting && stat?.time === 0)) return resting ? "at rest" : "no time";
+  return `${(stat?.time ?? 0).toFixed(3)} s`;
 }

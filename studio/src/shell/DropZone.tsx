@@ -1,5 +1,5 @@
 import { useEffect, useState } from "react";
-import { LARGEST_UPLOAD } from "../protocol";
+import { CAD_HINT, CAD_SUFFIXES, CAD_WHAT, LARGEST_UPLOAD } from "../protocol";
 import { toast } from "../store/studio";
 import { openDocument } from "./actions";
 
@@ -9,15 +9,21 @@ const TAKEN = [".toml", ".stl", ".obj", ".npy", ".zip"];
 export async function upload(file: File): Promise<void> {
   const kind = file.name.slice(file.name.lastIndexOf(".")).toLowerCase();
   if (!TAKEN.includes(kind)) {
-    toast({
-      level: "warning",
-      what: `${file.name} is nothing that can be opened`,
-      hint: `Drop ${TAKEN.join(", ")}; a .csv of measurements goes on the Calibrate pane.`,
-    });
+    toast({ level: "warning", ...refusalOf(file.name) });
     return;
   }
   const sent = await sendFile(file);
   if (sent) openDocument({ t: "open", what: "upload", name: sent.name });
+}
+
+/** Why a file of this name is not opened, and what to try. */
+export function refusalOf(name: string): { readonly what: string; readonly hint: string } {
+  if (CAD_SUFFIXES.some((suffix) => name.toLowerCase().endsWith(suffix)))
+    return { what: `${name} ${CAD_WHAT}`, hint: `Try: ${CAD_HINT}.` };
+  return {
+    what: `${name} is nothing that can be opened`,
+    hint: `Drop ${TAKEN.join(", ")}; a .csv of measurements goes on the Calibrate pane.`,
+  };
 }
 
 /** Send a file to the server; gives what it is called there and where it is, or null where it was not taken. */

@@ -11,10 +11,14 @@ interface TendonBegun {
   readonly design: string;
 }
 
-export const useFace = create<{ face: Face | null; tendon: TendonBegun | null }>(() => ({
-  face: null,
-  tendon: null,
-}));
+interface Pressed {
+  readonly face: Face | null;
+  readonly tendon: TendonBegun | null;
+  /** Whether it was pressed by a key: then the keyboard goes on in the card of the place. */
+  readonly byKey: boolean;
+}
+
+export const useFace = create<Pressed>(() => ({ face: null, tendon: null, byKey: false }));
 
 export function chooseFace(face: Face | null): void {
   useFace.setState({ face });

@@ -12,7 +12,9 @@ import type { BodyEvent, DocumentEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
 import { toast, useStudio } from "../store/studio";
 import { setView } from "../store/view";
+import { ContactHere } from "./ContactHere";
 import type { Face } from "./face";
+import { HereSelect } from "./HereSelect";
 import { viewport } from "./instance";
 import { TendonHere } from "./TendonHere";
 
@@ -27,7 +29,7 @@ export function FaceCard() {
     const name = body.cavities[face.cavity]?.name ?? "";
     return <Verbs title={`Chamber ${name}`} verbs={verbsIn(face, name, source)} />;
   }
-  const plane = regionOfFace(face, document.parameters);
+  const plane = regionOfFace(face, document.parameters, source);
   const region = plane === null || around ? regionAround(face) : plane;
   return (
     <>
@@ -56,6 +58,12 @@ export function FaceCard() {
           run={(label, changes) => run({ label, changes })}
         />
         <Gripping face={face} document={document} body={body} />
+        <ContactHere
+          face={face}
+          document={document}
+          body={body}
+          run={({ done, changes }) => run({ label: done, changes })}
+        />
       </Verbs>
     </>
   );
@@ -90,21 +98,14 @@ function Gripping(props: { face: Face; document: DocumentEvent; body: BodyEvent 
     setView({ chosen: name });
   };
   return (
-    <select
-      className="select"
-      aria-label="An object to grip here"
+    <HereSelect
+      label="An object to grip here"
       title="An object to grip: free, between this face and what is opposite"
-      data-testid="here-grip"
-      value=""
-      onChange={(event) => add(event.target.value as Primitive)}
-    >
-      <option value="">To grip…</option>
-      {PRIMITIVES.map((kind) => (
-        <option key={kind} value={kind}>
-          {nameOf(kind)}
-        </option>
-      ))}
-    </select>
+      first="To grip…"
+      testId="here-grip"
+      options={PRIMITIVES.map((kind) => ({ value: kind, label: nameOf(kind) }))}
+      onChoose={(kind) => add(kind as Primitive)}
+    />
   );
 }
 
@@ -131,6 +132,8 @@ function run(verb: Pick<Verb, "label" | "changes" | "grows">): void {
   editAll(verb.changes);
   chooseFace(null);
   useStudio.setState({ picked: null });
+  // The card is gone: keys go on in the picture.
+  viewport().renderer.domElement.focus({ preventScroll: true });
   toast({
     level: "good",
     what: `${verb.label}: added to the design`,

@@ -4,7 +4,7 @@ import { cleaned, formatNumber, formatQuantity } from "../controls/units";
 import { EMPTY } from "../panes/design/empty";
 import { Transport } from "../run/Transport";
 import { openDocument } from "../shell/actions";
-import { chooseFace } from "../store/face";
+import { chooseFace, useFace } from "../store/face";
 import { usePage } from "../store/page";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
@@ -161,6 +161,12 @@ function Hover() {
 function Picked() {
   const picked = useStudio((state) => state.picked);
   const fields = useStudio((state) => state.hello?.fields);
+  const facts = useRef<HTMLDivElement>(null);
+  useEffect(() => {
+    if (!picked || !useFace.getState().byKey) return;
+    useFace.setState({ byKey: false });
+    facts.current?.querySelector<HTMLElement>("select, button")?.focus();
+  }, [picked]);
   if (!picked) return null;
   const place = (point: readonly number[]) =>
     point.map((x) => formatNumber(x * 1000, 4)).join(", ");
@@ -180,7 +186,7 @@ function Picked() {
           ×
         </Button>
       </header>
-      <div className="picked-facts">
+      <div className="picked-facts" ref={facts}>
         <FaceCard />
         <dl className="facts">
           <div>

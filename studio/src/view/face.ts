@@ -3,6 +3,7 @@ import { Ray, Vector3 } from "three";
 import type { Topology } from "../engine/frames";
 import { CAVITY } from "../protocol";
 import { pick } from "./pick";
+import { type Seat, seatOf } from "./seat";
 
 export type Axis = 0 | 1 | 2;
 type Triple = readonly [number, number, number];
@@ -31,6 +32,8 @@ export interface Face {
   readonly point: Triple;
   /** How far it is from there to what lies straight opposite, m; null where nothing does. */
   readonly opposite: number | null;
+  /** Where a plate lies on it; null where it is oblique. */
+  readonly seat: Seat | null;
   readonly voxelSize: number;
 }
 
@@ -70,8 +73,16 @@ export function triangleAt(
   return best;
 }
 
-/** All of the plane around a triangle that edges join to it. */
-export function faceAt(topology: Topology, triangle: number): Face {
+/**
+ * All of the plane around a triangle that edges join to it.
+ *
+ * `smooth` are the vertices of the smooth surface, x, y, z of each in m, where there is one.
+ */
+export function faceAt(
+  topology: Topology,
+  triangle: number,
+  smooth: ArrayLike<number> | null = null,
+): Face {
   const { triangles, rest, owners, voxelSize } = topology;
   const normal = normalOf(topology, triangle);
   const inside = (owners[triangle]! & CAVITY) !== 0;
@@ -125,13 +136,11 @@ export function faceAt(topology: Topology, triangle: number): Face {
   const from = new Vector3(...(point as [number, number, number]));
   const way = new Vector3(...normal);
   const hit = pick(new Ray(from.addScaledVector(way, off), way), rest, triangles);
+  const seat = axis === null ? null : seatOf({ low, high, normal, voxelSize }, axis, rest, smooth);
   return {
     topology: topology.id,
     triangles: vertices,
-    low,
-    high,
-    normal,
-    axis,
+    ...{ low, high, normal, axis, seat },
     shared,
     cavity: inside ? owners[triangle]! & ~CAVITY : null,
     point: point as unknown as Triple,

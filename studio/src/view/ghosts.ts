@@ -220,13 +220,13 @@ export class Ghosts {
     return new Box3(new Vector3(...low), new Vector3(...high)).applyMatrix4(found.group.matrix);
   }
 
-  /** The frame that a shape is in, and its middle there, m. */
-  frameOf(name: string): { pose: Matrix4; middle: Vector3 } | null {
+  /** The frame that a shape is in, its box there and the middle of that, m. */
+  frameOf(name: string): { pose: Matrix4; middle: Vector3; box: Ghost } | null {
     const found = this.drawn.find((one) => one.ghost.name === name);
     if (!found) return null;
     const { low, high } = found.ghost;
     const middle = new Vector3(...low).add(new Vector3(...high)).multiplyScalar(0.5);
-    return { pose: found.pose, middle };
+    return { pose: found.pose, middle, box: found.ghost };
   }
 
   get names(): string[] {

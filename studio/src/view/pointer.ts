@@ -1,4 +1,5 @@
 // What the mouse does: turn, move, zoom, pull, pick, measure.
+import { useFace } from "../store/face";
 import { send } from "../store/session";
 import { useStudio } from "../store/studio";
 import { setView, useView } from "../store/view";
@@ -87,6 +88,17 @@ export function listen(view: Viewport): void {
     if (!gesture) view.hoverOver(null);
   });
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+
+  // Without a mouse the middle of the picture is pressed.
+  canvas.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter") return;
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    const hit = view.hit(left + width / 2, top + height / 2);
+    if (!hit) return;
+    event.preventDefault();
+    useFace.setState({ byKey: true });
+    clicked(view, hit);
+  });
 
   canvas.addEventListener(
     "wheel",

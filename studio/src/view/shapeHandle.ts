@@ -1,8 +1,9 @@
 // The grips that move and size the chosen shape: dragged, moved by keys, or typed as numbers. Each
 // changes one number of the design, or the parameter that this number is.
 import { Matrix3, Matrix4, Vector3 } from "three";
-import { formatQuantity } from "../controls/units";
-import { type ShapeGrip, snappedValue } from "../panes/design/shapeGrips";
+import { NUMBERS } from "../panes/design/gripKinds";
+import { snappedValue } from "../panes/design/shapeGrips";
+import type { ShapeGrip } from "../panes/design/shapeReader";
 import type { CameraRig } from "./camera";
 import { drags, GRIP, grip as gripButton, keys, put } from "./grips";
 import type { Rect } from "./labelLayout";
@@ -14,9 +15,12 @@ const NEAR = 44;
 const APART = 30;
 /** An axis that points at the eye has no way in the picture: its cosine to the picture is less than this. */
 const LEAST_WAY = 0.2;
-/** Drags end at whole steps, m; with Shift at fine ones. Keys go one step. */
-const STEP = 5e-4;
-const FINE_STEP = 1e-4;
+/** Radius of the ring of an angle, pixels, and the corners that it is drawn with. */
+const RING = 112;
+const CORNERS = 48;
+/** Where on it its grip may stand, from where it is seen best, radians: clear of other grips. */
+const TURNS = [0, -0.5, 0.5, -1, 1];
+/** Keys move a shape by this, m; all else they change by the step of its drags. */
 const KEY_MOVE = 1e-3;
 /** A shape that was dropped comes anew within this time, ms, or it does not. */
 const LONGEST_WAIT = 3000;
@@ -44,9 +48,14 @@ export interface ShapeEdits {
 /** From a shape as it is to how it is drawn while a number of it is another, in its own frame. */
 export function previewOf(grip: ShapeGrip, value: number, out = new Matrix4()): Matrix4 {
   out.identity();
-  if (grip.moves && "along" in grip.way) {
-    const by = value - grip.value;
-    return out.makeTranslation(new Vector3(...grip.way.along).multiplyScalar(by));
+  const by = value - grip.value;
+  const moves = grip.shift ?? (grip.moves && "along" in grip.way ? grip.way.along : null);
+  if (moves) return out.makeTranslation(new Vector3(...moves).multiplyScalar(by));
+  if ("about" in grip.way) {
+    if (grip.stretch !== "turn") return out;
+    const center = new Vector3(...grip.from);
+    out.makeRotationAxis(new Vector3(...grip.way.about), by);
+    return out.setPosition(center.clone().sub(center.clone().applyMatrix4(out)));
   }
   if (grip.stretch === "none" || grip.value <= 0) return out;
   const more = value / grip.value - 1;
@@ -72,17 +81,26 @@ export function previewOf(grip: ShapeGrip, value: number, out = new Matrix4()): 
 }
 
 /** The number beside a grip, with the parameter that it is. */
-export function numberText({ sign, number }: ShapeGrip, value: number): string {
-  const amount = formatQuantity(value, "m", 5);
+export function numberText({ sign, number, kind }: ShapeGrip, value: number): string {
+  const amount = NUMBERS[kind].text(value);
   const own = number.parameter ? `${number.parameter} = ${amount}` : amount;
   return sign ? `${sign} ${own}` : own;
 }
 
 /** What a grip does, for those who do not see it. */
-export function gripLabel({ label, number }: ShapeGrip, value: number): string {
-  if (number.blocked) return `${label}: ${formatQuantity(value, "m", 5)} ${number.blocked}`;
+export function gripLabel({ label, number, kind }: ShapeGrip, value: number): string {
+  const amount = NUMBERS[kind].text(value);
+  if (number.blocked) return `${label}: ${amount} ${number.blocked}`;
   const through = number.parameter ? ` It changes the parameter ${number.parameter}.` : "";
-  return `${label}: ${formatQuantity(value, "m", 5)}. Drag, arrow keys, or Enter to type.${through}`;
+  return `${label}: ${amount}. Drag, arrow keys, or Enter to type.${through}`;
+}
+
+/** Where on the ring about an axis a grip stands, that it is seen best: on the side of the eye. */
+export function frontOf(axis: Vector3, toEye: Vector3, right: Vector3): Vector3 {
+  const front = toEye.clone().addScaledVector(axis, -axis.dot(toEye));
+  // Seen along its axis a ring is the same to all sides.
+  if (front.length() < LEAST_WAY) front.copy(right).addScaledVector(axis, -axis.dot(right));
+  return front.normalize();
 }
 
 interface Item {
@@ -90,9 +108,13 @@ interface Item {
   readonly button: HTMLButtonElement;
   readonly number: HTMLButtonElement;
   readonly line: SVGLineElement;
-  /** The way of the grip in the picture, and pixels for each meter. */
+  /** The ring of an angle. */
+  readonly ring: SVGPathElement | null;
+  /** The way of the grip in the picture, and pixels for each meter, or radian. */
   way: { x: number; y: number; pixels: number };
   input: HTMLInputElement | null;
+  /** Where on its ring it stands, from where it would be seen best, radians. */
+  turn: number;
 }
 
 interface Tip {
@@ -105,6 +127,7 @@ export class ShapeHandle {
   /** What of the picture its grips and numbers take. */
   grips: readonly Rect[] = [];
   private readonly drawing = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  private readonly outline = document.createElementNS("http://www.w3.org/2000/svg", "path");
   private readonly items = new Map<string, Item>();
   private held: { grip: ShapeGrip; value: number } | null = null;
   /** What was dropped is drawn as it was until the shape comes anew. */
@@ -116,6 +139,8 @@ export class ShapeHandle {
   ) {
     this.element.className = "section-handle shape-handle";
     this.element.hidden = true;
+    this.outline.classList.add("outline");
+    this.drawing.append(this.outline);
     this.element.append(this.drawing);
   }
 
@@ -144,16 +169,20 @@ export class ShapeHandle {
       const at = point.clone().project(this.rig.camera);
       return { x: ((at.x + 1) / 2) * width, y: ((1 - at.y) / 2) * height };
     };
+    this.outline.setAttribute("d", this.outlineOf(edited, page));
     const middle = edited.middle.clone();
     if (this.preview) middle.applyMatrix4(this.preview);
     const center = page(middle.applyMatrix4(edited.pose));
-    const sizes = edited.grips.filter((grip) => !grip.moves);
+    const sizes = edited.grips.filter((grip) => !grip.moves && !("about" in grip.way));
+    const moves = edited.grips.filter((grip) => grip.moves);
     const taken = new Map<string, number>();
     const rects: Rect[] = [];
-    for (const grip of [...sizes, ...edited.grips.filter((one) => one.moves)]) {
+    for (const grip of [...sizes, ...moves]) {
       const item = this.itemOf(grip);
       const along = this.wayOf(grip, edited.pose);
-      const from = grip.moves ? middle : this.endOf(item, along, edited.pose);
+      const from = grip.moves
+        ? this.standOf(item, along, middle, edited.pose)
+        : this.endOf(item, along, edited.pose);
       const start = page(from);
       const next = page(from.clone().addScaledVector(along, NEAR / this.rig.pixelsPerMeter));
       const [dx, dy] = [next.x - start.x, next.y - start.y];
@@ -169,12 +198,81 @@ export class ShapeHandle {
       const other = taken.get(axis);
       if (grip.moves && other !== undefined && Math.abs(other - FAR) < APART)
         beyond = other + APART + 4;
+      // Two numbers that end at one place stand one behind the other.
+      if (!grip.moves && other !== undefined && Math.abs(out + beyond - other) < APART)
+        beyond = other + APART - out;
       if (!grip.moves) taken.set(axis, out + beyond);
-      const tip = { x: start.x + x * beyond, y: start.y + y * beyond };
+      const beside = { x: start.x + x * beyond, y: start.y + y * beyond };
+      const tip = grip.moves ? beside : within(center, beside, width, height);
       this.draw(item, start, tip);
       rects.push(...rectsOf(tip, item.number.textContent ?? ""));
     }
+    for (const grip of edited.grips.filter((one) => "about" in one.way)) {
+      const item = this.itemOf(grip);
+      const tip = this.turn(item, edited.pose, page, rects);
+      if (tip) rects.push(...rectsOf(tip, item.number.textContent ?? ""));
+    }
     this.grips = rects;
+  }
+
+  // The ring of an angle about its axis, and its grip on it; null where it has no way in the picture.
+  private turn(
+    item: Item,
+    pose: Matrix4,
+    page: (point: Vector3) => Tip,
+    taken: readonly Rect[],
+  ): Tip | null {
+    const { grip } = item;
+    if (!("about" in grip.way)) return null;
+    const axis = new Vector3(...grip.way.about).applyMatrix3(new Matrix3().setFromMatrix4(pose));
+    const center = new Vector3(...grip.from).applyMatrix4(pose);
+    const right = new Vector3(1, 0, 0).applyQuaternion(this.rig.orientation);
+    const front = frontOf(axis, this.rig.toEye, right);
+    const radius = RING / this.rig.pixelsPerMeter;
+    const at = (angle: number) =>
+      center.clone().addScaledVector(front.clone().applyAxisAngle(axis, angle), radius);
+    const by = this.valueOf(grip) - grip.value;
+    const known = this.held?.grip.id === grip.id;
+    const isClear = (turn: number) =>
+      rectsOf(page(at(turn)), numberText(grip, grip.value)).every((own) =>
+        taken.every((other) => !overlap(own, other)),
+      );
+    // While it is held it goes on from where it was taken.
+    if (!known) item.turn = TURNS.find(isClear) ?? 0;
+    const here = item.turn + by;
+    const [tip, next] = [page(at(here)), page(at(here + 1e-3))];
+    const [dx, dy] = [(next.x - tip.x) * 1e3, (next.y - tip.y) * 1e3];
+    const pixels = Math.hypot(dx, dy);
+    const seen = Number.isFinite(pixels) && (known || pixels > LEAST_WAY * RING);
+    this.show(item, seen);
+    if (!seen) return null;
+    // Where the ring turns away from the eye it goes on as it went before.
+    if (pixels > LEAST_WAY * RING) item.way = { x: dx / pixels, y: dy / pixels, pixels };
+    const corners = Array.from({ length: CORNERS + 1 }, (_, i) =>
+      page(at((2 * Math.PI * i) / CORNERS)),
+    );
+    item.ring?.setAttribute("d", pathOf(corners));
+    this.draw(item, page(center), tip);
+    return tip;
+  }
+
+  // Lines that show what numbers do: of the grip that is held, as it would be.
+  private outlineOf(edited: Edited, page: (point: Vector3) => Tip): string {
+    const lines = edited.grips.flatMap((grip) => {
+      const known = this.held ?? this.dropped;
+      return grip.outline?.(known?.grip.id === grip.id ? known.value : grip.value) ?? [];
+    });
+    const drawn = lines.map((line) =>
+      pathOf(line.map((point) => page(new Vector3(...point).applyMatrix4(edited.pose)))),
+    );
+    return drawn.join("");
+  }
+
+  // Where a grip that moves begins: in the middle of the shape, or at the point that it moves.
+  private standOf({ grip }: Item, along: Vector3, middle: Vector3, pose: Matrix4): Vector3 {
+    if (!grip.at) return middle;
+    const by = this.valueOf(grip) - grip.value;
+    return new Vector3(...grip.at).applyMatrix4(pose).addScaledVector(along, by);
   }
 
   // The direction of a grip in the picture's frame.
@@ -184,7 +282,7 @@ export class ShapeHandle {
     const right = new Vector3(1, 0, 0).applyQuaternion(this.rig.orientation);
     const up = new Vector3(0, 1, 0).applyQuaternion(this.rig.orientation);
     const aside = right.clone().add(up).normalize().negate();
-    if (!way.around) return aside;
+    if (!("around" in way) || !way.around) return aside;
     const axis = new Vector3(...way.around).applyMatrix3(turn);
     const across = axis.cross(this.rig.toEye);
     // Seen along its axis it is as wide to all sides.
@@ -220,10 +318,10 @@ export class ShapeHandle {
     if (item.input) item.input.style.transform = at;
   }
 
-  private show({ button, number, line, input }: Item, seen: boolean): void {
+  private show({ button, number, line, ring, input }: Item, seen: boolean): void {
     button.hidden = !seen;
     number.hidden = !seen || input !== null;
-    line.style.display = seen ? "" : "none";
+    for (const drawn of [line, ring]) if (drawn) drawn.style.display = seen ? "" : "none";
   }
 
   private itemOf(grip: ShapeGrip): Item {
@@ -243,6 +341,7 @@ export class ShapeHandle {
     const axis = "xyz".includes(grip.id.at(-1)!) && grip.id.includes("-") ? grip.id.at(-1)! : "own";
     const button = gripButton(`shape-${grip.id}`, grip.label, grip.moves ? grip.sign : "");
     button.classList.add(grip.moves ? "move-grip" : "size-grip", axis);
+    if ("about" in grip.way) button.classList.add("turn-grip");
     const number = document.createElement("button");
     number.type = "button";
     number.tabIndex = -1; // Enter on the grip does the same
@@ -251,8 +350,13 @@ export class ShapeHandle {
     const line = document.createElementNS("http://www.w3.org/2000/svg", "line");
     line.classList.add(axis);
     this.drawing.append(line);
+    const ring =
+      "about" in grip.way ? document.createElementNS("http://www.w3.org/2000/svg", "path") : null;
+    ring?.classList.add("ring");
+    if (ring) this.drawing.append(ring);
     this.element.append(button, number);
-    const item: Item = { grip, button, number, line, way: { x: 0, y: -1, pixels: 1 }, input: null };
+    const way = { x: 0, y: -1, pixels: 1 };
+    const item: Item = { grip, button, number, line, ring, way, input: null, turn: 0 };
     this.items.set(grip.id, item);
     this.listen(item);
     return item;
@@ -263,14 +367,16 @@ export class ShapeHandle {
     drags(
       button,
       () => {
-        const { grip, way } = item;
-        let pixels = 0;
+        const { grip } = item;
+        const { step, fine: fineStep } = NUMBERS[grip.kind];
+        let wanted = grip.value;
         this.dropped = null;
         return (dx, dy, fine) => {
           if (grip.number.blocked) return;
-          pixels += dx * way.x + dy * way.y;
-          const wanted = grip.value + (grip.rate * pixels) / way.pixels;
-          this.held = { grip, value: snappedValue(grip, wanted, fine ? FINE_STEP : STEP) };
+          // The way of an angle turns with it.
+          const { x, y, pixels } = item.way;
+          wanted += (grip.rate * (dx * x + dy * y)) / pixels;
+          this.held = { grip, value: snappedValue(grip, wanted, fine ? fineStep : step) };
           this.edits.changed();
         };
       },
@@ -290,8 +396,9 @@ export class ShapeHandle {
       if (grip.number.blocked) return true;
       if (sign === undefined) this.type(item);
       else {
-        const step = event.shiftKey ? FINE_STEP : grip.moves ? KEY_MOVE : STEP;
-        const value = snappedValue(grip, grip.value + sign * step, FINE_STEP / 100);
+        const { step: usual, fine } = NUMBERS[grip.kind];
+        const step = event.shiftKey ? fine : grip.moves ? KEY_MOVE : usual;
+        const value = snappedValue(grip, grip.value + sign * step, fine / 100);
         if (value !== grip.value) this.edits.stepped(grip, value);
       }
       return true;
@@ -319,7 +426,8 @@ export class ShapeHandle {
     input.className = "input grip-input";
     input.dataset.testid = `typed-${grip.id}`;
     input.setAttribute("aria-label", grip.label);
-    input.value = formatQuantity(grip.value, "m", 6);
+    const written = NUMBERS[grip.kind].text(grip.value);
+    input.value = written;
     input.style.transform = item.number.style.transform;
     const wrong = document.createElement("span");
     wrong.className = "grip-problem";
@@ -340,7 +448,7 @@ export class ShapeHandle {
       this.edits.changed();
     };
     const take = (): boolean => {
-      const same = input.value.trim() === formatQuantity(grip.value, "m", 6);
+      const same = input.value.trim() === written;
       const problem = same ? null : this.edits.typed(grip, input.value);
       wrong.textContent = problem ?? "";
       wrong.hidden = problem === null;
@@ -361,12 +469,30 @@ export class ShapeHandle {
   }
 
   private remove(id: string, item: Item): void {
-    for (const part of [item.button, item.number, item.line]) part.remove();
+    for (const part of [item.button, item.number, item.line, item.ring]) part?.remove();
     item.input?.remove();
     this.items.delete(id);
     if (this.held?.grip.id === id) this.held = null;
   }
 }
+
+const pathOf = (points: readonly Tip[]): string =>
+  points.map(({ x, y }, i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+
+/** A place or, where that is outside of the picture, the last one on the way there from a center that is in it. */
+export function within(center: Tip, place: Tip, width: number, height: number): Tip {
+  const part = (from: number, to: number, most: number) => {
+    if (to < GRIP) return (from - GRIP) / (from - to);
+    return to > most - GRIP ? (most - GRIP - from) / (to - from) : 1;
+  };
+  const share = Math.min(part(center.x, place.x, width), part(center.y, place.y, height));
+  if (!(share >= 0 && share < 1)) return place;
+  const toward = (from: number, to: number) => from + share * (to - from);
+  return { x: toward(center.x, place.x), y: toward(center.y, place.y) };
+}
+
+const overlap = (a: Rect, b: Rect): boolean =>
+  a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 
 function rectsOf({ x, y }: Tip, text: string): Rect[] {
   const left = x + NUMBER.aside;

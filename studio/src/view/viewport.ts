@@ -14,7 +14,8 @@ import { type Frame, positionIn, type Smooth, type Topology, valueIn } from "../
 import { edit, editAll } from "../panes/design/edits";
 import { resized } from "../panes/design/gripped";
 import { BODY, roomOf } from "../panes/design/several";
-import { type ShapeGrip, shapeGrips } from "../panes/design/shapeGrips";
+import { shapeGrips } from "../panes/design/shapeGrips";
+import type { ShapeGrip } from "../panes/design/shapeReader";
 import { typedChanges } from "../panes/design/typedNumber";
 import type { DocumentEvent, OverlapPlace, StatEvent } from "../protocol";
 import { chooseFace, useFace } from "../store/face";
@@ -28,6 +29,7 @@ import { Attachments } from "./attachments";
 import { BodyMesh } from "./body";
 import { CameraRig, type StandardView } from "./camera";
 import { type ColorRange, colorRange } from "./colorRange";
+import { ContactMarks } from "./contactMarks";
 import { withoutDust } from "./dust";
 import { faceAt, triangleAt } from "./face";
 import { FaceMark } from "./faceMark";
@@ -120,15 +122,16 @@ export class Viewport {
       else for (const change of changes) edit(change.path, change.value);
     },
     typed: (grip, text) => {
-      const read = typedChanges(grip.number, text, useStudio.getState().document);
+      const read = typedChanges(grip, text, useStudio.getState().document);
       if ("problem" in read) return read.problem;
       editAll(read.changes);
       return null;
     },
   });
-  private shapeGrips: { key: unknown; shape: string; grips: ShapeGrip[] } | null = null;
+  private shapeGrips: { key: readonly unknown[]; grips: ShapeGrip[] } | null = null;
   private readonly attachments = new Attachments();
   private readonly symbols = new Symbols();
+  private readonly contactMarks = new ContactMarks();
   private readonly objects = new RigidObjects(this.section);
   private readonly several = new Several();
   private readonly ghosts = new Ghosts();
@@ -194,6 +197,7 @@ export class Viewport {
       this.section.group,
       this.fill.mesh,
       this.symbols.group,
+      this.contactMarks.group,
       this.objects.group,
       this.several.group,
       this.forces.group,
@@ -336,6 +340,8 @@ export class Viewport {
     const { body, hello } = useStudio.getState();
     if (body) this.symbols.build(body);
     else this.symbols.clear();
+    const design = useStudio.getState().document?.design ?? null;
+    this.contactMarks.build(body?.bonds ?? [], body?.bounds ?? null, design);
     this.attachments.build(body?.attachments ?? []);
     this.objects.build(body?.objects ?? []);
     // Only what may touch something has fields of contact.
@@ -558,10 +564,11 @@ export class Viewport {
     const frame = view.shape !== null && this.asBuilt ? this.ghosts.frameOf(view.shape) : null;
     if (!frame || view.shape === null) return null;
     const { document } = useStudio.getState();
-    if (this.shapeGrips?.key !== document || this.shapeGrips?.shape !== view.shape) {
+    const key = [document, frame.box, view.shape];
+    if (!this.shapeGrips || key.some((one, i) => one !== this.shapeGrips?.key[i])) {
       const { source, design, parameters } = document!;
-      const grips = shapeGrips(view.shape, source ?? {}, design, parameters);
-      this.shapeGrips = { key: document, shape: view.shape, grips };
+      const grips = shapeGrips(view.shape, source ?? {}, design, parameters, frame.box);
+      this.shapeGrips = { key, grips };
     }
     return { ...frame, grips: this.shapeGrips.grips };
   }
@@ -653,6 +660,8 @@ export class Viewport {
     this.ghosts.place(view.shape, this.shaper.preview, this.pixels);
     this.faceMark.place(useFace.getState().face, this.surface, view.exaggeration);
     this.symbols.group.visible = view.symbols;
+    // They stay where the unloaded body has them.
+    this.contactMarks.group.visible = view.symbols && isAsBuilt(useStudio.getState().stat);
     this.attachments.group.visible = view.symbols;
   }
 
@@ -697,6 +706,10 @@ export class Viewport {
       labels.push(...this.symbols.labels(body, stat, mesh, view.exaggeration, view.cavities));
       labels.push(...this.attachments.update(mesh, view.exaggeration, body.loads, stat));
       labels.push(...this.objects.labels());
+      if (this.contactMarks.group.visible) {
+        const design = useStudio.getState().document?.design ?? null;
+        labels.push(...this.contactMarks.labels(body, design, view.chosen));
+      }
       if (view.forces) labels.push(...this.forces.labels());
       labels.push(...this.several.labels(body, this.surface, view.chosen, view.exaggeration));
     }
@@ -804,7 +817,8 @@ export class Viewport {
     if (!topology || currentEngine()?.kind !== "server") return;
     const { x, y, z } = this.rig.toEye;
     const triangle = triangleAt(topology, hit.triangle, [x, y, z]);
-    chooseFace(triangle === null ? null : faceAt(topology, triangle));
+    const smooth = this.smooth?.vertices ?? null;
+    chooseFace(triangle === null ? null : faceAt(topology, triangle, smooth));
     this.request();
   }
 

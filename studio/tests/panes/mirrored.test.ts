@@ -8,6 +8,7 @@ const SIZE = [0.03, 0.04, 0.1] as const;
 const INSIDE: Face = {
   ...{ topology: 1, triangles: [], low: [0, 0, 0], high: [0, 0.04, 0.1], normal: [-1, 0, 0] },
   ...{ axis: 0, shared: false, cavity: null, point: [0, 0.013, 0.0151], opposite: null },
+  seat: null,
   voxelSize: 0.005,
 };
 const FINGER = {

@@ -79,21 +79,30 @@ it("gives what is free a mass, and takes it from what is not", () => {
 });
 
 it("writes the friction of one object for all, and of several for each pair", () => {
-  expect(frictionEdit(undefined, "a", 1, 0.5, ALONE)).toEqual({
-    path: ["contact"],
-    value: { friction: 0.5 },
-  });
-  expect(frictionEdit({ friction: 0.1 }, "a", 1, 0.5, ALONE).path).toEqual(["contact", "friction"]);
+  expect(frictionEdit(undefined, "a", 1, 0.5, ALONE)).toEqual([
+    {
+      path: ["contact"],
+      value: { friction: 0.5 },
+    },
+  ]);
+  expect(frictionEdit({ friction: 0.1 }, "a", 1, 0.5, ALONE)[0]?.path).toEqual([
+    "contact",
+    "friction",
+  ]);
   const pair = { of: ["body", "a"], friction: 0.5 };
-  expect(frictionEdit({ friction: 0.1 }, "a", 2, 0.5, ALONE)).toEqual({
-    path: ["contact", "pairs"],
-    value: [pair],
-  });
+  expect(frictionEdit({ friction: 0.1 }, "a", 2, 0.5, ALONE)).toEqual([
+    {
+      path: ["contact", "pairs"],
+      value: [pair],
+    },
+  ]);
   const pairs = [{ of: ["b", "body"], friction: 0.3 }, pair];
-  expect(frictionEdit({ pairs }, "b", 2, 0.4, ALONE)).toEqual({
-    path: ["contact", "pairs", 0, "friction"],
-    value: 0.4,
-  });
+  expect(frictionEdit({ pairs }, "b", 2, 0.4, ALONE)).toEqual([
+    {
+      path: ["contact", "pairs", 0, "friction"],
+      value: 0.4,
+    },
+  ]);
   expect(frictionOf({ friction: 0.1, pairs }, "a", ALONE)).toBe(0.5);
   expect(frictionOf({ friction: 0.1, pairs }, "c", ALONE)).toBe(0.1);
   expect(frictionOf(undefined, "c", ALONE)).toBe(0);
@@ -102,16 +111,20 @@ it("writes the friction of one object for all, and of several for each pair", ()
 it("writes the friction of an object with several bodies for each of them", () => {
   const both = ["left", "right"];
   const pair = (body: string, friction: number) => ({ of: [body, "ball"], friction });
-  expect(frictionEdit(undefined, "ball", 2, 0.5, both)).toEqual({
-    path: ["contact"],
-    value: { pairs: [pair("left", 0.5), pair("right", 0.5)] },
-  });
+  expect(frictionEdit(undefined, "ball", 2, 0.5, both)).toEqual([
+    {
+      path: ["contact"],
+      value: { pairs: [pair("left", 0.5), pair("right", 0.5)] },
+    },
+  ]);
   const pairs = [{ of: ["left", "right"], friction: 0.1 }, pair("right", 0.3)];
-  expect(frictionEdit({ pairs }, "ball", 1, 0.5, both)).toEqual({
-    path: ["contact", "pairs"],
-    value: [pairs[0], pair("right", 0.5), pair("left", 0.5)],
-  });
-  expect(frictionEdit({ friction: 0.1 }, "ball", 1, 0.5, both).path).toEqual([
+  expect(frictionEdit({ pairs }, "ball", 1, 0.5, both)).toEqual([
+    {
+      path: ["contact", "pairs"],
+      value: [pairs[0], pair("right", 0.5), pair("left", 0.5)],
+    },
+  ]);
+  expect(frictionEdit({ friction: 0.1 }, "ball", 1, 0.5, both)[0]?.path).toEqual([
     "contact",
     "friction",
   ]);

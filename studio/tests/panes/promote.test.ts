@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
-import { isNumber, parameterName, promoted } from "../../src/panes/design/promote";
+import { frictionEdit } from "../../src/panes/design/gripped";
+import { isNumber, parameterName, promoted, promotedTo } from "../../src/panes/design/promote";
 
 const SOURCE = {
   parameters: { pressure: "1 kPa" },
@@ -36,6 +37,28 @@ describe("a number that becomes a parameter", () => {
       ...{ value: "-2 N", min: "-3 N", max: "-1 N" },
     });
     expect(promoted(["loads", 0, "value"], 0, {})[0]?.value).toEqual({ value: 0 });
+  });
+
+  it("has the name that is asked for, and goes where a formula is put", () => {
+    const put = (formula: string) => frictionEdit(undefined, "my ball", 2, formula, ["body"]);
+    expect(promotedTo("friction_my ball", 0.8, {}, put)).toEqual([
+      { path: ["parameters", "friction_my_ball"], value: { value: 0.8, min: 0.4, max: 1.2 } },
+      {
+        path: ["contact"],
+        value: { pairs: [{ of: ["body", "my ball"], friction: "= friction_my_ball" }] },
+      },
+    ]);
+  });
+
+  it("of the bound of a goal is called by the goal", () => {
+    const source = { constraints: { reach: { metric: "displacement", min: "5 mm" } } };
+    expect(promoted(["constraints", "reach", "min"], "5 mm", source)).toEqual([
+      {
+        path: ["parameters", "reach_min"],
+        value: { value: "5 mm", min: "2.5 mm", max: "7.5 mm" },
+      },
+      { path: ["constraints", "reach", "min"], value: "= reach_min" },
+    ]);
   });
 
   it("is a number, not a formula or a word", () => {

@@ -22,6 +22,7 @@ const line: HistoryLine = {
   times: [0, 0.2, 0.6],
   factors: [0, 1, 0],
   repeat: 1,
+  lives: "",
   low: null,
   high: null,
 };

@@ -87,3 +87,67 @@ def test_a_history_is_chosen_by_its_name_and_renamed(lifted, open_tab):
     assert document["clamps"][0]["motion"]["history"] == "rise"
     assert set(document["histories"]) == {"lift", "rise"}
     assert tab.errors == []
+
+
+GRIPPED = """
+schema = "voxsoft/1"
+name = "gripped"
+voxel_size = "5 mm"
+
+[shapes]
+body = { kind = "box", size = ["20 mm", "10 mm", "10 mm"] }
+
+[[parts]]
+shape = "body"
+material = "ecoflex-00-30"
+
+[[clamps]]
+region = { x = [0, 0] }
+
+[[objects]]
+name = "ball"
+shape = { kind = "sphere", radius = "5 mm", center = ["10 mm", "5 mm", "16 mm"] }
+
+[contact]
+friction = 0.5
+
+[probes]
+tip = { x = ["20 mm", "20 mm"] }
+
+[objectives]
+goal = { maximize = "mass" }
+
+[constraints]
+reach = { metric = "displacement", probe = "tip", max = "2 mm" }
+"""
+
+
+def test_friction_and_the_bound_of_a_goal_become_parameters(tmp_path, serving, open_tab):
+    server = serving(tmp_path, GRIPPED, "gripped.toml")
+    try:
+        tab = open_tab(server.address, mode="design")
+        entry = tab.find("objects-0")
+        entry.get_by_role("button", expanded=False).first.click()
+        slider = entry.get_by_label("Friction slider")
+        slider.wait_for()
+        entry.get_by_label("Friction", exact=True).hover()
+        tab.shot("parameter-friction")
+        entry.get_by_role("button", name="Make a parameter of Friction").click()
+        tab.find("parameter-friction").wait_for()
+        slider.wait_for(state="detached")
+        assert entry.get_by_label("Friction", exact=True).input_value() == "= friction"
+        goal = tab.find("constraints-reach")
+        goal.get_by_role("button", expanded=False).first.click()
+        goal.get_by_role("button", name="Make a parameter of At most").click()
+        tab.find("parameter-reach_max").wait_for()
+        tab.shot("parameter-bound")
+        document = saved(tab, server)
+        assert document["contact"]["friction"] == "= friction"
+        assert document["constraints"]["reach"]["max"] == "= reach_max"
+        assert document["parameters"] == {
+            "friction": {"value": 0.5, "min": 0.25, "max": 0.75},
+            "reach_max": {"value": "2 mm", "min": "1 mm", "max": "3 mm"},
+        }
+        assert tab.errors == []
+    finally:
+        server.stop()

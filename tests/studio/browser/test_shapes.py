@@ -172,3 +172,83 @@ def test_a_shape_is_dragged_on_another_in_the_tree(plate, tmp_path):
     renewed(tab, lambda: tab.page.get_by_role("menuitem", name="Cut it out of plate").click())
     design = kept(tab, tmp_path / "plate.toml")
     assert design.shapes["plate"].of == ("block", "hole", "capsule")
+
+
+OPERATORS = """
+schema = "voxsoft/1"
+name = "row"
+voxel_size = "5 mm"
+
+[parameters]
+lean = { value = "20 deg", min = "0 deg", max = "60 deg" }
+
+[shapes]
+block = { kind = "box", size = ["20 mm", "10 mm", "10 mm"] }
+leaning = { kind = "rotate", of = "block", angle = "= lean", axis = "y" }
+both = { kind = "mirror", of = "leaning", normal = "x", point = ["-5 mm", 0, 0], keep = true }
+row = { kind = "array", of = "both", count = [1, 3, 1], spacing = [0, "15 mm", 0] }
+larger = { kind = "scale", of = "row", factor = 1.5 }
+
+[[parts]]
+shape = "larger"
+material = "ecoflex-00-30"
+
+[[clamps]]
+region = { z = ["-inf", 0] }
+"""
+
+
+@pytest.fixture
+def row(serving, open_tab, tmp_path):
+    server = serving(tmp_path, OPERATORS, "row.toml")
+    try:
+        tab = open_tab(server.address, mode="design")
+        tab.until("window.voxsoft !== undefined && voxsoft.vertexPosition(0) !== null")
+        yield tab
+        assert tab.errors == []
+    finally:
+        server.stop()
+
+
+def test_what_turns_mirrors_repeats_and_scales_has_grips(row, tmp_path):
+    tab = row
+    # The angle is a parameter, which a drag on its ring changes by whole steps.
+    choose(tab, "leaning")
+    ring = tab.find("shape-angle")
+    assert "changes the parameter lean" in ring.get_attribute("aria-label")
+    tab.shot("operators-1-angle")
+    renewed(tab, lambda: drag(tab, "shape-angle", 0, 60))
+    angle = float(tab.find("parameter-lean").get_by_role("textbox").first.input_value().split()[0])
+    assert angle != 20
+    assert angle % 5 == 0
+    tab.shot("operators-2-turned")
+    choose(tab, "both")
+    tab.shot("operators-3-plane")
+    renewed(tab, lambda: tab.find("shape-plane-x").press("ArrowLeft"))
+    choose(tab, "row")
+    mouse, grip = tab.page.mouse, tab.find("shape-count-y").bounding_box()
+    mouse.move(grip["x"] + 7, grip["y"] + 7)
+    mouse.down()
+    way = tab.page.evaluate("voxsoft.ghostBox('row')[1][1] - voxsoft.ghostBox('row')[0][1]")
+    assert way == pytest.approx(0.04, abs=1e-3)
+    mouse.move(grip["x"] + 60, grip["y"] - 20)
+    tab.until("document.querySelector('.shape-handle path.outline').getAttribute('d') !== ''")
+    tab.shot("operators-4-copies")
+    renewed(tab, mouse.up)
+    grip = tab.find("shape-spacing-y")
+    grip.focus()
+    tab.page.keyboard.press("Enter")
+    tab.find("typed-spacing-y").fill("12")
+    renewed(tab, lambda: tab.page.keyboard.press("Enter"))
+    choose(tab, "larger")
+    tab.shot("operators-5-factor")
+    renewed(tab, lambda: tab.find("shape-factor").press("ArrowUp"))
+    tab.page.keyboard.press("Control+s")
+    file = tmp_path / "row.toml"
+    until(lambda: "1.55" in file.read_text())
+    shapes = vs.load(file).shapes
+    assert shapes["both"].point == pytest.approx((-0.0055, 0, 0))
+    assert shapes["row"].count[1] != 3
+    assert shapes["row"].spacing[1] == pytest.approx(0.012)
+    assert shapes["larger"].factor == pytest.approx(1.55)
+    assert vs.load(file).parameters["lean"].value == pytest.approx(np.radians(angle))

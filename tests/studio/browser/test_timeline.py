@@ -136,3 +136,51 @@ def test_it_fits_a_small_window_in_light(server, open_tab):
     wide = "document.querySelector('[data-testid=timeline-pane]')"
     assert tab.page.evaluate(f"{wide}.scrollWidth <= {wide}.clientWidth")
     assert tab.errors == []
+
+
+FINGER = """
+
+[[loads]]
+kind = "force"
+region = { x = ["= length", "= length"] }
+value = [0, 0, "10 mN"]
+history = "breath"
+
+[histories]
+breath = { time = ["0 s", "1 s"], factor = [0, 1] }
+"""
+HAND = """
+schema = "voxsoft/1"
+name = "hand"
+voxel_size = "5 mm"
+
+[[bodies]]
+name = "left"
+design = "finger.toml"
+
+[[bodies]]
+name = "right"
+design = "finger.toml"
+position = [0, "80 mm", 0]
+"""
+
+
+def test_histories_in_the_file_of_a_body_are_drawn_and_say_where_they_are(
+    serving, open_tab, tmp_path, coarse
+):
+    (tmp_path / "finger.toml").write_text(coarse + FINGER)
+    server = serving(tmp_path, HAND, "hand.toml")
+    try:
+        tab = open_tab(server.address)
+        tab.until("window.voxsoft !== undefined && voxsoft.triangles > 0")
+        tab.page.get_by_text("Timeline", exact=True).click()
+        row = tab.find("history-bodies-0-design-histories-breath")
+        words = row.inner_text()
+        assert "of left" in words
+        assert "of right" in words
+        assert "written in finger.toml, changed there" in words
+        assert row.get_by_role("slider").count() == 0
+        tab.shot("timeline-bodies")
+        assert tab.errors == []
+    finally:
+        server.stop()

@@ -336,6 +336,21 @@ def test_an_equilibrium_has_numbers_and_is_kept_as_it_is(tab):
     assert tab.errors == []
 
 
+def test_an_equilibrium_after_motion_has_no_time(tab):
+    clock = tab.find("clock")
+    tab.find("play").click()
+    tab.until("voxsoft.time > 0.02")
+    tab.find("play").click()
+    assert clock.inner_text().endswith(" s")
+    tab.find("rest").click()
+    tab.find("equilibrium").get_by_text("Probe tip").wait_for()
+    tab.until("document.querySelector('[data-testid=clock]').innerText === 'at rest'")
+    tab.shot("clock")
+    tab.find("reset").click()
+    tab.until("document.querySelector('[data-testid=clock]').innerText === '0.000 s'")
+    assert tab.errors == []
+
+
 def test_an_equilibrium_of_rubber_gets_error_bars(own_server, open_tab):
     own_server.stop()
     own_server.source.write_text(own_server.source.read_text().replace("-lattice", ""))

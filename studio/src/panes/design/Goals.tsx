@@ -1,14 +1,16 @@
 // What a study strives for and what it must keep: metrics at probes.
 import { Select } from "../../controls/Choice";
-import { readWritten } from "../../controls/kinds";
+import { formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import type { Metric } from "../../protocol";
 import { useStudio } from "../../store/studio";
 import { CavityField } from "./CavityField";
 import { EntryMap, type Table } from "./Entries";
-import { changesOf, edit, editAll } from "./edits";
+import { changesOf, edit, editAll, type Path } from "./edits";
 import { useForm } from "./form";
-import { labelOf } from "./schema";
+import { PromoteTool } from "./PromoteTool";
+import { isNumber, promoted } from "./promote";
+import { inside, labelOf } from "./schema";
 import { bodyNames } from "./several";
 
 const AXES = [
@@ -161,9 +163,44 @@ export function fittingKeys(
   return metric?.takes_percentile && percentile !== undefined ? { ...kept, percentile } : kept;
 }
 
+const BOUNDS = [
+  ["min", "At least"],
+  ["max", "At most"],
+] as const;
+
+/** A bound of a metric: a number of its kind, a formula, or nothing. */
+function Bound(props: { label: string; path: Path; value: unknown; kind: string }) {
+  const { source, design, amounts } = useForm();
+  const { label, path, value, kind } = props;
+  const formula = typeof value === "string" && value.trimStart().startsWith("=");
+  const worth = formula ? path.reduce<unknown>(inside, design) : undefined;
+  return (
+    <TextField
+      label={label}
+      right
+      value={String(value ?? "")}
+      aside={typeof worth === "number" ? formatKind(worth, kind) : undefined}
+      tool={
+        !formula &&
+        isNumber(value) && <PromoteTool label={label} changes={promoted(path, value, source)} />
+      }
+      onCommit={(text) => {
+        if (text.trim() === "") {
+          edit(path, null);
+          return null;
+        }
+        const read = readWritten(text, kind, [], amounts);
+        if ("problem" in read) return read.problem;
+        edit(path, read.value);
+        return null;
+      }}
+    />
+  );
+}
+
 export function Goals() {
   const metrics = useStudio((state) => state.hello?.metrics);
-  const { source, amounts } = useForm();
+  const { source } = useForm();
   const probes = Object.keys((source.probes as object | undefined) ?? {});
   const objects = (Array.isArray(source.objects) ? source.objects : []).map((one) =>
     String((one as Table).name ?? ""),
@@ -220,16 +257,6 @@ export function Goals() {
         {(name, value) => {
           const path = ["constraints", name];
           const metric = metricOf(String(value.metric ?? ""));
-          const bound = (key: "min" | "max") => (text: string) => {
-            if (text.trim() === "") {
-              edit([...path, key], null);
-              return null;
-            }
-            const read = readWritten(text, metric?.kind ?? "number", [], amounts);
-            if ("problem" in read) return read.problem;
-            edit([...path, key], read.value);
-            return null;
-          };
           return (
             <>
               <MetricFields
@@ -246,8 +273,15 @@ export function Goals() {
                 }}
                 onKey={(key, next) => edit([...path, key], next)}
               />
-              <TextField label="At least" value={String(value.min ?? "")} onCommit={bound("min")} />
-              <TextField label="At most" value={String(value.max ?? "")} onCommit={bound("max")} />
+              {BOUNDS.map(([key, label]) => (
+                <Bound
+                  key={key}
+                  label={label}
+                  path={[...path, key]}
+                  value={value[key]}
+                  kind={metric?.kind ?? "number"}
+                />
+              ))}
             </>
           );
         }}

@@ -1,18 +1,16 @@
 // Objects that the body touches: added beside it, with the few things that matter first.
 import { useRef } from "react";
 import { Button, Section, Select } from "../../controls/Choice";
-import { NumberField } from "../../controls/NumberField";
 import { bytesOf } from "../../engine/base64";
-import { sendFile } from "../../shell/DropZone";
+import { refusalOf, sendFile } from "../../shell/DropZone";
 import { toast, useStudio } from "../../store/studio";
 import { setView } from "../../store/view";
 import { CopyTools } from "./CopyTools";
 import { NameField, ThingEntry } from "./Entries";
 import { edit, editAll } from "./edits";
+import { FrictionField } from "./FrictionField";
 import { useForm } from "./form";
 import {
-  frictionEdit,
-  frictionOf,
   type Motion,
   meshShape,
   motionOf,
@@ -26,7 +24,6 @@ import { lifting, liftOf } from "./lifting";
 import { boxOf, type Surroundings, surroundingsOf, written } from "./placing";
 import { TableFields } from "./SchemaField";
 import { resolve, type Schema } from "./schema";
-import { bodyNames } from "./several";
 import { freeName } from "./starters";
 
 const MOTIONS: readonly { value: Motion; label: string }[] = [
@@ -127,6 +124,10 @@ async function readObject(
   around: () => Surroundings | null,
   add: (name: string, shape: Table) => void,
 ): Promise<void> {
+  if (!/\.stl$/i.test(file.name)) {
+    toast({ level: "warning", ...refusalOf(file.name) });
+    return;
+  }
   // Three's reader of STL is wanted by few: it is fetched when one is.
   const { STLLoader } = await import("three/examples/jsm/loaders/STLLoader.js");
   try {
@@ -155,12 +156,10 @@ function ObjectFields(props: {
   schema: Schema;
 }) {
   const { index, value, all } = props;
-  const { root, source } = useForm();
+  const { root } = useForm();
   const path = ["objects", index];
   const motion = motionOf(value);
   const name = String(value.name);
-  const bodies = bodyNames(source);
-  const friction = frictionOf(source.contact, name, bodies);
   return (
     <>
       <NameField section="objects" name={name} taken={all.map((one) => String(one.name))} />
@@ -181,24 +180,7 @@ function ObjectFields(props: {
           value={value.motion}
         />
       )}
-      {typeof friction === "number" ? (
-        <NumberField
-          label="Friction"
-          title="Coulomb's coefficient between it and the body"
-          value={friction}
-          min={0}
-          max={1.5}
-          step={0.05}
-          slider
-          onChange={(next, settled) => {
-            if (!settled) return;
-            const change = frictionEdit(source.contact, name, all.length, next, bodies);
-            edit(change.path, change.value);
-          }}
-        />
-      ) : (
-        <p className="muted">Friction: {String(friction)}, as the text says.</p>
-      )}
+      <FrictionField name={name} objects={all.length} />
       <CopyTools name={name} />
       <TableFields path={path} schema={props.schema} value={value} without={["motion", "name"]} />
     </>

@@ -4,12 +4,12 @@ import { Button, Select, Toggle } from "../../controls/Choice";
 import { describeValue, formatKind, readWritten } from "../../controls/kinds";
 import { TextField } from "../../controls/TextField";
 import { formatNumber } from "../../controls/units";
-import { toast } from "../../store/studio";
 import { browseMaterials } from "../materials/browse";
 import { CavityField } from "./CavityField";
-import { edit, editAll, type Path, problemsAt, problemText } from "./edits";
+import { edit, type Path, problemsAt, problemText } from "./edits";
 import { useForm } from "./form";
 import { Glyph } from "./Glyph";
+import { PromoteTool } from "./PromoteTool";
 import { isNumber, promoted } from "./promote";
 import {
   type Control,
@@ -277,25 +277,7 @@ function QuantityField(
         kind !== null &&
         !formula &&
         isNumber(value) && (
-          <button
-            type="button"
-            className="promote"
-            aria-label={`Make a parameter of ${props.label}`}
-            title="Make a parameter of it, which can be slid and varied by a study"
-            onClick={() => {
-              const changes = promoted(path, value, source);
-              editAll(changes);
-              const name = String(changes[0]?.path[1] ?? "");
-              toast({
-                level: "good",
-                what: `${name} is a parameter of the design`,
-                hint: "It stands at the top of the form, with bounds of ± 50 %. Ctrl+Z takes it back.",
-                about: "design",
-              });
-            }}
-          >
-            <Glyph name="sweep" />
-          </button>
+          <PromoteTool label={props.label} changes={promoted(path, value, source)} />
         )
       }
       onCommit={(typed) => {

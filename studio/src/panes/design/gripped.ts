@@ -1,6 +1,8 @@
 // Objects to grip: what is written of a new one, of another motion, and of its friction.
 import { parseQuantity } from "../../controls/units";
 import type { BodyEvent, Triple } from "../../protocol";
+import type { Change } from "./edits";
+import { pairsOf as allPairs, pairChanges } from "./pairs";
 import { type Surroundings, sideFor, spotFor, wayInto, written, writtenPlace } from "./placing";
 
 export type Table = Readonly<Record<string, unknown>>;
@@ -118,8 +120,7 @@ interface Pair {
   readonly friction?: number;
 }
 
-const pairsOf = (contact: unknown): readonly Pair[] =>
-  ((contact as { pairs?: readonly Pair[] } | undefined)?.pairs ?? []) as readonly Pair[];
+const pairsOf = (contact: unknown) => allPairs(contact) as unknown as readonly Pair[];
 
 const isPair = (pair: Pair, name: string, body: string) =>
   pair.of.length === 2 && pair.of.includes(name) && pair.of.includes(body);
@@ -132,23 +133,23 @@ export function frictionOf(contact: unknown, name: string, bodies: readonly stri
   return own ?? (contact as { friction?: unknown } | undefined)?.friction ?? 0;
 }
 
-/** Where the friction of an object with the bodies is written, and as what. */
+/** The changes that give an object another friction with the bodies: a number, or a formula. */
 export function frictionEdit(
   contact: unknown,
   name: string,
   objects: number,
-  friction: number,
+  friction: number | string,
   bodies: readonly string[],
-): { path: (string | number)[]; value: unknown } {
+): Change[] {
   const pairs = pairsOf(contact);
   const of = bodies.map((body) => pairs.findLastIndex((pair) => isPair(pair, name, body)));
   const [own, ...others] = of.filter((at) => at >= 0);
   if (own !== undefined && others.length === 0 && bodies.length === 1)
-    return { path: ["contact", "pairs", own, "friction"], value: friction };
+    return [{ path: ["contact", "pairs", own, "friction"], value: friction }];
   // All that touches has it while there is one object; of several each has its own.
   if (objects < 2 && own === undefined) {
     const path = contact === undefined ? ["contact"] : ["contact", "friction"];
-    return { path, value: contact === undefined ? { friction } : friction };
+    return [{ path, value: contact === undefined ? { friction } : friction }];
   }
   if (bodies.length > 1) {
     // The same with each of them, one pair each.
@@ -156,12 +157,8 @@ export function frictionEdit(
     const missing = bodies.filter((_, i) => (of[i] ?? -1) < 0);
     const value = [...changed, ...missing.map((body) => ({ of: [body, name], friction }))];
     return contact === undefined
-      ? { path: ["contact"], value: { pairs: value } }
-      : { path: ["contact", "pairs"], value };
+      ? [{ path: ["contact"], value: { pairs: value } }]
+      : [{ path: ["contact", "pairs"], value }];
   }
-  const pair = { of: [bodies[0], name], friction };
-  if (contact === undefined) return { path: ["contact"], value: { pairs: [pair] } };
-  return pairs.length === 0
-    ? { path: ["contact", "pairs"], value: [pair] }
-    : { path: ["contact", "pairs", pairs.length], value: pair };
+  return pairChanges(contact, [bodies[0] as string, name], { friction });
 }

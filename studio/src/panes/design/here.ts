@@ -39,11 +39,46 @@ export function coordinate(meters: number, parameters: readonly Parameter[], vox
   return forms.length === 1 && forms[0] ? forms[0][0] : written(meters);
 }
 
+/** Whether some text of shapes names a parameter in a number along an axis, or in one of no axis. */
+function names(value: unknown, name: RegExp, axis: number): boolean {
+  if (typeof value === "string") return value.trim().startsWith("=") && name.test(value);
+  if (Array.isArray(value)) {
+    const isPlace = value.length === 3 && value.every((one) => typeof one !== "object");
+    return (isPlace ? [value[axis]] : value).some((one) => names(one, name, axis));
+  }
+  if (typeof value !== "object" || value === null) return false;
+  return Object.values(value).some((one) => names(one, name, axis));
+}
+
+/**
+ * The parameters by which shapes reach along an axis: another one may have the same value by chance.
+ *
+ * All of them for a design that describes no shapes.
+ */
+export function parametersAlong(
+  axis: number,
+  parameters: readonly Parameter[],
+  source: Table,
+): readonly Parameter[] {
+  const shapes = ["shapes", "parts", "bodies"].map((section) => source[section]).filter(Boolean);
+  if (shapes.length === 0) return parameters;
+  return parameters.filter(({ name }) => {
+    const word = new RegExp(`(?<![A-Za-z0-9_])${name}(?![A-Za-z0-9_])`);
+    return shapes.some((one) => names(one, word, axis));
+  });
+}
+
 /** The region of a face: its plane, and its box where other faces lie in the same plane. */
-export function regionOfFace(face: Face, parameters: readonly Parameter[]): Table | null {
+export function regionOfFace(
+  face: Face,
+  parameters: readonly Parameter[],
+  source: Table = {},
+): Table | null {
   if (face.axis === null) return null;
-  const along = (axis: number) =>
-    [face.low[axis]!, face.high[axis]!].map((x) => coordinate(x, parameters, face.voxelSize));
+  const along = (axis: number) => {
+    const own = parametersAlong(axis, parameters, source);
+    return [face.low[axis]!, face.high[axis]!].map((x) => coordinate(x, own, face.voxelSize));
+  };
   const axes = face.shared ? [0, 1, 2] : [face.axis];
   return Object.fromEntries(axes.map((axis) => ["xyz"[axis], along(axis)]));
 }

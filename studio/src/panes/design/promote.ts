@@ -46,20 +46,30 @@ export function isNumber(value: unknown): boolean {
 
 /** The changes that make a number of the document a parameter; empty where it is none. */
 export function promoted(path: Path, value: unknown, source: Table): Change[] {
+  return promotedTo(parameterName(path, source), value, source, (formula) => [
+    { path, value: formula },
+  ]);
+}
+
+/** The same under a name, where `place` puts the formula. */
+export function promotedTo(
+  wanted: string,
+  value: unknown,
+  source: Table,
+  place: (formula: string) => readonly Change[],
+): Change[] {
   const match = NUMBER_AND_UNIT.exec(String(value ?? ""));
   if (!match) return [];
   const [, digits, unit] = match;
   const number = Number(digits);
   const taken = Object.keys((source.parameters as Table | undefined) ?? {});
-  const name = freeName(parameterName(path, source), taken).replaceAll("-", "_");
+  const plain = wanted.replaceAll(/[^A-Za-z0-9_]+/g, "_");
+  const name = freeName(plain, taken).replaceAll("-", "_");
   const written = (part: number) => {
     const size = Number((part * number).toPrecision(12));
     return unit ? `${size} ${unit}` : size;
   };
   const [min, max] = number < 0 ? [written(MOST), written(LEAST)] : [written(LEAST), written(MOST)];
   const parameter = number === 0 ? { value } : { value, min, max };
-  return [
-    { path: ["parameters", name], value: parameter },
-    { path, value: `= ${name}` },
-  ];
+  return [{ path: ["parameters", name], value: parameter }, ...place(`= ${name}`)];
 }

@@ -202,9 +202,9 @@ export function listSections(root: Schema): readonly string[] {
     .map(([name]) => name);
 }
 
-/** What one entry of a list is called: "Clamp" for "clamps". */
+/** What one entry of a list is called: "Clamp" for "clamps", "Body" for "bodies". */
 export function single(section: string): string {
-  return labelOf(section.slice(0, -1));
+  return labelOf(section.replace(/ies$/, "ys").slice(0, -1));
 }
 
 /** A key as a label: "top_radius" becomes "Top radius". */

@@ -1,39 +1,21 @@
 // What of a shape is moved and sized by hand in the picture: for each kind its numbers, and where the
-// grips for them stand.
+// grips for them stand. Those of shapes that change others are in operatorGrips.ts.
 import type { Parameter, Triple } from "../../protocol";
-import type { Change } from "./edits";
-import { isLocked } from "./locks";
-import { together, type WrittenNumber, writtenNumber } from "./writtenNumber";
+import { operatorGrips } from "./operatorGrips";
+import type { Room } from "./placing";
+import {
+  AXES,
+  directionOf,
+  ORIGIN,
+  Reader,
+  type ShapeGrip,
+  type Stretch,
+  unit,
+} from "./shapeReader";
+import { together } from "./writtenNumber";
 
 type Table = Readonly<Record<string, unknown>>;
 
-/** The way of a grip: along an axis, or to the side of one as it is seen (of none: to any side). */
-export type Way = { readonly along: Triple } | { readonly around: Triple | null };
-
-/** How the picture of a shape is stretched while a grip is held: along its way alone, or across an axis, or in all. */
-export type Stretch = "along" | "across" | "all" | "none";
-
-export interface ShapeGrip {
-  readonly id: string;
-  /** What it changes, in words. */
-  readonly label: string;
-  /** Stands before the number. */
-  readonly sign: string;
-  readonly moves: boolean;
-  readonly way: Way;
-  /** What stays where it is, m. */
-  readonly from: Triple;
-  /** Where the number ends along the way from there, m; grips that move have none. */
-  readonly reach: number;
-  /** The number in m, and how much it grows for each meter that the grip goes. */
-  readonly value: number;
-  readonly rate: number;
-  readonly stretch: Stretch;
-  readonly number: WrittenNumber;
-}
-
-const AXES = ["x", "y", "z"] as const;
-const ORIGIN: Triple = [0, 0, 0];
 /** The shortest length of a shape that is sized by hand, m. */
 const SHORTEST = 1e-4;
 
@@ -47,89 +29,27 @@ const PLACES: Readonly<Record<string, readonly string[]>> = {
 /** Of these both ends move. */
 const ENDS: Readonly<Record<string, readonly string[]>> = { capsule: ["start", "end"] };
 
-const unit = (axis: number): Triple => AXES.map((_, i) => (i === axis ? 1 : 0)) as Triple;
 const plus = (a: Triple, b: Triple, by: number): Triple =>
   a.map((x, i) => x + by * b[i]!) as Triple;
-const numbersOf = (value: unknown): Triple | null =>
-  Array.isArray(value) && value.length === 3 && value.every((one) => typeof one === "number")
-    ? (value as Triple)
-    : null;
-
-/** An axis as a direction of length one. */
-function directionOf(axis: unknown): Triple {
-  if (typeof axis === "string") return unit(Math.max(AXES.indexOf(axis as "x"), 0));
-  const given = numbersOf(axis) ?? [0, 0, 1];
-  const long = Math.hypot(...given) || 1;
-  return given.map((x) => x / long) as Triple;
-}
 
 /**
  * The grips of a named shape.
  *
- * `source` is the document as it is written, `design` what it comes to in SI; none where the shape has neither a
- * place nor a size of its own.
+ * `source` is the document as it is written, `design` what it comes to in SI, and `box` that of the shape where it
+ * is drawn, m; none where the shape has neither a place nor a size of its own.
  */
 export function shapeGrips(
   name: string,
   source: Table,
   design: Table | null,
   parameters: readonly Parameter[],
+  box: Room | null = null,
 ): ShapeGrip[] {
   const text = (source.shapes as Table | undefined)?.[name] as Table | undefined;
   const solved = (design?.shapes as Table | undefined)?.[name] as Table | undefined;
   if (!text || !solved || text.kind !== solved.kind) return [];
   const reader = new Reader(["shapes", name], text, solved, source, parameters);
-  return [...moves(reader), ...sizes(reader)];
-}
-
-/** Reads one shape, as it is written and as it comes out. */
-class Reader {
-  constructor(
-    private readonly path: readonly (string | number)[],
-    private readonly text: Table,
-    readonly solved: Table,
-    private readonly source: Table,
-    private readonly parameters: readonly Parameter[],
-  ) {}
-
-  get kind(): string {
-    return String(this.solved.kind);
-  }
-
-  has(key: string): boolean {
-    return key in this.text;
-  }
-
-  point(key: string): Triple {
-    return numbersOf(this.solved[key]) ?? ORIGIN;
-  }
-
-  value(key: string): number {
-    return Number(this.solved[key]);
-  }
-
-  number(key: string): WrittenNumber {
-    return this.written([...this.path, key], this.text[key]);
-  }
-
-  /** One of three numbers; a place that is not written is the origin, and is written whole. */
-  numberOf(key: string, axis: number): WrittenNumber {
-    const path = [...this.path, key];
-    const all = this.text[key];
-    if (Array.isArray(all)) return this.written([...path, axis], all[axis]);
-    const one = this.written(path, 0);
-    const whole = (changes: readonly Change[]) =>
-      changes.map(({ value }) => ({ path, value: AXES.map((_, i) => (i === axis ? value : 0)) }));
-    return {
-      ...one,
-      changes: (value) => whole(one.changes(value)),
-      formula: (text) => whole(one.formula(text)),
-    };
-  }
-
-  private written(path: readonly (string | number)[], text: unknown): WrittenNumber {
-    return writtenNumber(path, text, this.source, this.parameters, isLocked);
-  }
+  return [...moves(reader), ...sizes(reader), ...operatorGrips(reader, box)];
 }
 
 function moves(shape: Reader): ShapeGrip[] {
@@ -145,7 +65,7 @@ function moves(shape: Reader): ShapeGrip[] {
     }));
     return {
       ...{ id: `move-${axis}`, label: `Move along ${axis}`, sign: axis, moves: true },
-      ...{ way: { along: unit(i) }, from: ORIGIN, reach: 0 },
+      ...{ way: { along: unit(i) }, from: ORIGIN, reach: 0, kind: "length" },
       ...{ value: shape.point(first)[i]!, rate: 1, stretch: "none" },
       number: together(all),
     };
@@ -171,7 +91,7 @@ function sized(
   const value = axis === undefined ? shape.value(key) : shape.point(key)[axis]!;
   return {
     ...{ id: axis === undefined ? key : `${key}-${AXES[axis]}`, moves: false },
-    ...{ label, sign, way, from, reach, value, rate, stretch },
+    ...{ label, sign, way, from, reach, value, rate, stretch, kind: "length" },
     number: { ...number, least: Math.max(number.least, least) },
   };
 }
@@ -256,9 +176,9 @@ function upright(shape: Reader, round: boolean): ShapeGrip[] {
   return [height, radius];
 }
 
-/** A length that a drag comes to: on whole steps, and within what it may be. */
+/** A number that a drag comes to: on whole steps, and within what it may be. */
 export function snappedValue(grip: ShapeGrip, value: number, step: number): number {
   const { least, most } = grip.number;
   const snapped = Math.min(Math.max(Math.round(value / step) * step, least), most);
-  return Number(snapped.toFixed(7)) + 0;
+  return Number(snapped.toFixed(14)) + 0;
 }

@@ -3,30 +3,40 @@ import { readWritten } from "../../controls/kinds";
 import { parseQuantity } from "../../controls/units";
 import type { DocumentEvent } from "../../protocol";
 import type { Change } from "./edits";
+import { type GripKind, NUMBERS } from "./gripKinds";
 import { amountsOf } from "./useForm";
 import type { WrittenNumber } from "./writtenNumber";
 
 export function typedChanges(
-  number: WrittenNumber,
+  { number, kind }: { readonly number: WrittenNumber; readonly kind: GripKind },
   text: string,
   document: DocumentEvent | null,
 ): { readonly changes: readonly Change[] } | { readonly problem: string } {
   const names = Object.keys((document?.source?.parameters as object | undefined) ?? {});
   const amounts = document ? amountsOf(names, document) : {};
-  const read = readWritten(text, "length", [], amounts);
+  const about = NUMBERS[kind];
+  // The number beside a factor has its sign before it.
+  const typed = text.replace(/^\s*×/, "").replace(/cop(y|ies)\s*$/, "");
+  const read = readWritten(typed, kind === "count" ? "number" : kind, [], amounts);
   if ("problem" in read) return read;
   if (String(read.value).startsWith("=")) return { changes: number.formula(String(read.value)) };
-  const amount = parseQuantity(String(read.value), "mm");
+  const amount = parseQuantity(String(read.value), about.unit);
   if ("problem" in amount) return amount;
+  if (kind === "count" && !Number.isInteger(amount.value))
+    return { problem: "expected a whole number" };
   const { least, most } = number;
-  if (amount.value < least || amount.value > most) return { problem: outside(least, most) };
-  return { changes: number.changes(amount.value) };
+  const value = amount.value;
+  if (value < least - SLACK || value > most + SLACK)
+    return { problem: outside(least, most, about.text) };
+  return { changes: number.changes(value) };
 }
 
-function outside(least: number, most: number): string {
-  const mm = (meters: number) => `${Number((1e3 * meters).toFixed(3))} mm`;
-  if (!Number.isFinite(most)) return `must be at least ${mm(least)}`;
+/** Rounding of what is typed at a bound. */
+const SLACK = 1e-12;
+
+function outside(least: number, most: number, text: (value: number) => string): string {
+  if (!Number.isFinite(most)) return `must be at least ${text(least)}`;
   return Number.isFinite(least)
-    ? `must be between ${mm(least)} and ${mm(most)}`
-    : `must be at most ${mm(most)}`;
+    ? `must be between ${text(least)} and ${text(most)}`
+    : `must be at most ${text(most)}`;
 }

@@ -3,8 +3,8 @@
 import { writeValue } from "../../controls/kinds";
 import type { Parameter } from "../../protocol";
 import type { Change, Path } from "./edits";
+import { type GripKind, NUMBERS } from "./gripKinds";
 import { valuePath } from "./parameterPath";
-import { written } from "./placing";
 
 type Table = Readonly<Record<string, unknown>>;
 
@@ -20,19 +20,20 @@ export interface WrittenNumber {
   formula(text: string): Change[];
 }
 
-/** A length at a place of the document, as it is written there; `undefined` where nothing is. */
+/** A number at a place of the document, as it is written there; `undefined` where nothing is. */
 export function writtenNumber(
   path: Path,
   text: unknown,
   source: Table,
   parameters: readonly Parameter[],
   isLocked: (parameter: string) => boolean,
+  kind: GripKind = "length",
 ): WrittenNumber {
   const ends = { least: Number.NEGATIVE_INFINITY, most: Number.POSITIVE_INFINITY };
   const here = (value: unknown): Change[] => [{ path, value }];
   const formula = typeof text === "string" && text.trim().startsWith("=") ? text.trim() : null;
   if (formula === null) {
-    const changes = (value: number) => here(lengthOf(value));
+    const changes = (value: number) => here(NUMBERS[kind].written(value));
     return { parameter: null, blocked: null, ...ends, changes, formula: here };
   }
   const name = formula.replace(/^=\s*/, "");
@@ -55,9 +56,6 @@ function blockedBy(formula: string, own: Parameter | undefined, locked: boolean)
   if (own.formula) return `is the parameter ${own.name}, which follows a formula itself`;
   return locked ? `is the parameter ${own.name}, which is locked` : null;
 }
-
-/** A length as it is written; 0 has no unit. */
-const lengthOf = (meters: number) => (Math.abs(meters) < 5e-7 ? 0 : written(meters));
 
 /** Several numbers that change by the same way, as one. */
 export function together(

@@ -30,7 +30,7 @@ export interface HistoryRowProps {
 }
 
 export function HistoryRow({ line, axis, source }: HistoryRowProps) {
-  const kept = source ? pointsOf(line, source) : null;
+  const kept = source && line.lives === "" ? pointsOf(line, source) : null;
   const [draft, setDraft] = useState<readonly Point[] | null>(null);
   const [chosen, choose] = useState<number | null>(null);
   const dragged = useRef<number | null>(null);
@@ -202,15 +202,18 @@ export function setInType(amount: string): string {
 
 /** What follows it, and the text of what is no list of points. */
 function about(line: HistoryLine): string {
-  const named = line.path[0] === "histories";
+  const named = line.path.at(-2) === "histories";
   const users = line.used_by.map(({ title, amount }) => {
     const one = amount && `1 is ${setInType(amount)}`;
-    return named ? [title, one && `(${one})`].filter(Boolean).join(" ") : one;
+    // Of a body it says which one.
+    const whose = named || line.path[0] === "bodies";
+    return whose ? [title, one && `(${one})`].filter(Boolean).join(" ") : one;
   });
   const followed = named && users.length === 0 ? "nothing follows it" : users.join(", ");
   const repeat = line.repeat > 1 ? `${line.repeat} times` : "";
   const many = line.way === "points" && line.times.length > 200 ? "changed in the text" : "";
-  return [followed, line.words, repeat, many].filter(Boolean).join(" · ");
+  const elsewhere = line.lives && `written in ${line.lives}, changed there`;
+  return [followed, line.words, repeat, elsewhere || many].filter(Boolean).join(" · ");
 }
 
 function Grid(props: { axis: Axis; range: readonly [number, number] }) {

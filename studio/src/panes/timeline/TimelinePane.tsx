@@ -52,8 +52,9 @@ export default function TimelinePane() {
           </div>
           <TimeAxis axis={axis} />
           <p className="section muted">
-            Double-click adds a point, Delete removes it; arrow keys move it, finer with Shift. An
-            equilibrium takes the last factor of each.
+            {drawn.some(({ lives }) => lives === "") &&
+              "Double-click adds a point, Delete removes it; arrow keys move it, finer with Shift. "}
+            An equilibrium takes the last factor of each.
           </p>
         </>
       )}
@@ -96,10 +97,11 @@ function Constant(props: { line: HistoryLine; endTime: number | null; disabled: 
   );
 }
 
-/** The time that the view shows, across all lines. */
+/** The time that the view shows, across all lines; an equilibrium has none. */
 function Cursor(props: { axis: Axis }) {
-  const time = useStudio((state) => state.stat?.time ?? 0);
-  if (time > props.axis.end) return null;
+  const stat = useStudio((state) => state.stat);
+  const time = stat?.time ?? 0;
+  if (stat?.untimed || time > props.axis.end) return null;
   return (
     <div
       className="timeline-cursor"
