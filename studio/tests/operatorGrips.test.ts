@@ -6,14 +6,8 @@ import type { ShapeGrip } from "../src/panes/design/shapeReader";
 import { typedChanges } from "../src/panes/design/typedNumber";
 import type { DocumentEvent, Parameter } from "../src/protocol";
 import { CameraRig } from "../src/view/camera";
-import {
-  frontOf,
-  gripLabel,
-  numberText,
-  previewOf,
-  ShapeHandle,
-  within,
-} from "../src/view/shapeHandle";
+import { frontOf, gripLabel, numberText, ShapeHandle, within } from "../src/view/shapeHandle";
+import { previewOf } from "../src/view/shapePreview";
 
 const PARAMETERS = [
   { name: "lean", value: Math.PI / 6, kind: "angle", factor: Math.PI / 180, display_unit: "deg" },

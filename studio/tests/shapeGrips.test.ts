@@ -4,7 +4,8 @@ import { shapeGrips, snappedValue } from "../src/panes/design/shapeGrips";
 import type { ShapeGrip } from "../src/panes/design/shapeReader";
 import { typedChanges } from "../src/panes/design/typedNumber";
 import type { DocumentEvent, Parameter } from "../src/protocol";
-import { gripLabel, numberText, previewOf } from "../src/view/shapeHandle";
+import { gripLabel, numberText } from "../src/view/shapeHandle";
+import { previewOf } from "../src/view/shapePreview";
 
 const PARAMETERS = [
   { name: "length", value: 0.04, kind: "length", factor: 0.001, display_unit: "mm" },
