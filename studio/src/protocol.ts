@@ -1413,7 +1413,11 @@ export interface PickedEvent {
   values: Value[];
 }
 
-/** Where a job stands; `left` is the time it will still take in s, `best` a short text. */
+/**
+ * Where a job stands: `done` of `total` designs, generations or what else `of` says.
+ *
+ * `left` is the time that these will still take in s, `best` a short text.
+ */
 export interface JobEvent {
   t: "job";
   id: string;
@@ -1427,6 +1431,7 @@ export interface JobEvent {
   best: string;
   folder: string;
   message: string;
+  of: string;
   stage: string;
   parameters: string[];
   objectives: string[];

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from waiting import until
 
+from voxsoft.jobs import events as jobs
 from voxsoft.studio.progress import Progress
 
 
@@ -38,13 +39,13 @@ def calibration():
 def test_a_study_tells_how_many_designs_are_being_finished(study):
     progress, gate = study.progress, study.progress.gate()
     workers = gate.for_pool(multiprocessing.get_context("spawn"))
-    progress.at(3, 8)
+    progress.at(jobs.Progress(3, 8, "designs"))
     workers.begun.value = 2
     progress.pause()
     assert gate.closed
     study.until("pausing", "2 designs are being finished")
     workers.begun.value = 1
-    progress.at(4, 8)  # the one that ended is stored: nothing waits here
+    progress.at(jobs.Progress(4, 8, "designs"))  # the one that ended is stored: nothing waits here
     study.until("pausing", "1 design is being finished")
     workers.begun.value = 0
     study.until("paused", "")
@@ -62,10 +63,12 @@ def test_a_study_paused_before_it_has_begun_begins_paused(study):
 
 def test_other_work_is_held_where_it_next_says_how_far_it_is(calibration):
     progress = calibration.progress
-    progress.at(1, 50, stage="search")
+    progress.at(jobs.Progress(1, 50, "generations", "search"))
     progress.pause()
     assert calibration.last == ("pausing", "the present generation is being finished")
-    work = threading.Thread(target=progress.at, args=(2, 50), kwargs={"stage": "search"})
+    work = threading.Thread(
+        target=progress.at, args=(jobs.Progress(2, 50, "generations", "search"),)
+    )
     work.start()
     calibration.until("paused", "search")
     assert work.is_alive()
@@ -82,7 +85,7 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     progress = reported.progress
     progress.pause()
     now[0] += 2  # what was begun is being finished
-    work = threading.Thread(target=progress.at, args=(1, 3))
+    work = threading.Thread(target=progress.at, args=(jobs.Progress(1, 3, "generations"),))
     work.start()
     while reported.sent[-1].state != "paused":
         pass
@@ -92,3 +95,15 @@ def test_pauses_do_not_count_as_work(calibration, monkeypatch):
     work.join(30)
     now[0] += 5
     assert progress.elapsed == 7
+
+
+def test_what_is_counted_may_change_and_time_is_then_that_of_the_new_count():
+    run = Report("run")
+    run.progress.at(jobs.Progress(0, 11, "equilibria"))
+    run.progress.at(jobs.Progress(11, 11, "equilibria"))
+    assert (run.sent[-1].of, run.sent[-1].left) == ("equilibria", 0.0)
+    run.progress.at(jobs.Progress(0, 100, "percent of a further run"))
+    assert (run.sent[-1].of, run.sent[-1].left) == ("percent of a further run", None)
+    run.progress.at(jobs.Progress(50, 100, "percent of a further run"))
+    # As long as the first half, and the equilibria before do not count.
+    assert 0.0 <= run.sent[-1].left < run.sent[-1].elapsed

@@ -825,7 +825,10 @@ class Picked(Event):
 
 
 class Job(Event):
-    """Where a job stands; `left` is the time it will still take in s, `best` a short text."""
+    """Where a job stands: `done` of `total` designs, generations or what else `of` says.
+
+    `left` is the time that these will still take in s, `best` a short text.
+    """
 
     id: str
     kind: JobKind
@@ -838,6 +841,7 @@ class Job(Event):
     best: str
     folder: str
     message: str
+    of: str = ""
     stage: str = ""
     parameters: list[str] = field(default_factory=list)
     objectives: list[str] = field(default_factory=list)

@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from voxsoft.jobs import events as jobs
 from voxsoft.studio import events
 from voxsoft.studio.events import JobKind
 from voxsoft.study import Study
@@ -44,7 +45,8 @@ class Progress:
         self._idle_since: float | None = None
         self._idle = 0.0
         self._first: int | None = None
-        self._done, self._total, self._best, self._stage = 0, 0, "", ""
+        self._since = 0.0
+        self._now = jobs.Progress(0, 0, "")
         self._parameters: list[str] = []
         self._objectives: list[str] = []
         self._directions: list[str] = []
@@ -83,10 +85,12 @@ class Progress:
             self.pause()
         return self._gate
 
-    def at(self, done: int, total: int, *, best: str = "", stage: str = "") -> None:
+    def at(self, now: jobs.Progress) -> None:
         """Say how far the job is; without a gate, wait here while it is paused."""
-        self._first = done if self._first is None else self._first
-        self._done, self._total, self._best, self._stage = done, total, best, stage
+        if self._first is None or now.of != self._now.of:
+            # What is counted from here on is something else, which takes a time of its own.
+            self._first, self._since = now.done, self.elapsed
+        self._now = now
         self._held = self._gate is None and not self._goes_on.is_set()
         if self._held:
             self._rest()
@@ -109,10 +113,11 @@ class Progress:
         """Say where the job stands."""
         state = self._state
         left = None
-        new = self._done - (self._first or 0)
-        if state == "running" and new > 0 and self._total >= self._done:
-            left = self.elapsed / new * (self._total - self._done)
-        self._tell(state, left=left, stage=self._finishing if state == "pausing" else self._stage)
+        now = self._now
+        new = now.done - (self._first or 0)
+        if state == "running" and new > 0 and now.total >= now.done:
+            left = (self.elapsed - self._since) / new * (now.total - now.done)
+        self._tell(state, left=left, stage=self._finishing if state == "pausing" else now.stage)
 
     @property
     def _state(self) -> events.JobState:
@@ -129,7 +134,7 @@ class Progress:
             return f"{begun} design{' is' if begun == 1 else 's are'} being finished"
         if self.kind == "run":
             return "the present step is being finished"
-        part = "present generation" if self._stage == "search" else self._stage or "start"
+        part = "present generation" if self._now.stage == "search" else self._now.stage or "start"
         return f"the {part} is being finished"
 
     def _watch_gate(self, gate: Gate) -> None:
@@ -168,11 +173,12 @@ class Progress:
                 kind=self.kind,
                 name=self.job,
                 state=state,
-                done=self._done,
-                total=self._total,
+                done=self._now.done,
+                total=self._now.total,
+                of=self._now.of,
                 elapsed=self.elapsed,
                 left=left,
-                best=self._best,
+                best=self._now.best,
                 folder=str(self.folder),
                 message=message,
                 stage=stage,

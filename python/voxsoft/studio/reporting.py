@@ -29,7 +29,7 @@ def listener_of(spec: Spec, progress: Progress) -> Listener:
         nonlocal smallest
         match event:
             case Standing():
-                progress.at(event.done, event.total, best=event.best, stage=event.stage)
+                progress.at(event)
             case LoadPath():
                 progress.tell(_path(progress.job, event))
             case StudyStanding():

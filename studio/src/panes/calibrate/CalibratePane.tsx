@@ -60,7 +60,7 @@ export default function CalibratePane() {
   };
   return (
     <div className="pane calibrate" data-testid="calibrate-form">
-      {current?.job && <JobCard job={current.job} unit="generations" />}
+      {current?.job && <JobCard job={current.job} />}
       <JobChooser kind="calibrate" label="Calibration" />
       {current?.result && (
         <Result key={current.result.job} result={current.result} root={form.root} />

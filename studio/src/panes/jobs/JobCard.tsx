@@ -30,7 +30,7 @@ const TONES: Readonly<Record<JobEvent["state"], string>> = {
   interrupted: "warn",
 };
 
-export function JobCard(props: { job: JobEvent; unit: string }) {
+export function JobCard(props: { job: JobEvent }) {
   const { job } = props;
   const held = job.state === "pausing" || job.state === "paused";
   const live = job.state === "running" || held || job.state === "stopping";
@@ -68,7 +68,7 @@ export function JobCard(props: { job: JobEvent; unit: string }) {
       <Progress label={`Progress of ${job.name || job.kind}`} done={job.done} total={job.total} />
       <div className="job-line" aria-live="polite">
         <span>
-          {job.done} of {job.total} {props.unit}
+          {job.done} of {job.total} {job.of}
         </span>
         <span>
           {formatSpan(job.elapsed)}

@@ -55,7 +55,7 @@ export default function PathPane() {
           <p>Each point of the curve is an equilibrium; the last one is kept as a run.</p>
         </Empty>
       )}
-      {job && job.state !== "done" && <JobCard job={job} unit={path ? "equilibria" : "percent"} />}
+      {job && job.state !== "done" && <JobCard job={job} />}
     </div>
   );
 }

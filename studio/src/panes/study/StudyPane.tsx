@@ -86,7 +86,7 @@ export default function StudyPane() {
   };
   return (
     <div className="pane study" data-testid="study-form">
-      {job && (past === null || past === job.id) && <JobCard job={job} unit="designs" />}
+      {job && (past === null || past === job.id) && <JobCard job={job} />}
       {past !== null && past !== job?.id && <Past id={past} />}
       <JobChooser kind="study" label="Study" />
       <Section title="Vary">
