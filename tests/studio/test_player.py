@@ -45,9 +45,9 @@ def test_events_have_the_names_of_the_protocol(body):
     player = scene_of(body).play()
     grab = commands.Grab(seq=1, id=2, vertex=3, target=(0.0, 0.0, 0.1))
     [stat] = json.loads(player.command(msgspec.json.encode(grab)))
-    # What solves and how far it is the player does not know.
+    # What solves, how far it is, and which states have no time, the player does not know.
     found, inner = sent(stat)
-    assert (found | {"solver", "progress"}, inner) == names(events.Stat)
+    assert (found | {"solver", "progress", "untimed"}, inner) == names(events.Stat)
     assert sent(json.loads(player.plot())) == names(events.Plot)
     [picked] = json.loads(player.command(msgspec.json.encode(commands.Pick(seq=1, vertex=3))))
     assert sent(picked) == names(events.Picked)

@@ -280,7 +280,7 @@ def test_a_damaged_specimen_is_reported(studio):
     assert "is not of this design" in asked(studio, "fit").json()["what"]
 
 
-@pytest.mark.parametrize("what", ["run", "study"])
+@pytest.mark.parametrize("what", ["run", pytest.param("study", marks=pytest.mark.slow)])
 def test_objects_stand_where_they_are_at_the_end(studio, what, monkeypatch):
     design = Design.from_document(tomllib.loads(GRIPPER))
     result = simulate(design)

@@ -222,3 +222,33 @@ def test_a_path_that_ends_early_proposes_what_knows_contact():
     assert 'control = "arc-length"' in result.message
     assert "xpbd" not in result.message
     assert 'method = "dynamics"' in result.message
+
+
+@pytest.mark.parametrize("what", ["floor", "plate"])
+def test_a_clamped_end_may_lie_on_what_the_body_touches(what):
+    # Clamped vertices that touch to the last bit are not the clearance apart, and never will be.
+    side = 10 * mm
+    below = {"floor": {"z": 0.0}}
+    if what == "plate":
+        plate = vs.Box(size=(60 * mm, 30 * mm, 5 * mm), corner=(-10 * mm, -10 * mm, -5 * mm))
+        below = {"objects": [{"name": "plate", "shape": plate, "motion": "fixed"}]}
+    design = vs.Design(
+        name="lying",
+        voxel_size=side / 2,
+        parts=[
+            vs.Part(
+                shape=vs.Box(size=(20 * mm, side, side)),
+                material=vs.NeoHookean(young=60 * kPa, poisson=0.45, density=1070.0),
+            )
+        ],
+        clamps=[vs.Clamp(region=vs.Region(x=(0, 0)))],
+        loads=[vs.Gravity()],
+        contact={"friction": 0.3},
+        **below,
+    )
+    result = vs.simulate(design)
+    assert result.status == "ok", result.message
+    lowest = result.positions[:, 2].min()
+    assert -1e-4 * design.voxel_size < lowest
+    [contact] = result.contacts
+    assert 0 < contact.force[2] < result.mass * 9.81

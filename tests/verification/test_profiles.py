@@ -100,6 +100,7 @@ def test_cut_voxels_have_the_factor_where_their_material_is():
     assert turn == pytest.approx(2.0 * strain / THICK * LONG, rel=0.01)
 
 
+@pytest.mark.slow
 def test_a_profile_follows_its_history():
     ramp = History(time=("0 s", "1 s"), factor=(0, 1))
     activation = Swelling(part="strip", value=0.02, profile=THROUGH, history=ramp)

@@ -862,7 +862,7 @@ impl PyProblem {
                 if let Some(springs) = parts.frame_springs(problem.body(), first) {
                     problem = problem.with_term(Arc::new(springs))?;
                 }
-                let made = parts.into_touching(problem.body(), first)?;
+                let made = parts.into_touching(&problem, first)?;
                 problem = problem.with_contact(Arc::clone(&made.contact))?;
                 touching = Some(Arc::new(made));
             }

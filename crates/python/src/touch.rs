@@ -228,7 +228,8 @@ impl TouchParts {
 
     /// The contact of a body whose objects have their vertices from `first` on; where a part is solved for, that of the whole,
     /// whose objects come after its own vertices.
-    fn touch(&self, body: &Body, first: usize) -> Result<Touch, ProblemError> {
+    fn touch(&self, problem: &Problem, first: usize) -> Result<Touch, ProblemError> {
+        let body = problem.body();
         let images = self.images(first);
         let rest: Cow<'_, [Vec3]> = match &images {
             Some(images) => images.seen(body.rest()).into(),
@@ -267,15 +268,22 @@ impl TouchParts {
         };
         let touch = Touch::new(description, &rest)?;
         let touch = touch.with_bodies(self.bodies.len() as u32, shares);
+        let still = still(problem);
         Ok(match &images {
-            Some(images) => touch.with_planes(across(images), &rest),
-            None => touch,
+            Some(images) => touch
+                .with_still(images.of.iter().map(|of| still[*of as usize]).collect())
+                .with_planes(across(images), &rest),
+            None => touch.with_still(still),
         })
     }
 
     /// The same, and where it is in a problem.
-    pub(crate) fn into_touching(self, body: &Body, first: usize) -> Result<Touching, ProblemError> {
-        let touch = Arc::new(self.touch(body, first)?);
+    pub(crate) fn into_touching(
+        self,
+        problem: &Problem,
+        first: usize,
+    ) -> Result<Touching, ProblemError> {
+        let touch = Arc::new(self.touch(problem, first)?);
         let images = self.images(first);
         let contact: Arc<dyn Contact> = match &images {
             Some(images) => {
@@ -301,6 +309,25 @@ impl TouchParts {
             Way::Held(_) | Way::Free(_) => self.objects[number].frame.carry(point, at),
         }
     }
+}
+
+/// The axes on which vertices are held and never move.
+fn still(problem: &Problem) -> Vec<[bool; 3]> {
+    let mut still = vec![[false; 3]; problem.body().rest().len()];
+    let (moving, resting): (Vec<_>, Vec<_>) = problem
+        .clamps()
+        .iter()
+        .partition(|clamp| clamp.motion.is_some());
+    for clamp in resting {
+        for &vertex in &clamp.vertices {
+            let held = &mut still[vertex as usize];
+            *held = std::array::from_fn(|axis| held[axis] || clamp.axes[axis]);
+        }
+    }
+    for &vertex in moving.iter().flat_map(|clamp| &clamp.vertices) {
+        still[vertex as usize] = [false; 3];
+    }
+    still
 }
 
 /// The axes across planes of symmetry: along which some images have the other sign.

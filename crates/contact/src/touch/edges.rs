@@ -89,8 +89,11 @@ impl Touch {
 
     fn is_deep(&self, sample: usize, facing: Option<Facing>, points: &[Vec3]) -> bool {
         let meeting = facing.and_then(|facing| self.meeting(sample as u32, facing, points));
-        let least = self.clearance(sample as u32) - DEEPEST * self.description.voxel;
-        meeting.is_some_and(|meeting| meeting.gap < least)
+        let clearance = self.clearance(sample as u32);
+        meeting.is_some_and(|meeting| {
+            let least = self.mobility(&meeting) * clearance - DEEPEST * self.description.voxel;
+            meeting.gap < least
+        })
     }
 
     /// The edge that an edge lies across, of its candidates the one in which it is deepest; what it presses stays.

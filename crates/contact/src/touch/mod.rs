@@ -86,6 +86,8 @@ const BOUND: [f64; 2] = [3e-3, 0.05];
 const NEARLY: f64 = 0.95;
 /// Corrections at one load after which samples keep what they face, and bounds may be off by more.
 const PATIENCE: u32 = 10;
+/// Parts of a motion, and of a direction, that are none.
+const ROUNDING: f64 = 1e-9;
 /// Corrections after which more precision than by default is given up.
 const PRECISE: u32 = 36;
 
@@ -125,6 +127,8 @@ pub struct Touch {
     weights: Vec<f64>,
     /// With these, the point that each is an image of, itself where it counts.
     twins: Vec<u32>,
+    /// The axes on which vertices never move, where that is known.
+    still: Vec<[bool; 3]>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// The surface of each.
@@ -278,6 +282,7 @@ impl Touch {
             planes: [false; 3],
             weights: Vec::new(),
             twins: Vec::new(),
+            still: Vec::new(),
             triangles,
             surface_of,
             around,
@@ -299,6 +304,32 @@ impl Touch {
         self.bodies = bodies;
         self.shares = shares;
         self
+    }
+
+    /// Says on which axes vertices never move, as those of a clamp without a motion.
+    #[must_use]
+    pub fn with_still(mut self, still: Vec<[bool; 3]>) -> Self {
+        self.still = still;
+        self
+    }
+
+    /// The part of what carries a meeting that could open its gap, at most 1: a half between a vertex that never moves
+    /// and one that does, beside what rests.
+    fn mobility(&self, meeting: &Meeting) -> f64 {
+        if self.still.is_empty() {
+            return 1.0;
+        }
+        let mut free = 0.0;
+        for (factor, point) in self.relative(meeting.spot()) {
+            let point = &self.points[point as usize];
+            for (vertex, weight) in point.vertices.iter().zip(&point.weights) {
+                let held = self.still[*vertex as usize];
+                if (0..3).any(|axis| !held[axis] && meeting.normal[axis].abs() > ROUNDING) {
+                    free += (factor * weight).abs();
+                }
+            }
+        }
+        free.min(1.0)
     }
 
     /// Whether edges are kept out of edges.
@@ -388,9 +419,20 @@ impl Touch {
     }
 
     /// The force with which a sample is pushed away, N.
+    ///
+    /// Beside vertices that never move the clearance goes to zero: there gaps are what they are, and a multiplier that were
+    /// to open them would grow for ever.
     fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
         let k = self.penalty(meeting.sample);
-        (memory.normal - k * (meeting.gap - self.clearance(meeting.sample))).max(0.0)
+        let clearance = self.clearance(meeting.sample);
+        if !(memory.normal - k * (meeting.gap - clearance) > 0.0) {
+            return 0.0;
+        }
+        let mobility = self.mobility(meeting);
+        if mobility <= ROUNDING {
+            return 0.0;
+        }
+        (memory.normal - k * (meeting.gap - mobility * clearance)).max(0.0)
     }
 
     /// Hands over every sample that is in contact, with its pressure in N.

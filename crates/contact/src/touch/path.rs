@@ -402,7 +402,7 @@ impl Touch {
             axpy(&mut foot, first[c], before[c]);
             axpy(&mut foot_now, first[c], corners[c]);
         }
-        let clearance = self.clearance(meeting.sample);
+        let clearance = self.mobility(meeting) * self.clearance(meeting.sample);
         let gap_before = dot(sub(start, foot), normal(before)) - clearance;
         let gap_now = meeting.gap - clearance;
         let given = state.given_since.get(meeting.sample as usize);

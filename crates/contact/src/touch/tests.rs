@@ -75,6 +75,27 @@ fn contact_keeps_the_laws_of_terms() {
 }
 
 #[test]
+fn what_cannot_move_is_not_pushed_apart() {
+    let (touch, positions) = pressed();
+    touch.follow(&positions);
+    assert!(!touch.correct(&positions, 0.0, 1.0), "it is too deep");
+    let (touch, _) = pressed();
+    let touch = touch.with_still(vec![[true; 3]; 8]);
+    touch.follow(&positions);
+    assert!(touch.pairs(&positions).is_empty());
+    assert!(touch.correct(&positions, 0.0, 1.0));
+    // The tip may still be moved along an axis that the normal has a part along.
+    for (axis, pushed) in [(0, 1), (2, 1)] {
+        let (touch, _) = pressed();
+        let mut still = vec![[true; 3]; 8];
+        still[4][axis] = false;
+        let touch = touch.with_still(still);
+        touch.follow(&positions);
+        assert_eq!(touch.pairs(&positions).len(), pushed);
+    }
+}
+
+#[test]
 fn contact_of_mirror_images_keeps_them_too_and_half_of_all_is_all_of_half() {
     // Half of a body beside the plane x = 0, and the whole of both halves.
     let half = PRESSED.map(|[x, y, z]| [x + 0.5, y, z]).to_vec();
