@@ -147,7 +147,7 @@ def _write(study: Study, folder: Path, notify: Listener) -> tuple[StudyResult, l
 
 
 def _draw_best(study: Study, result: StudyResult, folder: Path, notify: Listener) -> None:
-    """Draw the best design at rest; a study does not fail for want of its picture."""
+    """Draw the best design at rest; a study does not fail where that cannot be done."""
     if result.best is None or not isinstance(study.family, Design):
         return
     notify(_ended(study, result, "drawing the best design"))

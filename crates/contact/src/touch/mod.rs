@@ -86,10 +86,10 @@ const BOUND: [f64; 2] = [3e-3, 0.05];
 const NEARLY: f64 = 0.95;
 /// Corrections at one load after which samples keep what they face, and bounds may be off by more.
 const PATIENCE: u32 = 10;
-/// Parts of a motion, and of a direction, that are none.
-const ROUNDING: f64 = 1e-9;
 /// Corrections after which more precision than by default is given up.
 const PRECISE: u32 = 36;
+/// Parts of a motion, and of a direction, that are none.
+const ROUNDING: f64 = 1e-9;
 
 /// Who touches whom, and how.
 #[derive(Debug, Clone, PartialEq)]

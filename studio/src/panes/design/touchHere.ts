@@ -70,7 +70,7 @@ type Ends = readonly (readonly [number, number])[];
 const WHOLE: Ends = [0, 1, 2].map(() => [0, 0] as const);
 
 /**
- * How far a plate stays away from the ends of a face that clamps hold: what cannot move cannot give way to it.
+ * How far a plate that presses stays away from the ends of a face that clamps hold: what cannot move cannot give way.
  *
  * Null where vertices elsewhere on the face are held, or nothing would be left.
  */
@@ -198,8 +198,7 @@ export function touchOffers(around: Around): Offer[] {
   const rough: Change[] =
     contact === undefined ? [{ path: ["contact"], value: { friction: FIRST_FRICTION } }] : [];
   const offers: Offer[] = [];
-  const ends = freeOfClamps(face, body);
-  const plate = plateOn(face, around, ends ?? WHOLE);
+  const plate = plateOn(face, around);
   const { axis, normal } = face;
   if (plate && axis !== null) {
     const words = { label: "a plate that stays", done: "A plate on this face" };
@@ -212,18 +211,19 @@ export function touchOffers(around: Around): Offer[] {
       label: `a plate pressed ${written(depth)} into it`,
       done: `A plate that goes ${written(depth)} into this face`,
     };
-    const moved = plateOffer("press", pressing, plate, { displacement: way }, source);
-    offers.push({ ...moved, changes: [...moved.changes, ...rough] });
+    const ends = freeOfClamps(face, body);
+    const shape = (ends && plateOn(face, around, ends)) ?? plate;
+    const moved = plateOffer("press", pressing, shape, { displacement: way }, source);
+    const press = { ...moved, changes: [...moved.changes, ...rough] };
+    offers.push(ends ? press : heldOffer(press));
   }
-  if (!ends) offers.splice(0, offers.length, ...offers.map(heldOffer));
   const floor = floorOf(source, design);
   if (floor === null && isUnderneath(face, body)) {
     const { text } = levelText(face, 2, around);
-    const offer: Offer = {
+    offers.push({
       ...{ id: "floor", label: "a floor", done: "A floor under this face" },
       changes: [{ path: ["floor"], value: { z: text } }, ...rough],
-    };
-    offers.push(ends === WHOLE ? offer : heldOffer(offer));
+    });
   }
   const owner = ownerOf(face, body);
   for (const { name } of others(owner, body, floor))
