@@ -271,9 +271,12 @@ impl TouchParts {
         let still = still(problem);
         Ok(match &images {
             Some(images) => touch
-                .with_still(images.of.iter().map(|of| still[*of as usize]).collect())
+                .with_still(
+                    images.of.iter().map(|of| still[*of as usize]).collect(),
+                    &rest,
+                )
                 .with_planes(across(images), &rest),
-            None => touch.with_still(still),
+            None => touch.with_still(still, &rest),
         })
     }
 

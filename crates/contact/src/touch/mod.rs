@@ -127,8 +127,10 @@ pub struct Touch {
     weights: Vec<f64>,
     /// With these, the point that each is an image of, itself where it counts.
     twins: Vec<u32>,
-    /// The axes on which vertices never move, where that is known.
+    /// The axes on which vertices never move; empty where nothing touches in the unloaded design.
     still: Vec<[bool; 3]>,
+    /// With these, the samples that are within their clearance there.
+    touching: Vec<bool>,
     /// The triangles of all surfaces, of these points.
     triangles: Vec<[u32; 3]>,
     /// The surface of each.
@@ -283,6 +285,7 @@ impl Touch {
             weights: Vec::new(),
             twins: Vec::new(),
             still: Vec::new(),
+            touching: Vec::new(),
             triangles,
             surface_of,
             around,
@@ -306,17 +309,33 @@ impl Touch {
         self
     }
 
-    /// Says on which axes vertices never move, as those of a clamp without a motion.
+    /// Says on which axes vertices, which are at `rest` in the unloaded design, never move, as those of a clamp without a
+    /// motion.
     #[must_use]
-    pub fn with_still(mut self, still: Vec<[bool; 3]>) -> Self {
-        self.still = still;
+    pub fn with_still(mut self, still: Vec<[bool; 3]>, rest: &[Vec3]) -> Self {
+        let points = self.points_at(rest);
+        let near = |point: &u32| {
+            let facing = self.read().facing[*point as usize];
+            let meeting = facing.and_then(|facing| self.meeting(*point, facing, &points));
+            meeting.is_some_and(|meeting| meeting.gap < self.clearance(*point))
+        };
+        let touching = |sample: &Sample| sample.ends.iter().any(near);
+        let touching: Vec<bool> = self.samples.iter().map(touching).collect();
+        if touching.contains(&true) {
+            (self.still, self.touching) = (still, touching);
+        }
         self
     }
 
-    /// The part of what carries a meeting that could open its gap, at most 1: a half between a vertex that never moves
-    /// and one that does, beside what rests.
+    /// The part of the clearance that a meeting keeps: of what is within it in the unloaded design, the part of what carries
+    /// it that could open its gap, a half between a vertex that never moves and one that does, beside what rests. All of
+    /// it, where there was more to begin with.
     fn mobility(&self, meeting: &Meeting) -> f64 {
-        if self.still.is_empty() {
+        if !self
+            .touching
+            .get(meeting.sample as usize)
+            .is_some_and(|touches| *touches)
+        {
             return 1.0;
         }
         let mut free = 0.0;
@@ -420,8 +439,8 @@ impl Touch {
 
     /// The force with which a sample is pushed away, N.
     ///
-    /// Beside vertices that never move the clearance goes to zero: there gaps are what they are, and a multiplier that were
-    /// to open them would grow for ever.
+    /// Where a body touches from the first, the clearance goes to zero beside vertices that never move: there gaps are what
+    /// they are, and a multiplier that were to open them would grow for ever.
     fn pressure(&self, memory: &Memory, meeting: &Meeting) -> f64 {
         let k = self.penalty(meeting.sample);
         let clearance = self.clearance(meeting.sample);

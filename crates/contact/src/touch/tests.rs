@@ -80,16 +80,21 @@ fn what_cannot_move_is_not_pushed_apart() {
     touch.follow(&positions);
     assert!(!touch.correct(&positions, 0.0, 1.0), "it is too deep");
     let (touch, _) = pressed();
-    let touch = touch.with_still(vec![[true; 3]; 8]);
+    let touch = touch.with_still(vec![[true; 3]; 8], &PRESSED);
     touch.follow(&positions);
     assert!(touch.pairs(&positions).is_empty());
     assert!(touch.correct(&positions, 0.0, 1.0));
+    // What comes to touch later is met as ever.
+    let (touch, _) = pressed();
+    let touch = touch.with_still(vec![[true; 3]; 8], &apart(&PRESSED));
+    touch.follow(&positions);
+    assert_eq!(touch.pairs(&positions).len(), 1);
     // The normal has a part along each axis, along which the tip may be moved.
     for axis in 0..3 {
         let (touch, _) = pressed();
         let mut still = vec![[true; 3]; 8];
         still[4][axis] = false;
-        let touch = touch.with_still(still);
+        let touch = touch.with_still(still, &PRESSED);
         touch.follow(&positions);
         assert_eq!(touch.pairs(&positions).len(), 1);
     }
