@@ -21,6 +21,8 @@ import numpy as np
 import voxsoft as vs
 from voxsoft.design import Design, families
 from voxsoft.design.discretize import filled, mesh_of
+from voxsoft.design.solver import Solver
+from voxsoft.simulation import simulate
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 #: Examples that are solved within seconds; of the others cells and mesh are hashed.
@@ -47,7 +49,7 @@ def designs() -> Iterator[tuple[str, Design, bool]]:
         yield f"sphere, {fill}", ball, True
     for name, settings in METHODS.items():
         base = families.paper_beam() if name != "arc-length" else families.cylinder()
-        solver = vs.Solver.model_validate(settings)
+        solver = Solver.model_validate(settings)
         yield (
             f"{'beam' if name != 'arc-length' else 'cylinder'}, {name}",
             base.model_copy(update={"solver": solver}),
@@ -73,7 +75,7 @@ def hashes(design: Design, solved: bool) -> dict[str, str]:
     row = {"cells": cells, "mesh": digest(mesh.vertices, mesh.tets, mesh.tet_part)}
     if solved:
         quiet = design.solver.model_copy(update={"error": "off"})
-        result = vs.simulate(design.model_copy(update={"solver": quiet}))
+        result = simulate(design.model_copy(update={"solver": quiet}))
         row["solution"] = digest(result.positions)
     return row
 
