@@ -157,7 +157,11 @@ def test_a_box_fills_its_cells_exactly():
     assert voxels.origin == (0.0, 0.0, 0.0)
 
 
-def test_the_lattice_passes_through_the_origin_of_coordinates():
-    voxels = voxelize(Box(size=(0.01, 0.01, 0.01), corner=(0.003, -0.012, 0)), 0.005)
-    assert voxels.origin == pytest.approx((0, -0.015, 0))
-    assert voxels.shape == (3, 3, 2)
+def test_the_lattice_passes_through_the_origin_of_coordinates_unless_the_body_is_whole_elsewhere():
+    box = Box(size=(0.01, 0.01, 0.011), corner=(0.003, -0.012, 0))
+    voxels = voxelize(box, 0.005)
+    assert voxels.origin == pytest.approx((0.003, -0.012, 0))
+    assert voxels.shape == (2, 2, 3)
+    there = voxelize(box, 0.005, phase=(0, 0, 0))
+    assert there.origin == pytest.approx((0, -0.015, 0))
+    assert there.shape == (3, 3, 3)

@@ -403,6 +403,7 @@ impl PyShape {
         origin: Point,
         voxel_size: f64,
         shape: [usize; 3],
+        tie: f64,
         memory_limit: u64,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let grid = SampleGrid {
@@ -411,7 +412,7 @@ impl PyShape {
             shape,
         };
         let cells = gate::run(py, |cancel| {
-            voxsoft_shape::sample(&self.0, &grid, memory_limit, cancel)
+            voxsoft_shape::sample(&self.0, &grid, tie, memory_limit, cancel)
         })?;
         let cells = cells.map_err(|error| sample_error(py, &error))?;
         cells.into_pyarray(py).reshape(shape)

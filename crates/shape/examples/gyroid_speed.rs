@@ -30,7 +30,8 @@ fn report(name: &str, shape: &Shape) {
         shape: [256; 3],
     };
     let start = Instant::now();
-    let cells = sample(shape, &grid, u64::MAX, &AtomicBool::new(false)).expect("a valid grid");
+    let cells =
+        sample(shape, &grid, 1e-12, u64::MAX, &AtomicBool::new(false)).expect("a valid grid");
     let seconds = start.elapsed().as_secs_f64();
     let inside: usize = cells.iter().map(|&cell| usize::from(cell)).sum();
     let rate = cells.len() as f64 / seconds / 1e6;

@@ -18,7 +18,7 @@
 //!
 //! // Its cells of 5 mm.
 //! let grid = SampleGrid { origin: [-0.025, -0.025, 0.0], voxel_size: 0.005, shape: [10, 10, 7] };
-//! let cells = sample(&body, &grid, u64::MAX, &AtomicBool::new(false))?;
+//! let cells = sample(&body, &grid, 1e-12, u64::MAX, &AtomicBool::new(false))?;
 //! assert_eq!(cells.iter().filter(|&&cell| cell == 1).count(), 300);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -53,7 +53,7 @@ pub use error::{BuildError, FieldError, ParseError, SampleError};
 pub use expr::{Binary, Expr, Node, Unary, length};
 pub use field::{Field, distance_range};
 pub use parse::parse;
-pub use sample::{SampleGrid, TIE, sample};
+pub use sample::{INSIDE, OUTSIDE, SampleGrid, TIED, sample};
 pub use search::HORIZON;
 pub use shape::Shape;
 pub use tape::Tape;

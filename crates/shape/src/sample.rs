@@ -1,8 +1,8 @@
 //! Classification of the cells of a grid: which centers lie inside a shape.
 //!
-//! A cell is inside when s < −10⁻⁹ voxel sizes at its center, in float64: values closer to zero
-//! count as on the surface, hence outside, so that rounding cannot flip a cell whose center lies
-//! exactly there.
+//! A cell is inside when s < −t at its center and outside when s > t, in float64. Between them the
+//! center lies on the surface as far as rounding can tell, a [`TIED`] cell: who samples decides it
+//! (`python/voxsoft/shapes/ties.py`).
 //!
 //! Blocks of cells are decided together where interval arithmetic proves one sign; the others are
 //! split, each with the part of the function that matters there, and the smallest are evaluated by
@@ -24,8 +24,12 @@ use crate::worker::{Classifier, Worker};
 /// Cells along the edge of the blocks handed to threads.
 const TILE: usize = 64;
 
-/// Centers closer to the surface than this part of a voxel count as on it.
-pub const TIE: f64 = 1e-9;
+/// A cell whose center is outside.
+pub const OUTSIDE: u8 = 0;
+/// A cell whose center is inside.
+pub const INSIDE: u8 = 1;
+/// A cell whose center lies on the surface.
+pub const TIED: u8 = 2;
 
 /// Operations of float64, over all cells, that take no longer than compiling the function does.
 const FEW_OPERATIONS: u128 = 100_000;
@@ -87,7 +91,8 @@ impl SampleGrid {
     }
 }
 
-/// Tells for each cell, in C order (x slowest), whether its center is inside: 1, else 0.
+/// Tells for each cell, in C order (x slowest), where its center is: [`INSIDE`], [`OUTSIDE`], or
+/// [`TIED`] where the value is within `tie` (m) of zero.
 ///
 /// The result does not depend on the number of threads. `cancel` stops the work early.
 ///
@@ -100,7 +105,7 @@ impl SampleGrid {
 /// use voxsoft_shape::{SampleGrid, primitives, sample};
 /// let ball = primitives::sphere([0.0; 3], 1.0)?;
 /// let grid = SampleGrid { origin: [-1.0; 3], voxel_size: 0.1, shape: [20; 3] };
-/// let cells = sample(&ball, &grid, u64::MAX, &AtomicBool::new(false))?;
+/// let cells = sample(&ball, &grid, 1e-10, u64::MAX, &AtomicBool::new(false))?;
 /// let volume = cells.iter().filter(|&&c| c == 1).count() as f64 * 1e-3;
 /// assert!((volume - 4.189).abs() < 0.05);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -108,28 +113,30 @@ impl SampleGrid {
 pub fn sample(
     shape: &Shape,
     grid: &SampleGrid,
+    tie: f64,
     memory_limit: u64,
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
     grid.check(memory_limit)?;
     let tape = Tape::new(&shape.expr);
     if !tape.has_fields() && grid.cells() * tape.len() as u128 <= FEW_OPERATIONS {
-        return evaluate_all(&tape, grid);
+        return evaluate_all(&tape, grid, tie);
     }
     #[cfg(all(feature = "jit", not(target_arch = "wasm32")))]
     if runs_machine_code() {
-        return sample_by::<MachineCode>(shape, grid, cancel);
+        return sample_by::<MachineCode>(shape, grid, tie, cancel);
     }
-    sample_by::<Interpreted>(shape, grid, cancel)
+    sample_by::<Interpreted>(shape, grid, tie, cancel)
 }
 
 /// [`sample`] with one of fidget's evaluators.
 fn sample_by<F: MathFunction>(
     shape: &Shape,
     grid: &SampleGrid,
+    tie: f64,
     cancel: &AtomicBool,
 ) -> Result<Vec<u8>, SampleError> {
-    let classifier = Classifier::<F>::new(shape, grid, TIE * grid.voxel_size)?;
+    let classifier = Classifier::<F>::new(shape, grid, tie)?;
     let tiles = Block::whole(grid.shape).split(TILE);
     let done = for_each_tile(&tiles, |worker, tile| {
         if cancel.load(Ordering::Relaxed) {
@@ -151,7 +158,7 @@ fn sample_by<F: MathFunction>(
 }
 
 /// As [`sample`], by the definition.
-fn evaluate_all(tape: &Tape, grid: &SampleGrid) -> Result<Vec<u8>, SampleError> {
+fn evaluate_all(tape: &Tape, grid: &SampleGrid, tie: f64) -> Result<Vec<u8>, SampleError> {
     let [nx, ny, nz] = grid.shape;
     let mut centers = Vec::with_capacity(nx * ny * nz);
     for i in 0..nx {
@@ -165,8 +172,21 @@ fn evaluate_all(tape: &Tape, grid: &SampleGrid) -> Result<Vec<u8>, SampleError> 
     if let Some(first) = undefined.next() {
         return Err(not_a_number(centers[first], 1 + undefined.count()));
     }
-    let threshold = -TIE * grid.voxel_size;
-    Ok(values.iter().map(|s| u8::from(*s < threshold)).collect())
+    Ok(values
+        .iter()
+        .map(|s| verdict(*s, *s, tie).unwrap_or(TIED))
+        .collect())
+}
+
+/// Where a center is whose value lies between two bounds; None where they do not tell.
+pub(crate) fn verdict(low: f64, high: f64, tie: f64) -> Option<u8> {
+    if high < -tie {
+        Some(INSIDE)
+    } else if low > tie {
+        Some(OUTSIDE)
+    } else {
+        None
+    }
 }
 
 fn not_a_number(at: [f64; 3], count: usize) -> SampleError {
@@ -214,10 +234,10 @@ mod tests {
             shape: [60; 3],
         };
         let go_on = AtomicBool::new(false);
-        let interpreted = sample_by::<Interpreted>(&shape, &grid, &go_on).unwrap();
+        let interpreted = sample_by::<Interpreted>(&shape, &grid, 1e-12, &go_on).unwrap();
         assert!(interpreted.contains(&1) && interpreted.contains(&0));
         if runs_machine_code() {
-            let compiled = sample_by::<MachineCode>(&shape, &grid, &go_on).unwrap();
+            let compiled = sample_by::<MachineCode>(&shape, &grid, 1e-12, &go_on).unwrap();
             assert!(compiled == interpreted);
         }
     }

@@ -8,7 +8,7 @@ use crate::compiled::{FloatEval, IntervalEval, Part};
 use crate::error::SampleError;
 use crate::layers::{Layers, spread};
 use crate::range::Range;
-use crate::sample::SampleGrid;
+use crate::sample::{INSIDE, OUTSIDE, SampleGrid, TIED, verdict};
 use crate::shape::Shape;
 use crate::tape::Tape;
 
@@ -29,8 +29,8 @@ pub(crate) struct Classifier<F: Function> {
     compiled: Option<Part<F>>,
     layers: Layers,
     grid: SampleGrid,
-    /// Inside means s below this
-    threshold: f64,
+    /// On the surface means s within this of zero, m
+    tie: f64,
 }
 
 impl<F: MathFunction> Classifier<F> {
@@ -44,18 +44,12 @@ impl<F: MathFunction> Classifier<F> {
             compiled,
             layers: Layers::new(&tables, grid)?,
             grid: *grid,
-            threshold: -tie,
+            tie,
         })
     }
 
     fn verdict(&self, low: f64, high: f64) -> Option<u8> {
-        if high < self.threshold {
-            Some(1)
-        } else if low >= self.threshold {
-            Some(0)
-        } else {
-            None
-        }
+        verdict(low, high, self.tie)
     }
 
     /// The cell centers of a block along each axis, m.
@@ -256,14 +250,12 @@ impl<F: MathFunction> Worker<F> {
                     .floats
                     .eval_with_var_arrays(&part.floats, x, y, z, &self.layer_values)
                     .expect("slices of one length, and every variable is a table");
-                let (inside, outside) =
-                    ((of.threshold - error) as f32, (of.threshold + error) as f32);
+                let (inside, outside) = ((-of.tie - error) as f32, (of.tie + error) as f32);
                 for (values, start) in values.chunks_exact(row).zip(starts) {
                     for (position, &value) in (start..).zip(values) {
-                        canvas.cells[position] = u8::from(value < inside);
-                        // Written so that NaN is doubtful too; the ends take the rounding of the
-                        // limits.
-                        if !(value < inside || value > outside) || value == inside {
+                        canvas.cells[position] = if value < inside { INSIDE } else { OUTSIDE };
+                        // Written so that NaN and the rounded limits themselves are doubtful too.
+                        if !(value < inside || value > outside) {
                             self.doubtful.push(position);
                         }
                     }
@@ -292,7 +284,7 @@ impl<F: MathFunction> Worker<F> {
         self.values.resize(self.points.len(), 0.0);
         of.tape.evaluate_into(&self.points, &mut self.values)?;
         for (&position, &value) in self.doubtful.iter().zip(&self.values) {
-            canvas.cells[position] = u8::from(value < of.threshold);
+            canvas.cells[position] = of.verdict(value, value).unwrap_or(TIED);
             if value.is_nan() {
                 canvas.undefined.push(canvas.index(position));
             }

@@ -3,7 +3,12 @@ use std::sync::atomic::AtomicBool;
 
 use proptest::prelude::*;
 use voxsoft_shape::periodic::{Struts, Surface};
-use voxsoft_shape::{Expr, SampleError, SampleGrid, Shape, TIE, operators, primitives, sample};
+use voxsoft_shape::{
+    Expr, INSIDE, OUTSIDE, SampleError, SampleGrid, Shape, TIED, operators, primitives, sample,
+};
+
+/// Values as near to zero as this are ties, m.
+const TIE: f64 = 1e-12;
 
 /// Every cell on its own, in float64.
 fn brute_force(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
@@ -16,17 +21,20 @@ fn brute_force(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
             }
         }
     }
-    let threshold = -TIE * grid.voxel_size;
     shape
         .evaluate(&points)
         .unwrap()
         .iter()
-        .map(|&s| u8::from(s < threshold))
+        .map(|&s| match s {
+            s if s < -TIE => INSIDE,
+            s if s > TIE => OUTSIDE,
+            _ => TIED,
+        })
         .collect()
 }
 
 fn classify(shape: &Shape, grid: &SampleGrid) -> Vec<u8> {
-    sample(shape, grid, u64::MAX, &AtomicBool::new(false)).unwrap()
+    sample(shape, grid, TIE, u64::MAX, &AtomicBool::new(false)).unwrap()
 }
 
 /// A grid of about `cells`³ that covers ±0.05 m, deliberately not a whole number of blocks.
@@ -255,7 +263,7 @@ fn too_large_a_grid_is_refused_before_allocating() {
         voxel_size: 1e-6,
         shape: [2_000_000; 3],
     };
-    let refused = sample(&ball, &grid, 1 << 30, &AtomicBool::new(false));
+    let refused = sample(&ball, &grid, TIE, 1 << 30, &AtomicBool::new(false));
     assert!(
         matches!(refused, Err(SampleError::TooLarge { bytes, .. }) if bytes == 16 * 10_u128.pow(18))
     );
@@ -267,7 +275,7 @@ fn a_function_without_a_value_is_an_error_with_its_place() {
     let shape = Shape::unknown(x.sqrt() - 0.01);
     // Few cells, which are evaluated one by one, and many.
     for (cells, undefined) in [(20, 10 * 23 * 15), (80, 40 * 83 * 75)] {
-        let refused = sample(&shape, &grid(cells), u64::MAX, &AtomicBool::new(false));
+        let refused = sample(&shape, &grid(cells), TIE, u64::MAX, &AtomicBool::new(false));
         let Err(SampleError::NotANumber { count, at }) = refused else {
             panic!("{refused:?}")
         };
@@ -280,6 +288,6 @@ fn a_function_without_a_value_is_an_error_with_its_place() {
 #[test]
 fn cancel_stops() {
     let ball = primitives::sphere([0.0; 3], 0.04).unwrap();
-    let stopped = sample(&ball, &grid(75), u64::MAX, &AtomicBool::new(true));
+    let stopped = sample(&ball, &grid(75), TIE, u64::MAX, &AtomicBool::new(true));
     assert_eq!(stopped, Err(SampleError::Canceled));
 }

@@ -1,7 +1,8 @@
-//! Filling cells: a cell belongs to a solid when its center lies strictly inside.
+//! Filling cells: a cell belongs to a solid when its center lies inside.
 //!
-//! Centers within 1e-9 voxels of the surface count as outside, so that a radius that is a whole
-//! number of voxels gives the same cells whatever the rounding of the inputs.
+//! Centers within 1e-9 voxels of the surface are decided by a rule and not by rounding. Of two
+//! opposite flat faces one takes them, the lower face of a box and the base of a cylinder, so that
+//! a solid of whole voxels has its volume wherever it lies. A round surface takes none.
 use crate::grid::Grid;
 use crate::vectors::{dot, norm, sub};
 
@@ -50,6 +51,8 @@ impl Grid {
     ) {
         let direction = axis.map(|x| x / norm(axis));
         let top: [f64; 3] = std::array::from_fn(|a| base[a] + height * direction[a]);
+        // Moves the base out by two ties: centers on it are inside, on the top they are not.
+        let on_base = 2.0 * TIE * self.voxel_size();
         let lower = std::array::from_fn(|a| base[a].min(top[a]) - outer_radius);
         let upper = std::array::from_fn(|a| base[a].max(top[a]) + outer_radius);
         self.fill_where(lower, upper, part, |p| {
@@ -64,7 +67,7 @@ impl Grid {
             };
             (radius - outer_radius)
                 .max(bore)
-                .max(-along)
+                .max(-along - on_base)
                 .max(along - height)
         });
     }
@@ -92,15 +95,14 @@ impl Grid {
         distance: impl Fn([f64; 3]) -> f64,
     ) {
         let (size, origin, shape) = (self.voxel_size(), self.origin(), self.shape());
-        // Centers at (i + 1/2) μ strictly between the two planes.
-        let first: [usize; 3] = std::array::from_fn(|a| {
-            let from = ((lower[a] - origin[a]) / size - 0.5 + TIE).ceil();
-            from.clamp(0.0, shape[a] as f64) as usize
-        });
-        let end: [usize; 3] = std::array::from_fn(|a| {
-            let to = ((upper[a] - origin[a]) / size - 0.5 - TIE).floor() + 1.0;
-            to.clamp(0.0, shape[a] as f64) as usize
-        });
+        // The first center at (i + 1/2) μ that is not below a plane.
+        let first_from = |plane: [f64; 3]| -> [usize; 3] {
+            std::array::from_fn(|a| {
+                let index = ((plane[a] - origin[a]) / size - 0.5 - TIE).ceil();
+                index.clamp(0.0, shape[a] as f64) as usize
+            })
+        };
+        let (first, end) = (first_from(lower), first_from(upper));
         for i in first[0]..end[0] {
             for j in first[1]..end[1] {
                 for k in first[2]..end[2] {
@@ -137,6 +139,22 @@ mod tests {
         assert_eq!(filled.part_counts()[2], 6);
         filled.fill_box([-9.0; 3], [9.0; 3], 0);
         assert_eq!(filled.count(), 0);
+    }
+
+    #[test]
+    fn flat_faces_through_centers_keep_the_volume() {
+        for shift in [0.0, 0.05, 0.1 / 3.0] {
+            let mut filled = grid(9);
+            filled.fill_box([0.1 + shift; 3], [0.4 + shift; 3], 1);
+            assert_eq!(filled.count(), 27, "{shift}");
+            for axis in [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]] {
+                let base = if axis[2] > 0.0 { 0.1 } else { 0.4 } + shift;
+                let mut tube = grid(9);
+                tube.fill_cylinder([0.45, 0.45, base], axis, 0.22, 0.3, 1);
+                // Integer points with |p| < 2.2 in each of three layers.
+                assert_eq!(tube.count(), 3 * 13, "{shift} {axis:?}");
+            }
+        }
     }
 
     #[test]

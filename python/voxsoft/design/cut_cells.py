@@ -10,11 +10,13 @@ from numpy.typing import NDArray
 
 from voxsoft import _core
 from voxsoft._memory import memory_limit
+from voxsoft.design.grid import phase_of
 from voxsoft.design.model import Design
 from voxsoft.errors import ShapeError
 from voxsoft.shapes import Shape, inside
+from voxsoft.shapes.base import Triple
 from voxsoft.shapes.fractions import SUBCELLS, fill
-from voxsoft.shapes.sampling import grid_bounds
+from voxsoft.shapes.sampling import Body
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -37,7 +39,9 @@ class CutCells:
     Attributes
     ----------
     low
-        The lowest cell of the grid on the lattice through the origin, (3,).
+        The lowest cell of the grid counted from the phase, (3,).
+    phase
+        Where the grid lies: a corner of a cell [m].
     size
         Edge of a cell [m].
     filled
@@ -49,6 +53,7 @@ class CutCells:
     """
 
     low: Ints
+    phase: Triple
     size: float
     filled: Floats
     part: NDArray[np.uint8]
@@ -57,12 +62,12 @@ class CutCells:
     @property
     def origin(self) -> tuple[float, float, float]:
         """The lowest corner of the grid [m]."""
-        x, y, z = (self.low * self.size).tolist()
+        x, y, z = (np.asarray(self.phase) + self.low * self.size).tolist()
         return x, y, z
 
 
 def cut_cells(design: Design, size: float) -> CutCells:
-    """Measure how full the cells of a lattice are.
+    """Measure how full the cells of a grid are.
 
     Parameters
     ----------
@@ -84,8 +89,10 @@ def cut_cells(design: Design, size: float) -> CutCells:
     >>> bool(cells.filled.min() == 0.0), bool(cells.filled.max() == 1.0)
     (True, True)
     """
+    phase = phase_of(design)
     shapes = [_shape(design, part.shape) for part in design.parts]
-    bounds = [grid_bounds(shape, size, names=design.shapes) for shape in shapes]
+    body = Body(shapes, size, design.shapes, phase)
+    bounds = [body.cells_of(index, phase) for index in range(len(shapes))]
     low = np.min([corner for corner, _ in bounds], axis=0) - 1
     high = np.max([corner for _, corner in bounds], axis=0) + 1
     counts = high - low
@@ -97,7 +104,7 @@ def cut_cells(design: Design, size: float) -> CutCells:
     filled = np.zeros(counts)
     part = np.zeros(counts, dtype=np.uint8)
     for index in range(len(shapes) - 1, -1, -1):
-        state = _state(shapes[index], design, size, low, counts)
+        state = _state(shapes[index], design, size, np.asarray(phase) + low * size, counts)
         if not state.any():
             hint = "use a smaller voxel_size, or check its sizes and place"
             raise ShapeError(f"parts[{index}]", "is empty: it fills no part of any voxel", hint)
@@ -107,19 +114,21 @@ def cut_cells(design: Design, size: float) -> CutCells:
     cells = np.argwhere(near)
     for start in range(0, len(cells), _CHUNK):
         chunk = cells[start : start + _CHUNK]
-        found, _, shares = filled_parts(design, chunk + low, size)
+        found, _, shares = filled_parts(design, chunk + low, size, phase)
         filled[tuple(chunk.T)] = _whole(found.mean(axis=1))
         part[tuple(chunk.T)] = np.argmax(shares > shares.max(axis=1, keepdims=True) - 1e-9, axis=1)
-    return CutCells(low, size, filled, part, cells)
+    return CutCells(low, phase, size, filled, part, cells)
 
 
-def filled_parts(design: Design, cells: Ints, size: float) -> tuple[Floats, Floats, Floats]:
-    """Return the filled part of each small cube of some cells of the lattice.
+def filled_parts(
+    design: Design, cells: Ints, size: float, phase: Triple
+) -> tuple[Floats, Floats, Floats]:
+    """Return the filled part of each small cube of some cells of the grid.
 
     Parameters and results are those of :func:`voxsoft.shapes.fractions.fill`, for cells given by
-    their integers on the lattice through the origin, (k, 3).
+    their integers on the grid, (k, 3), and its phase [m].
     """
-    corners: Floats = cells * np.float64(size)
+    corners: Floats = np.asarray(phase) + cells * np.float64(size)
     return fill(built_parts(design), corners, size)
 
 
@@ -128,7 +137,7 @@ def built_parts(design: Design) -> list[_core.Shape]:
     return [_shape(design, part.shape).build(design.shapes) for part in design.parts]
 
 
-def measures_of(design: Design, cells: Ints, size: float) -> Floats:
+def measures_of(design: Design, cells: Ints, size: float, phase: Triple) -> Floats:
     """Return integrals over the material of some cells, (k, 10).
 
     Those of 1, ξ, η, ζ, ξ², η², ζ², ηζ, ζξ, ξη, in volumes of a cell. The coordinates count from
@@ -139,14 +148,16 @@ def measures_of(design: Design, cells: Ints, size: float) -> Floats:
     design
         The design.
     cells
-        Their integers on the lattice through the origin, (k, 3).
+        Their integers on the grid, (k, 3).
     size
         Edge of a cell [m].
+    phase
+        Where the grid lies: a corner of a cell [m].
     """
     found = np.zeros((len(cells), len(WHOLE)))
     for start in range(0, len(cells), _CHUNK):
         chunk = slice(start, start + _CHUNK)
-        filled, normals, _ = filled_parts(design, cells[chunk], size)
+        filled, normals, _ = filled_parts(design, cells[chunk], size, phase)
         found[chunk] = integrals(filled, normals)
     found[found[:, 0] > 1.0 - _ROUNDING] = WHOLE
     found[found[:, 0] < _ROUNDING] = 0.0
@@ -199,14 +210,16 @@ def _whole(filled: Floats) -> Floats:
     return found
 
 
-def _state(shape: Shape, design: Design, size: float, low: Ints, counts: Ints) -> NDArray[np.uint8]:
+def _state(
+    shape: Shape, design: Design, size: float, corner: Floats, counts: Ints
+) -> NDArray[np.uint8]:
     """Of each cell: 0 no small cube has its center inside, 2 all have, 1 some have."""
     n = SUBCELLS
     state = np.zeros(counts, dtype=np.uint8)
     step = max(1, _SLAB // int(counts[1] * counts[2] * n**3))
     for start in range(0, int(counts[0]), step):
         thick = min(step, int(counts[0]) - start)
-        x, y, z = ((low + np.array([start, 0, 0])) * size).tolist()
+        x, y, z = (corner + np.array([start * size, 0.0, 0.0])).tolist()
         fine = (thick * n, int(counts[1]) * n, int(counts[2]) * n)
         found = inside(shape, size / n, fine, (x, y, z), design.shapes)
         sums = found.reshape(thick, n, counts[1], n, counts[2], n).sum(axis=(1, 3, 5))

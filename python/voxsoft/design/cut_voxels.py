@@ -22,6 +22,7 @@ from voxsoft.design.model import Design
 from voxsoft.design.rooms import ROOM_TETS, room_parts
 from voxsoft.errors import DesignError, ShapeError
 from voxsoft.mesh import Mesh
+from voxsoft.shapes.base import Triple
 from voxsoft.shapes.fractions import SUBCELLS
 from voxsoft.voxels import Voxels
 
@@ -40,14 +41,15 @@ Void = tuple[Ints, Floats]
 class _Topology:
     """What stays while fractions vary: which cells are voxels, and where the rest belongs.
 
-    `places` are the cells near the surface on the lattice, (k, 3). `voxel` is the number of each
-    as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers` are pairs
-    of such a cell and a neighboring one that takes its material. `region` tells for each cell the
-    cavity (from 0) around it or that its void belongs to, -1 for none, and -2 where `zones`, by
-    small cube, (z, n³), tell: those of the cells `torn`, (z,).
+    `places` are the cells near the surface on the grid at `phase`, (k, 3). `voxel` is the number
+    of each as a voxel, -1 for the others; `whole` is the number of voxels. `donors`, `receivers`
+    are pairs of such a cell and a neighboring one that takes its material. `region` tells for each
+    cell the cavity (from 0) around it or that its void belongs to, -1 for none, and -2 where
+    `zones`, by small cube, (z, n³), tell: those of the cells `torn`, (z,).
     """
 
     size: float
+    phase: Triple
     whole: int
     places: Ints = field(repr=False)
     voxel: Ints = field(repr=False)
@@ -182,6 +184,7 @@ def _topology(cells: CutCells, active: NDArray[np.bool_], voxels: Voxels) -> _To
     region, torn, zones = _zones(labels, near, voxel)
     return _Topology(
         size=cells.size,
+        phase=cells.phase,
         whole=voxels.count,
         places=near + cells.low,
         voxel=voxel,
@@ -254,7 +257,7 @@ def _nearest(seen: NDArray[np.int16]) -> NDArray[np.int16]:
 
 def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, ...], float]:
     """Fractions and moments of the voxels, voids of the cavities, lost volume [m³]."""
-    measures = measures_of(design, t.places, t.size)
+    measures = measures_of(design, t.places, t.size, t.phase)
     filled = measures[:, 0]
     own = t.voxel >= 0
     held = np.tile(WHOLE, (t.whole, 1))
@@ -277,7 +280,7 @@ def _spread(design: Design, t: _Topology) -> tuple[Floats, Floats, tuple[Void, .
     moments = np.hstack([center, np.sqrt(3.0 * variance), products])
 
     if len(t.torn):
-        torn, normals, _ = filled_parts(design, t.places[t.torn], t.size)
+        torn, normals, _ = filled_parts(design, t.places[t.torn], t.size, t.phase)
     voids = []
     for cavity in range(t.cavities):
         room, over = np.zeros((t.whole, len(WHOLE))), np.zeros((t.whole, len(WHOLE)))

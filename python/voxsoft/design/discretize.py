@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.grid import grid_of
 from voxsoft.design.joined import joined
 from voxsoft.design.model import Design
 from voxsoft.design.refinement import TIMES_AS_SMALL
 from voxsoft.design.require import require_design
 from voxsoft.errors import DesignError
 from voxsoft.mesh import Mesh
-from voxsoft.shapes import voxelize
 from voxsoft.voxels import Voxels
 
 
@@ -96,7 +96,7 @@ def filled(design: Design, refine: int = 1) -> Filled:
     if design.fill == "fraction":
         cut = CutVoxels.of(design, refine)
         return Filled(cut.voxels, cut.voxels.count, cut.lost, cut.mesh)
-    voxels = _full_voxels(design)
+    voxels = grid_of(design).voxels()
     mesh = (lambda: voxels.refine(refine).mesh()) if refine > 1 else voxels.mesh
     return Filled(voxels, voxels.count * refine**3, 0.0, mesh)
 
@@ -120,27 +120,6 @@ def _numbers(design: Design, body: str) -> NDArray[np.uint8]:
     """What the parts of a body, counted from 1, are called among all."""
     own = [index + 1 for index, part in enumerate(design.parts) if part.body == body]
     return np.array([0, *own], dtype=np.uint8)
-
-
-def _full_voxels(design: Design) -> Voxels:
-    size = design.voxel_size
-    grids = []
-    for part in design.parts:
-        shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
-        grids.append(voxelize(shape, size, names=design.shapes))
-    if len(grids) == 1:
-        return grids[0]
-    corners = [np.rint(np.asarray(grid.origin) / size).astype(int) for grid in grids]
-    low = np.min(corners, axis=0)
-    high = np.max([c + grid.shape for c, grid in zip(corners, grids, strict=True)], axis=0)
-    cells = np.zeros(high - low, dtype=np.uint8)
-    for index in range(len(grids) - 1, -1, -1):
-        window = tuple(
-            slice(start, start + count)
-            for start, count in zip(corners[index] - low, grids[index].shape, strict=True)
-        )
-        cells[window][grids[index].array > 0] = index + 1
-    return Voxels.from_array(cells, size, tuple((low * size).tolist()))
 
 
 def mesh_of(design: Design, refine: int = 1) -> Mesh:

@@ -36,7 +36,7 @@ from voxsoft.shapes.grammar import random_shape
 from voxsoft.shapes.periodic import *
 from voxsoft.shapes.primitives import *
 from voxsoft.shapes.repeats import *
-from voxsoft.shapes.sampling import grid_bounds, inside, voxelize
+from voxsoft.shapes.sampling import inside, voxelize
 from voxsoft.shapes.surfaces import *
 from voxsoft.shapes.transforms import *
 from voxsoft.shapes.triangles import *
@@ -46,7 +46,6 @@ __all__ = [
     "AnyShape",
     "Scope",
     "Shape",
-    "grid_bounds",
     "inside",
     "random_shape",
     "voxelize",

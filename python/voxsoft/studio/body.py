@@ -21,7 +21,7 @@ from voxsoft.design.discretize import Filled, filled, voxels_of
 from voxsoft.design.load import scaled
 from voxsoft.errors import MeshError, ShapeError, VoxSoftError
 from voxsoft.mesh import Mesh
-from voxsoft.shapes.sampling import grid_bounds
+from voxsoft.shapes.sampling import corners_of
 from voxsoft.simulation import Setup
 from voxsoft.simulation.check import CheckReport, examine
 from voxsoft.simulation.choice import method_of
@@ -257,8 +257,9 @@ def _refuse_far_too_large(design: Design) -> None:
     cells = 0
     for part in design.parts:
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
-        low, high = grid_bounds(shape, design.voxel_size, names=design.shapes)
-        cells += math.prod(b - a for a, b in zip(low, high, strict=True))
+        low, high = corners_of(shape, None, design.shapes)
+        sides = (math.ceil((b - a) / design.voxel_size) for a, b in zip(low, high, strict=True))
+        cells += math.prod(sides)
     coarser = math.ceil((cells / CELLS_OF_A_LOOK) ** (1 / 3))
     if coarser < 2:
         return

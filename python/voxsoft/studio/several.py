@@ -18,7 +18,7 @@ from voxsoft.files.atomic import write_atomically
 from voxsoft.files.designs import read_document, read_text
 from voxsoft.files.toml_edits import with_value
 from voxsoft.files.toml_text import write_toml
-from voxsoft.shapes.sampling import grid_bounds
+from voxsoft.shapes.sampling import corners_of
 from voxsoft.studio import events
 from voxsoft.studio.copies import Change, free_name, names_of, point
 from voxsoft.studio.document import DesignDocument
@@ -245,8 +245,6 @@ def _lowest(design: Design) -> float:
 
 
 def _boxes(design: Design) -> Iterator[tuple[list[float], list[float]]]:
-    size = design.voxel_size
     for part in design.parts:
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
-        low, high = grid_bounds(shape, size, names=design.shapes)
-        yield [size * each for each in low], [size * each for each in high]
+        yield corners_of(shape, None, design.shapes)
