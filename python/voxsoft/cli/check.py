@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +14,7 @@ from voxsoft.cli.output import plain, print_json, quantity, say
 
 if TYPE_CHECKING:
     from voxsoft.simulation import CheckReport
+    from voxsoft.simulation.volumes import Volume
 
 
 def check(
@@ -76,9 +78,28 @@ def _show_body(report: CheckReport) -> None:
         volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")
         name = report.chambers[index] if index < len(report.chambers) else ""
         called = f"chamber {name}" if name else f"cavity {index}"
-        say(f"{plain(called)}: {volume}, walls of {area}")
+        described = report.volumes.cavities.get(name or f"cavity {index}")
+        shapes = "" if described is None else f" in voxels, {_beside(described)}"
+        say(f"{plain(called)}: {volume}{shapes}; walls of {area}")
+    for name, found in report.volumes.parts.items():
+        simulated = quantity(found.simulated, "volume")
+        say(f"{plain(name)}: {simulated} in voxels, {_beside(found)}")
+    for name, phase in report.phases.items():
+        if any(phase):
+            shift = ", ".join(f"{1e3 * each:.6g}" for each in phase)
+            body = f"body {plain(name)}: " if name else ""
+            say(f"{body}a corner of the voxels lies at ({shift}) mm, to fit the body")
     if report.thinnest_wall:
         plural = "s" if report.thinnest_wall > 1 else ""
         say(f"thinnest wall: {report.thinnest_wall} voxel{plural}")
     took = "" if report.cost is None else f"{report.cost.sentence}; "
     say(f"one run: {took}{report.memory / 1e6:.3g} MB")
+
+
+def _beside(volume: Volume) -> str:
+    """What the shapes have beside the voxels."""
+    described = quantity(volume.described, "volume")
+    if not math.isfinite(volume.difference):
+        return f"{described} in its shapes"
+    share = "as" if abs(volume.difference) < 5e-4 else f"{volume.difference:+.1%} of"
+    return f"{share} its shapes' {described}"

@@ -16,6 +16,7 @@ from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.surface_files import Surface, read_surface
 from voxsoft.simulation import CheckReport, Diagnostic, check
 from voxsoft.simulation.surfaces import findings_of_surface
+from voxsoft.simulation.volumes import doubts, volumes_in
 from voxsoft.units import format_quantity, parse
 
 #: Voxels along the longest side of a mesh whose voxel size is not given.
@@ -86,12 +87,15 @@ def check_mesh(
     size, chosen = _voxel_size(voxel_size, _extents(surface) * meter)
     try:
         mesh = TriangleMesh(path=str(file), unit=unit)
-        report = check(voxelize(mesh, size))
+        voxels = voxelize(mesh, size)
+        report = check(voxels)
+        volumes = volumes_in(mesh, voxels.mesh(), file.name)
     except VoxSoftError as error:
         return _report_of(error)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
     findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
-    return replace(report, findings=tuple(findings))
+    findings += doubts(volumes, may_cut=True)
+    return replace(report, findings=tuple(findings), volumes=volumes)
 
 
 def _report_of(error: VoxSoftError) -> CheckReport:

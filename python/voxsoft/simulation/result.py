@@ -32,6 +32,7 @@ from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState, Pose
+from voxsoft.simulation.volumes import Volumes, volumes_of
 from voxsoft.simulation.warnings import warnings_at
 from voxsoft.units import format_percent, format_quantity
 
@@ -308,6 +309,11 @@ class Result(Shown):
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
 
     @cached_property
+    def volumes(self) -> Volumes:
+        """Volumes of parts and chambers without load: as simulated, and as described by shapes."""
+        return volumes_of(self.design, self.mesh)
+
+    @cached_property
     def penetration(self) -> Penetration:
         """Where the body is in itself or in its floor, and how deep."""
         return penetration_of(self.design, self.mesh, self.positions)
@@ -429,7 +435,9 @@ class Result(Shown):
             "warnings": [warning.summary() for warning in self.warnings],
             "reaction": list(self.reaction),
             "load": list(self.load),
+            "volumes": self.volumes.summary(),
             "voxels": len(self.mesh.tets) // 5 if self.mesh.voxel_size else None,
+            "phase": self.mesh.phase,
             "load_factor": self.load_factor,
             "limit_factor": self.limit_factor,
             "stable": self.stable,
