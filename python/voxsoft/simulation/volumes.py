@@ -178,7 +178,7 @@ def doubtful_volumes(
     >>> from voxsoft.design.discretize import mesh_of
     >>> ball = families.sphere()
     >>> print(*doubtful_volumes(ball, mesh_of(ball)))  # doctest: +ELLIPSIS
-    parts[0]: ...
+    cavity 0: the chamber has 17 mL in voxels; its shapes have 14 mL (+2...%). Try: ...
     """
     low, high = _SUSPECT
     try:
