@@ -245,8 +245,7 @@ def _volumes(points: Floats, triangles: Indices, label: Indices) -> Floats:
     a, b, c = (points[triangles[:, corner]] - points[triangles[0, 0]] for corner in range(3))
     own = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
     of = label >= 0
-    volumes: Floats = np.bincount(label[of], weights=own[of])
-    return volumes
+    return np.bincount(label[of], weights=own[of]).astype(np.float64)
 
 
 def _parents(points: Floats, triangles: Indices, label: Indices, volume: Floats) -> Indices:
