@@ -57,7 +57,8 @@ def simulate(
     Parameters
     ----------
     design
-        What to simulate; a :class:`Setup` saves meshing again.
+        What to simulate; a :class:`Setup` saves meshing again. Threads that share one wait for each
+        other.
     record_interval
         Time between two records of the probes, in s or with its unit, ``"50 ms"``; default 1/50 s.
         For runs over time only.
@@ -88,7 +89,7 @@ def simulate(
         Special cases of that, which a study counts apart.
     SimulationError
         A setting that would not be used, with what it belongs to and what to write; or a tangent
-        too large for the memory.
+        too large for the memory; a setup that is solved from within its own progress.
 
     Examples
     --------
@@ -109,16 +110,18 @@ def simulate(
         _check_refinement(setup, settings)
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
-    started = time.perf_counter()
-    part = SectorSetup.part_of(setup)
-    solved = setup if part is None else part
-    if isinstance(method, LoadControl) and coarser is not None:
-        start = nested(coarser, solved)
-        used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
-    else:
-        used, report = method.solve(solved, Watch(progress, record_interval, frames))
-    used["refine"] = refinement(setup)
-    result = result_of(solved, used, report, time.perf_counter() - started)
+    progress = setup.lock.reported(progress)
+    with setup.lock.held():
+        started = time.perf_counter()
+        part = SectorSetup.part_of(setup)
+        solved = setup if part is None else part
+        if isinstance(method, LoadControl) and coarser is not None:
+            start = nested(coarser, solved)
+            used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
+        else:
+            used, report = method.solve(solved, Watch(progress, record_interval, frames))
+        used["refine"] = refinement(setup)
+        result = result_of(solved, used, report, time.perf_counter() - started)
     return result if part is None else part.unfolded(result)
 
 
@@ -142,8 +145,9 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     refuse_refinement(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
-    answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
-    return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
+    with setup.lock.held():
+        answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
+        return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
 
 
 def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
@@ -159,8 +163,9 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
         Largest relative residual.
     """
     started = time.perf_counter()
-    used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
-    return result_of(setup, used, report, time.perf_counter() - started)
+    with setup.lock.held():
+        used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
+        return result_of(setup, used, report, time.perf_counter() - started)
 
 
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
