@@ -51,8 +51,8 @@ class KeptPath:
     def __init__(self, folder: Path, design: Design, over: Over) -> None:
         self._folder = folder / FOLDER
         values = ", ".join(map(repr, over.values))
-        said = f"{write_toml(design.resolved)}\n{over.key}: {values}"
-        self._key = hashlib.sha256(said.encode()).hexdigest()
+        described = f"{write_toml(design.resolved)}\n{over.key}: {values}"
+        self._key = hashlib.sha256(described.encode()).hexdigest()
 
     def keep(self, number: int, result: Result) -> None:
         """Write the equilibrium at a value, the first of which has the number 0.

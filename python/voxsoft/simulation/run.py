@@ -18,6 +18,7 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.fluids import refuse_supplies
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.growth import at_time
 from voxsoft.simulation.large_voxels import refuse_refinement
 from voxsoft.simulation.method import Report, Watch
@@ -283,6 +284,11 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
     if answer.path is not None:
         if report.status == Ended.NOT_AT_REST:
             return falls(setup, answer)
+        if report.status == Ended.MECHANISM and (free := free_motion(setup)):
+            return (
+                f"nothing holds the body: it is free to {free}, so that its place under the loads "
+                "is not known; clamp it along these axes, or give the design an end_time"
+            )
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
         return sentence(way, *ended, touches=touches)
