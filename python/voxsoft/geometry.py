@@ -185,3 +185,26 @@ def rotation_matrix(axis: ArrayLike, angle: float) -> NDArray[np.float64]:
 
 #: What a turn by a right angle leaves of a zero, with room.
 _ROUNDING = 1e-15
+
+
+def grid_phase(place: ArrayLike, voxel_size: float) -> tuple[float, float, float]:
+    """Return where a grid lies along each axis [m], from 0 to below one voxel.
+
+    Parameters
+    ----------
+    place
+        A corner of a voxel [m].
+    voxel_size
+        Edge of a voxel [m].
+
+    Examples
+    --------
+    >>> grid_phase((-0.003, 0.0, 0.004), 0.002)
+    (0.001, 0.0, 0.0)
+    """
+    number = np.asarray(place, dtype=np.float64) / voxel_size
+    # Places are sums of floats: a millionth of a voxel below a face is on it.
+    part = number - np.floor(number + 1e-6)
+    part[np.abs(part) < 1e-6] = 0.0
+    x, y, z = (float(f"{each:.12g}") for each in part * voxel_size)
+    return x, y, z

@@ -19,7 +19,7 @@ from voxsoft._arrays import frozen
 from voxsoft._memory import memory_limit, shortage
 from voxsoft.cavity import MeshCavity
 from voxsoft.errors import MeshError
-from voxsoft.geometry import tet_volumes
+from voxsoft.geometry import grid_phase, tet_volumes
 
 
 @dataclass(frozen=True, eq=False)
@@ -360,6 +360,13 @@ class Mesh:
         ]
         scale = filled[:, None, None] * self.voxel_size**2 / 4.0
         return self.voxel_corners(numbers), scale * np.stack(slopes, axis=-1)
+
+    @property
+    def phase(self) -> tuple[float, float, float] | None:
+        """Where the grid of its voxels lies [m], as :attr:`Voxels.phase`; None without voxels."""
+        if self.voxel_size is None or not len(self.vertices):
+            return None
+        return grid_phase(self.vertices[0], self.voxel_size)
 
     @property
     def each_body(self) -> tuple[BodyMesh, ...]:

@@ -29,6 +29,7 @@ from voxsoft.simulation.relaxed import relaxed_parts
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
 from voxsoft.voxels.regions import Cell
@@ -72,6 +73,10 @@ class CheckReport(Shown):
         In bytes: an order of magnitude.
     leak_points
         Where each leak is open [m].
+    volumes
+        Of parts and cavities, as simulated and as described; empty for voxels without a design.
+    phases
+        Where the grid of each body lies [m], by the body's name.
     bodies
         Voxels of each body by its name, where there are several; places are then said in the own
         frame of a body.
@@ -90,6 +95,8 @@ class CheckReport(Shown):
     memory: float = 0.0
     bodies: Mapping[str, int] = field(default_factory=dict)
     leak_points: tuple[Point, ...] = field(default=(), repr=False)
+    volumes: Volumes = field(default_factory=Volumes, repr=False)
+    phases: Mapping[str, Point] = field(default_factory=dict, repr=False)
 
     @property
     def valid(self) -> bool:
@@ -142,7 +149,12 @@ class CheckReport(Shown):
             "seconds": None if self.cost is None else self.cost.seconds,
             "seconds_range": None if self.cost is None else [self.cost.low, self.cost.high],
             "memory": self.memory,
-            "bodies": [{"name": name, "voxels": n} for name, n in self.bodies.items()],
+            "bodies": [
+                {"name": name, "voxels": n, "phase": list(self.phases[name])}
+                for name, n in self.bodies.items()
+            ],
+            "phase": list(next(iter(self.phases.values()))) if len(self.phases) == 1 else None,
+            "volumes": self.volumes.summary(),
         }
 
 
@@ -215,6 +227,7 @@ def examine(
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
+        findings += doubtful_volumes(body, mesh, points=PRECISE)
         findings += _findings_of_settings(body)
         findings += [Diagnostic("warning", *problem) for problem in body.left_out]
         if kind_of(body, body.solver).to_rest:
@@ -248,10 +261,19 @@ def examine(
         cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
         bodies={one.of.name: one.voxels.count for one in each if mesh.bodies},
+        volumes=_volumes(body, mesh),
+        phases={one.of.name: one.voxels.phase for one in each},
         leak_points=tuple(
             one.placed(_middle(one.voxels, leak.openings[0])) for one in each for leak in one.leaks
         ),
     )
+
+
+def _volumes(body: Design | Voxels, mesh: Mesh) -> Volumes:
+    try:
+        return volumes_of(body, mesh) if isinstance(body, Design) else Volumes()
+    except VoxSoftError:
+        return Volumes()  # a shape without a value somewhere is a finding by itself
 
 
 def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, float]:

@@ -35,6 +35,7 @@ from voxsoft.simulation.relaxed import relaxed_parts
 from voxsoft.simulation.supports import Force, clamp_reactions, clamped_vertices, reaction_in
 from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState, Pose
+from voxsoft.simulation.volumes import Volumes, volumes_of
 from voxsoft.simulation.warnings import warnings_at
 from voxsoft.units import format_percent, format_quantity
 
@@ -344,6 +345,11 @@ class Result(Shown):
         return values | {name: self.metric(name) for name in sorted(free - values.keys())}
 
     @cached_property
+    def volumes(self) -> Volumes:
+        """Volumes of parts and chambers without load: as simulated, and as described by shapes."""
+        return volumes_of(self.design, self.mesh)
+
+    @cached_property
     def penetration(self) -> Penetration:
         """Where the body is in itself or in its floor, and how deep."""
         return penetration_of(self.design, self.mesh, self.positions)
@@ -468,7 +474,9 @@ class Result(Shown):
             "reaction": list(self.reaction),
             "reactions": {name: list(force) for name, force in self.clamp_reactions.items()},
             "load": list(self.load),
+            "volumes": self.volumes.summary(),
             "voxels": len(self.mesh.tets) // 5 if self.mesh.voxel_size else None,
+            "phase": self.mesh.phase,
             "load_factor": self.load_factor,
             "limit_factor": self.limit_factor,
             "stable": self.stable,

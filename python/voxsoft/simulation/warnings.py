@@ -28,6 +28,7 @@ from voxsoft.simulation.separation import separations
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.volumes import doubtful_volumes
 
 #: From a design, its mesh and positions in m, (n, 3), to what is doubtful.
 Check = Callable[[Design, Mesh, NDArray[np.float64]], Iterable[Diagnostic]]
@@ -49,6 +50,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     _left_out,
     doubtful_surfaces,
     doubtful_thickness,
+    doubtful_volumes,
     overlap_warnings,
     crossed_surfaces,
     separations,

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft import _core
 from voxsoft._memory import memory_limit
 from voxsoft.errors import VoxelError
+from voxsoft.geometry import grid_phase
 from voxsoft.mesh import Mesh
 from voxsoft.voxels.arguments import (
     Axis,
@@ -180,6 +181,17 @@ class Voxels:
     def origin(self) -> Triple:
         """Lower corner of the grid [m]."""
         return self._grid.origin
+
+    @property
+    def phase(self) -> Triple:
+        """Where the grid lies along each axis [m]: the place of a corner within one voxel.
+
+        Examples
+        --------
+        >>> Voxels.empty((2, 2, 2), voxel_size=0.002, origin=(0, -0.003, 0.004)).phase
+        (0.0, 0.001, 0.0)
+        """
+        return grid_phase(self.origin, self.voxel_size)
 
     @cached_property
     def count(self) -> int:
