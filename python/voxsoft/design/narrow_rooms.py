@@ -67,7 +67,7 @@ def _is_closed(design: Design, cells: CutCells, room: Marks, start: Ints) -> boo
     """Whether the void of some cells is one, and ends near them."""
     from scipy.ndimage import binary_dilation, label
 
-    near = binary_dilation(room, np.ones((3, 3, 3)), _AROUND)
+    near = binary_dilation(room, np.ones((3, 3, 3), dtype=bool), _AROUND)
     places = np.argwhere(near)
     found, _, _ = filled_parts(design, places + start + cells.low, cells.size, cells.phase)
     void = np.zeros((*room.shape, *[SUBCELLS] * 3), dtype=bool)

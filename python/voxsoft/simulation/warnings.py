@@ -28,6 +28,7 @@ from voxsoft.simulation.separation import separations
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.thin_seals import thin_seals
 from voxsoft.simulation.volumes import doubtful_volumes
 
 #: From a design, its mesh and positions in m, (n, 3), to what is doubtful.
@@ -51,6 +52,7 @@ CHECKS: Final[tuple[Check, ...]] = (
     doubtful_surfaces,
     doubtful_thickness,
     doubtful_volumes,
+    thin_seals,
     overlap_warnings,
     crossed_surfaces,
     separations,
