@@ -101,7 +101,7 @@ def check_mesh(
         return _report_of(error)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
     findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
-    findings += doubts(volumes, may_cut=True)
+    findings += doubts(volumes, "make the voxels smaller, or its sizes multiples of them")
     return replace(report, findings=tuple(findings), volumes=volumes)
 
 

@@ -178,7 +178,7 @@ def doubtful_volumes(
     >>> from voxsoft.design.discretize import mesh_of
     >>> ball = families.sphere()
     >>> print(*doubtful_volumes(ball, mesh_of(ball)))  # doctest: +ELLIPSIS
-    parts[0]: ...
+    cavity 0: the chamber has 17 mL in voxels; its shapes have 14 mL (+2...%). Try: ...
     """
     low, high = _SUSPECT
     try:
@@ -187,28 +187,31 @@ def doubtful_volumes(
             volumes = volumes_of(design, mesh, max(points, _AGAIN * QUICK))
     except VoxSoftError:
         return  # a shape without a value somewhere is reported where it is sampled
-    may_cut = design.fill == "binary" and not design.bodies and _is_rubber(design)
-    yield from doubts(volumes, may_cut=may_cut)
+    yield from doubts(volumes, _remedy(design))
 
 
-def doubts(volumes: Volumes, *, may_cut: bool) -> Iterator[Diagnostic]:
-    """Word the large differences among volumes; `may_cut` names cut voxels as a remedy."""
+def doubts(volumes: Volumes, remedy: str) -> Iterator[Diagnostic]:
+    """Word the large differences among volumes, with what to try."""
     for kind, found in (("part", volumes.parts), ("chamber", volumes.cavities)):
         for name, volume in found.items():
             if abs(volume.difference) >= LARGE:
-                yield _doubt(kind, name, volume, may_cut=may_cut)
+                yield _doubt(kind, name, volume, remedy)
 
 
-def _doubt(kind: str, name: str, volume: Volume, *, may_cut: bool) -> Diagnostic:
+def _remedy(design: Design) -> str:
+    whole = "multiples" if not design.symmetry else "even multiples across a plane of symmetry"
+    ways = f"make the voxels smaller, or its sizes {whole} of the voxel size"
+    may_cut = design.fill == "binary" and not design.bodies and _is_rubber(design)
+    return f'set fill = "fraction", {ways}' if may_cut else ways
+
+
+def _doubt(kind: str, name: str, volume: Volume, remedy: str) -> Diagnostic:
     simulated, described = (format_quantity(float(f"{v:.3g}"), "volume") for v in volume)
     what = f"the {kind} has {simulated} in voxels; its shapes have {described}"
     if math.isfinite(volume.difference):
         digits = 0 if abs(volume.difference) > _LARGER else 1
         what += f" ({volume.difference:+.{digits}%})"
-    ways = "make the voxels smaller, or its sizes multiples of the voxel size"
-    if may_cut:
-        ways = f'set fill = "fraction", {ways}'
-    return Diagnostic("warning", name, what, ways)
+    return Diagnostic("warning", name, what, remedy)
 
 
 def _is_rubber(design: Design) -> bool:
