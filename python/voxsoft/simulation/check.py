@@ -20,6 +20,7 @@ from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.anchors import weak_anchors
 from voxsoft.simulation.chambers import ambiguous_indices
 from voxsoft.simulation.choice import unused_settings
+from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
@@ -28,6 +29,7 @@ from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
 from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
@@ -226,6 +228,7 @@ def examine(
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
         findings += doubtful_volumes(body, mesh, points=PRECISE)
+        findings += [*coarse_walls(body, mesh), *vanished_shapes(body)]
         findings += _findings_of_settings(body)
         findings += [Diagnostic("warning", *problem) for problem in body.left_out]
     if isinstance(body, Design) and setup is not None:
