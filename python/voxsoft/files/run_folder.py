@@ -47,7 +47,7 @@ def write_run(
     summary = result.summary() | {
         "design": result.design.name,
         "hash": result.design.hash,
-        "voxel_size": result.design.voxel_size,
+        "voxel_size": result.design.voxel_size if result.design.mesh is None else None,
         **provenance(),
         **(more or {}),
     }
