@@ -234,3 +234,53 @@ def test_the_studio_shows_and_checks_it(design):
     assert [clamp.vertices for clamp in shown.clamps] == [9]
     assert [part.name for part in shown.parts] == ["part-2", "all"]
     assert pack_smooth(design, body.voxels, 1) is None
+
+
+def of_voxels(folder, **changes):
+    """The bar of rubber: its parts and regions as shapes, on voxels."""
+    file = {"kind": "mesh", "path": str(folder / "bar.msh"), "unit": "mm"}
+    return vs.Design(
+        name="bar",
+        voxel_size=0.005,
+        shapes={
+            "soft": {**file, "part": "part-1"},
+            "stiff": {**file, "part": "part-2"},
+            "end": {**file, "region": "FIX"},
+        },
+        parts=[
+            {"shape": "soft", "material": "ecoflex-00-30"},
+            {"shape": "stiff", "material": "dragon-skin-20"},
+        ],
+        clamps=[{"region": {"shape": "end"}}],
+        loads=[{"kind": "gravity"}],
+    ).replace(**changes)
+
+
+def test_parts_of_a_file_fill_voxels(folder):
+    array = voxels_of(of_voxels(folder)).array
+    np.testing.assert_array_equal(
+        array, np.repeat([1, 2], 4)[:, None, None].repeat(2, 1).repeat(2, 2)
+    )
+
+
+@pytest.mark.parametrize("voxel_size", [0.005, 0.0025])
+def test_a_region_of_a_file_catches_the_vertices_near_it(folder, voxel_size):
+    setup = Setup.of(of_voxels(folder, voxel_size=voxel_size))
+    (clamped,) = setup.clamped
+    assert len(clamped) == (0.01 / voxel_size + 1) ** 2
+    assert not setup.mesh.vertices[clamped][:, 0].any()
+    assert vs.simulate(of_voxels(folder)).status == "ok"
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        ({"part": "part-3"}, 'bar.msh has no part "part-3"'),
+        ({"region": "FUX"}, 'bar.msh has no region "FUX"'),
+        ({"part": "part-1", "region": "FIX"}, "there is a part too"),
+    ],
+)
+def test_a_part_or_region_that_the_file_has_not_is_refused(folder, change, problem):
+    shape = {"kind": "mesh", "path": str(folder / "bar.msh"), "unit": "mm", **change}
+    with pytest.raises(vs.VoxSoftError, match=problem):
+        mesh_of(of_voxels(folder, shapes={**of_voxels(folder).shapes, "soft": shape}))

@@ -18,6 +18,7 @@ from voxsoft.design.region import Region
 from voxsoft.errors import DesignError, ErrorDetail, FileError, VoxSoftError
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import Record, closest, place
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body
 from voxsoft.units import format_quantity, parse
 
 if TYPE_CHECKING:
@@ -96,14 +97,12 @@ class FileMesh(Record):
         DesignError
             The file cannot be read, holds no valid tetrahedra, or does not say its unit.
         """
-        file = Path(self.path)
         try:
-            status = file.stat()
-        except OSError as error:
-            what = f'"{file}" cannot be read: {error.strerror}'
-            hint = "check the path; it begins at the design's folder"
-            raise DesignError("mesh.path", what, hint) from None
-        return _read(file, (status.st_mtime_ns, status.st_size), self.unit)
+            body = read_body(Path(self.path))
+        except FileError as error:
+            problems = [ErrorDetail("mesh.path", each.what, each.hint) for each in error.problems]
+            raise DesignError.listing(problems) from None
+        return _scaled(body, self.label, self.unit)
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,39 +127,28 @@ class ReadMesh:
 
 
 @lru_cache(maxsize=8)
-def _read(file: Path, changed: tuple[int, int], unit: str | None) -> ReadMesh:
-    """Read a file; `changed` is other where its content may be."""
-    del changed
-    # `files` lies above `design`: a design reaches up for its mesh alone, and when it is read.
-    from voxsoft.files.meshes import read_mesh_file
-
-    try:
-        found = read_mesh_file(file)
-    except FileError as error:
-        problems = [
-            ErrorDetail("mesh.path", f"{file.name}: {p.what}", p.hint) for p in error.problems
-        ]
-        raise DesignError.listing(problems) from None
+def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
+    """The tetrahedra of a file in m, as elements of their own."""
+    mesh = body.mesh
     if unit is None:
-        raise DesignError("mesh.unit", *_sizes(found.mesh.vertices))
-    if found.mesh.fractions is not None:
-        what = f"{file.name} holds voxels that are partly filled, which tetrahedra are not"
+        raise DesignError("mesh.unit", *_sizes(mesh.vertices))
+    if mesh.fractions is not None:
+        what = f"{name} holds voxels that are partly filled, which tetrahedra are not"
         raise DesignError("mesh.path", what, "solve the design that they are of")
     meter = parse(f"1 {unit}", "length")
-    mesh = replace(
-        found.mesh,
-        vertices=found.mesh.vertices * meter,
+    cavities = tuple(
+        replace(each, volume=each.volume * meter**3, area=each.area * meter**2)
+        for each in mesh.cavities
+    )
+    scaled = replace(
+        mesh,
+        vertices=mesh.vertices * meter,
+        cavities=cavities,
         tet_voxel=None,
         voxel_size=None,
-        cavities=tuple(
-            replace(each, volume=each.volume * meter**3, area=each.area * meter**2)
-            for each in found.mesh.cavities
-        ),
+        regions=body.regions,
     )
-    numbers = np.unique(mesh.tet_part).tolist()
-    return ReadMesh(
-        replace(mesh, regions=dict(found.regions)), {f"part-{number}": number for number in numbers}
-    )
+    return ReadMesh(scaled, body.parts)
 
 
 def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
@@ -280,8 +268,8 @@ def _material_problems(design: Design, index: int) -> Iterator[ErrorDetail]:
         yield ErrorDetail(
             f"parts[{index}].material",
             "is rubber, which is solved on voxels, and the body is tetrahedra of a file",
-            'take a spring material, such as "ecoflex-00-30-lattice"; or fill voxels with the '
-            'file: voxel_size, and [shapes] body = { kind = "mesh", path = "...", unit = "..." }',
+            'take a spring material, such as "ecoflex-00-30-lattice"; or give voxel_size and make '
+            'shapes of the file, such as { kind = "mesh", path = "...", unit = "mm", part = "..." }',
         )
 
 

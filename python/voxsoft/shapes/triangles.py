@@ -21,11 +21,13 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from voxsoft import _core
-from voxsoft.errors import ShapeError
+from voxsoft.errors import FileError, ShapeError
+from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
 from voxsoft.units import format_quantity, parse
@@ -89,8 +91,8 @@ def _whole_path(path: object) -> object:
 class TriangleMesh(Shape):
     """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
 
-    Of tetrahedra and other volume cells the boundary counts. Small holes and turned faces do not
-    spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
+    Of tetrahedra and other volume cells the boundary counts, of the whole or of a `part`. Small
+    holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
 
     Examples
     --------
@@ -105,9 +107,26 @@ class TriangleMesh(Shape):
     unit: Annotated[str, AfterValidator(_is_length_unit)] = Field(
         description="Length unit of the file, such as mm; mesh files do not say it."
     )
+    part: Name | None = Field(
+        None, description="Name of a part of a file of tetrahedra; default: all of it."
+    )
+    region: Name | None = Field(
+        None,
+        description="Name of a region of a file of tetrahedra, for a region of the design: all "
+        "within half a voxel of it.",
+    )
+
+    @model_validator(mode="after")
+    def _says_one(self) -> TriangleMesh:
+        if self.part is not None and self.region is not None:
+            raise ShapeError("region", "there is a part too", "make two shapes of them")
+        return self
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
+        if self.region is not None:
+            path, meter = Path(self.path), parse(f"1 {self.unit}", "length")
+            return _body(path).distance_to(self.region, path.name, meter)
         solid = self._solid
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
@@ -128,14 +147,21 @@ class TriangleMesh(Shape):
             changed = path.stat().st_mtime_ns
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        return _solid(path, changed, parse(f"1 {self.unit}", "length"))
+        return _solid(path, changed, parse(f"1 {self.unit}", "length"), self.part)
 
 
 @lru_cache(maxsize=8)
-def _solid(path: Path, changed: int, factor: float) -> _Solid:
+def _solid(path: Path, changed: int, factor: float, part: str | None) -> _Solid:
     """Read a file once for as long as it does not change."""
-    surface = read_surface(path)
+    surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
     return _Solid(surface.points * factor, surface.triangles, str(path))
+
+
+def _body(path: Path) -> MeshBody:
+    try:
+        return read_body(path)
+    except FileError as error:
+        raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
 
 
 # libigl's objects must go before its module does, or it reports them as leaked.
