@@ -268,8 +268,8 @@ def _material_problems(design: Design, index: int) -> Iterator[ErrorDetail]:
         yield ErrorDetail(
             f"parts[{index}].material",
             "is rubber, which is solved on voxels, and the body is tetrahedra of a file",
-            'take a spring material, such as "ecoflex-00-30-lattice"; or give voxel_size and make '
-            'shapes of the file, such as { kind = "mesh", path = "...", unit = "mm", part = "..." }',
+            'take a spring material, such as "ecoflex-00-30-lattice"; or give voxel_size and '
+            'make shapes of the file: { kind = "mesh", path = "...", unit = "mm", part = "..." }',
         )
 
 

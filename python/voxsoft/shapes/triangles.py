@@ -92,7 +92,8 @@ class TriangleMesh(Shape):
     """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
 
     Of tetrahedra and other volume cells the boundary counts, of the whole or of a `part`. Small
-    holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
+    holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are
+    those to the triangles.
 
     Examples
     --------
