@@ -49,6 +49,10 @@ pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
+/// The part of the work of the loads that a step may set free before it is looked whether it has crossed a limit: half of it
+/// where the answer is linear, less where the body gets stiffer, all of it where it gives way at once.
+const SET_FREE: f64 = 0.6;
+
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.
 pub(crate) const UNSTABLE_CUTS: u32 = 5;
@@ -286,6 +290,33 @@ impl Path<'_, '_> {
         control::look_for_limit(self, settings)
     }
 
+    /// The limit that the step from the last equilibrium to another one has crossed, if there is one: the loads drop there, and the
+    /// body snaps. A step that sets free no more than ordinary ones do is not looked at, nor is a path whose look ahead
+    /// would change what the loads remember.
+    fn crossed_limit(
+        &mut self,
+        trial: &[Vec3],
+        point: Point,
+        along: Along,
+        settings: &Settings,
+    ) -> Option<f64> {
+        let problem = self.equilibrium.problem;
+        let plain = problem.contact().is_none() && problem.fluid().is_none();
+        let known = plain && problem.floor().is_none() && !problem.depends_on_way();
+        if !known || !along.has_factor() || self.equilibrium.system.is_iterative() {
+            return None;
+        }
+        let loads = |at: &[Vec3]| problem.load_potential(at, &point.factor_of());
+        let share = 1.0 - self.point.pressure / point.pressure;
+        let work = share * (loads(&self.positions) - loads(trial));
+        let before = self.equilibrium.potential(&self.positions, point).0;
+        let free = before - self.equilibrium.potential(trial, point).0;
+        if free <= SET_FREE * work {
+            return None;
+        }
+        control::look_for_limit(self, settings).filter(|limit| *limit < point.pressure)
+    }
+
     /// Load control. From a given start the full load is tried first.
     pub fn follow_load(
         &mut self,
@@ -319,6 +350,7 @@ impl Path<'_, '_> {
         let mut cuts = 0;
         let mut last = f64::INFINITY;
         let mut now = 0.0;
+        let mut limit = None;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let step = length.get();
@@ -351,6 +383,9 @@ impl Path<'_, '_> {
                             }
                             Along::Dead => next < 1.0,
                         };
+                        if limit.is_none() && !warm && loose.is_none() && found.iterations > EASY {
+                            limit = self.crossed_limit(&trial, point, along, settings);
+                        }
                         self.accept(trial, point, found.iterations, found.residual);
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
@@ -358,7 +393,7 @@ impl Path<'_, '_> {
                         last = next - now;
                         now = next;
                         if next == 1.0 {
-                            return self.end(along, loose, settings);
+                            return self.end(along, loose, limit, settings);
                         }
                         length.succeeded(found.iterations <= easy);
                         continue;
@@ -404,7 +439,7 @@ impl Path<'_, '_> {
                     if now < 1.0 {
                         continue;
                     }
-                    return self.end(along, loose, settings);
+                    return self.end(along, loose, limit, settings);
                 }
                 // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
                 // load, so that no direction leads ahead.
@@ -425,7 +460,13 @@ impl Path<'_, '_> {
     }
 
     /// The end of load control, where all that grows is there.
-    fn end(&mut self, along: Along, loose: Option<&Loose>, settings: &Settings) -> Ending {
+    fn end(
+        &mut self,
+        along: Along,
+        loose: Option<&Loose>,
+        limit: Option<f64>,
+        settings: &Settings,
+    ) -> Ending {
         match (along, loose) {
             (Along::All { .. } | Along::Time { .. }, Some(loose)) => {
                 let mut search = AtLoad {
@@ -436,7 +477,8 @@ impl Path<'_, '_> {
                 self.release(loose, &mut search, settings)
             }
             (Along::All { .. } | Along::Time { .. }, None) => {
-                Ending::new(Status::AtRest, None, 1.0)
+                self.snaps.extend(limit);
+                Ending::new(Status::AtRest, limit, 1.0)
             }
             (Along::Dead, _) => {
                 self.looking = false;

@@ -392,6 +392,7 @@ class _Included:
             motion = Isometry(*self._frame).motion(motion)
         axes = "".join(sorted(self._axis("xyz".index(axis), where) for axis in clamp.axes))
         return clamp.replace(
+            name=None if clamp.name is None else self._name(clamp.name),
             region=self._region(clamp.region, where),
             axes="xyz" if clamp.axes == "xyz" else axes,
             motion=motion or self.body.motion,

@@ -14,6 +14,7 @@ from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import path_error_bars
 from voxsoft.design import Design
 from voxsoft.files.figures import save_figure, save_thumbnail
+from voxsoft.files.run_folder import Unwritten, write_summary
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
 from voxsoft.jobs.nearness import Nearness
@@ -41,26 +42,49 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
         return _follow(spec, design, folder, notify)
     nearness = Nearness(design.solver)
     result = simulation.simulate(design, progress=_reporting(nearness, notify))
-    _write(spec, result, folder)
+    unwritten = Unwritten(folder)
+    _write(spec, result, folder, unwritten)
     bars = _error_bars(result, notify)
-    files.write_run(result, folder, more={"error_bars": bars.summary()})
+    write_summary(result, folder, more={"error_bars": bars.summary()})
     notify(Progress(100, 100, "percent"))
-    sentence = f"{result.message[:1].upper()}{result.message[1:]}."
-    return JobOutcome(folder, result, sentence, error_bars=bars)
+    return JobOutcome(
+        folder,
+        result,
+        _sentence(result.message, unwritten),
+        error_bars=bars,
+        unwritten=unwritten.problems,
+    )
 
 
-def _write(spec: RunSpec, result: Result, folder: Path, more: Mapping[str, Any] = _NOTHING) -> None:
-    """Write a run folder with its pictures."""
-    write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
-    files.write_run(result, folder, more=more)
-    save_thumbnail(result, folder)
+def _sentence(message: str, unwritten: Unwritten) -> str:
+    missing = "".join(f"; {problem}" for problem in unwritten.problems)
+    return f"{message[:1].upper()}{message[1:]}{missing}."
+
+
+def _write(
+    spec: RunSpec,
+    result: Result,
+    folder: Path,
+    unwritten: Unwritten,
+    more: Mapping[str, Any] = _NOTHING,
+) -> None:
+    """Write a run folder with its pictures, the numbers first."""
+    write_summary(result, folder, more=more)
+    with unwritten.attempt("job.toml"):
+        write_job(spec.replace(kept=False), folder)  # what the folder holds from now on was solved
+    with unwritten.attempt("result.vtu"):
+        files.write_run(result, folder, more=more)
+    with unwritten.attempt("thumbnail"):
+        save_thumbnail(result, folder)
     if not spec.figure:
         return
     from voxsoft.plot import plot_body
 
-    save_figure(plot_body(result), folder / "body.png")
+    with unwritten.attempt("body.png"):
+        save_figure(plot_body(result), folder / "body.png")
     if result.contacts:
-        save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
+        with unwritten.attempt("contact.png"):
+            save_figure(plot_body(result, "contact_pressure"), folder / "contact.png")
 
 
 def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> JobOutcome[Result]:
@@ -76,17 +100,18 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         notify(path)
         notify(Progress(len(path.results), len(over.values), "equilibria"))
 
+    unwritten = Unwritten(folder)
     try:
         path = simulation.follow(design, over, step=step)
     except BaseException:
         # Whatever ends the search, Ctrl-C too, leaves the equilibria that were found.
         if followed is not None:
-            _write(spec, followed.results[-1], folder, path_summary(followed))
             files.write_path(followed, (), folder)
+            _write(spec, followed.results[-1], folder, unwritten, path_summary(followed))
         raise
     result = path.results[-1]
-    _write(spec, result, folder, path_summary(path))
     files.write_path(path, (), folder)
+    _write(spec, result, folder, unwritten, path_summary(path))
 
     def announce(size: float, voxels: int, seconds: float) -> None:
         length = format_quantity(float(f"{size:.4g}"), "length")
@@ -97,17 +122,25 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         bars = path_error_bars(path, announce=announce)
     except KeyboardInterrupt:
         bars = ()
-    files.write_run(result, folder, more=path_summary(path, bars))
+    write_summary(result, folder, more=path_summary(path, bars))
     files.write_path(path, bars, folder)
     if spec.figure:
         from voxsoft.plot import plot_path
 
-        save_figure(plot_path(path, bars), folder / "path.png")
+        with unwritten.attempt("path.png"):
+            save_figure(plot_path(path, bars), folder / "path.png")
     notify(path)
     notify(Progress(100, 100, "percent"))
     last = bars[-1] if bars else ErrorBars.none("they were stopped", "run it again")
-    sentence = f"{path.message[:1].upper()}{path.message[1:]}."
-    return JobOutcome(folder, result, sentence, error_bars=last, path=path, path_bars=bars)
+    return JobOutcome(
+        folder,
+        result,
+        _sentence(path.message, unwritten),
+        error_bars=last,
+        path=path,
+        path_bars=bars,
+        unwritten=unwritten.problems,
+    )
 
 
 def _error_bars(result: Result, notify: Listener) -> ErrorBars:

@@ -3,7 +3,7 @@
 The winding number tells how often a surface wraps around a point: 1 inside a closed surface, 0
 outside, −1 inside one whose faces are turned, and something between near a hole. Inside is where
 its size exceeds one half [1]_. Neighbors that disagree on which side is outside are turned to agree
-first; an inner shell of opposite orientation is a cavity.
+first; then :mod:`voxsoft.shapes.nesting` decides what closed shells enclose.
 
 References
 ----------
@@ -28,6 +28,7 @@ from voxsoft.errors import FileError, ShapeError
 from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
 from voxsoft.shapes.mesh_bodies import MeshBody, read_body
+from voxsoft.shapes.nesting import Nest, Nested, taken_once, unnested
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
 from voxsoft.units import format_quantity, parse
@@ -52,10 +53,19 @@ class SurfaceState(NamedTuple):
         Triangles that had to be turned, as their neighbors have their outside on the other side.
     holes
         The widest first, in m.
+    doubled
+        Triangles of bodies that occur twice with opposite sense, and were taken once.
+    nest
+        Shells that lie in others, in m and m³.
+    nested
+        How the shape says that they are read; None where it does not.
     """
 
     turned: int
     holes: tuple[Hole, ...]
+    doubled: int = 0
+    nest: Nest = Nest()
+    nested: Nested | None = None
 
     @property
     def opening(self) -> str:
@@ -95,6 +105,11 @@ class TriangleMesh(Shape):
     holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are
     those to the triangles.
 
+    Outermost closed shells enclose material, whichever side their faces are on. A shell within
+    another is a chamber where it faces the other way than the outermost one around it; where it
+    faces likewise it is filled, with a warning. ``nested="void"`` makes shells chambers and bodies
+    by turns, whichever way they face; ``nested="solid"`` says that the filled ones are meant.
+
     Examples
     --------
     >>> TriangleMesh(path="part.stl", unit="mm").kind
@@ -115,6 +130,11 @@ class TriangleMesh(Shape):
         None,
         description="Name of a region of a file of tetrahedra, for a region of the design: all "
         "within half a voxel of it.",
+    )
+    nested: Nested | None = Field(
+        None,
+        description="Closed shells within others: void where material and voids alternate by "
+        "depth; solid where those of the same sense are meant to be filled.",
     )
 
     @model_validator(mode="after")
@@ -148,14 +168,17 @@ class TriangleMesh(Shape):
             changed = path.stat().st_mtime_ns
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        return _solid(path, changed, parse(f"1 {self.unit}", "length"), self.part)
+        factor = parse(f"1 {self.unit}", "length")
+        return _solid(path, changed, factor, self.part, self.nested)
 
 
 @lru_cache(maxsize=8)
-def _solid(path: Path, changed: int, factor: float, part: str | None) -> _Solid:
+def _solid(
+    path: Path, changed: int, factor: float, part: str | None, nested: Nested | None
+) -> _Solid:
     """Read a file once for as long as it does not change."""
     surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
-    return _Solid(surface.points * factor, surface.triangles, str(path))
+    return _Solid(surface.points * factor, surface.triangles, str(path), nested)
 
 
 def _body(path: Path) -> MeshBody:
@@ -180,16 +203,25 @@ class _Solid:
         Vertices of each triangle, shape (t, 3).
     name
         What error messages call it.
+    nested
+        How shells within others are read.
     """
 
     def __init__(
-        self, points: NDArray[np.float64], triangles: NDArray[np.int64], name: str
+        self,
+        points: NDArray[np.float64],
+        triangles: NDArray[np.int64],
+        name: str,
+        nested: Nested | None = None,
     ) -> None:
         import igl
 
+        triangles, doubled = taken_once(triangles)
         _refuse_soup(triangles, name)
         triangles, turned = in_one_sense(points, triangles)
-        self.state = SurfaceState(turned, holes_of(points, triangles))
+        holes = holes_of(points, triangles)
+        triangles, nest = unnested(points, triangles, nested)
+        self.state = SurfaceState(turned, holes, doubled, nest, nested)
         self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
         low, high = used.min(axis=0), used.max(axis=0)

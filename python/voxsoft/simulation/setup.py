@@ -20,6 +20,7 @@ from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Probe, Region
 from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
+from voxsoft.design.clamp import check_clamps
 from voxsoft.design.discretize import mesh_of
 from voxsoft.design.joined import edge_directions
 from voxsoft.errors import (
@@ -47,6 +48,7 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
+from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (
@@ -145,6 +147,7 @@ class Setup:
     def check(self, *, allow_loose: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
+        check_clamps(self.design.clamps)
         check_chambers(self.design, self.mesh)
         check_windings(self.design, self.mesh)
         check_refinement(self.design)
@@ -411,10 +414,7 @@ class Setup:
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:
         """The vertices of each clamp."""
-        return [
-            self.vertices_in(clamp.region, f"clamps[{index}].region")
-            for index, clamp in enumerate(self.design.clamps)
-        ]
+        return clamped_vertices(self.design, self.mesh, self.points)
 
     def vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
         """Vertices that a region catches; `where` is the place an error names."""
@@ -473,7 +473,7 @@ def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
         name: vertices.astype(np.uint32) for name, vertices in mesh.regions.items()
     }
     places: dict[str, Region] = {
-        **{f"clamp_{index}": clamp.region for index, clamp in enumerate(design.clamps)},
+        **{f"clamp_{each.name or i}": each.region for i, each in enumerate(design.clamps)},
         **{f"probe_{name}": probe for name, probe in design.probes.items()},
     }
     points = on_the_body(design, mesh)
