@@ -18,8 +18,8 @@ from voxsoft.design.region import Region
 from voxsoft.errors import DesignError, ErrorDetail, FileError, VoxSoftError
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import Record, closest, place
-from voxsoft.shapes.mesh_bodies import MeshBody, read_body
-from voxsoft.units import format_quantity, parse
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body, sizes_in_units
+from voxsoft.units import parse
 
 if TYPE_CHECKING:
     from voxsoft.design.model import Design
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 #: What a part calls all that no part before it names.
 REST: Final = "all"
-_UNITS: Final = ("mm", "cm", "inch", "m")
 #: Entries of a design that are about voxels, and what to do without them.
 _OF_VOXELS: Final[Mapping[str, str]] = {
     "voxel_size": "leave it out: the elements are those of the file",
@@ -155,16 +154,10 @@ def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
     """What and hint of the error about a missing unit."""
     extents = np.ptp(vertices, axis=0)
     shown = " × ".join(f"{extent:.4g}" for extent in extents)
-    longest = {unit: float(extents.max()) * parse(f"1 {unit}", "length") for unit in _UNITS}
-    sizes = ", ".join(f"{unit}: {_length(size)} long" for unit, size in longest.items())
     return (
         f"is missing: the file does not say its unit; its numbers span {shown}",
-        f'write unit = "mm", or another; the body would be, in {sizes}',
+        f'write unit = "mm", or another; the body would be, {sizes_in_units(extents.max())}',
     )
-
-
-def _length(size: float) -> str:
-    return format_quantity(float(f"{size:.3g}"), "length")
 
 
 def refuse_file_mesh(design: Design, who: str) -> None:

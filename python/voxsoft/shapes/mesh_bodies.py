@@ -15,6 +15,7 @@ from voxsoft import _core
 from voxsoft.errors import FileError, ShapeError
 from voxsoft.records import closest
 from voxsoft.shapes.surface_files import Surface
+from voxsoft.units import format_quantity, parse
 
 if TYPE_CHECKING:
     from voxsoft.mesh import Mesh
@@ -96,6 +97,21 @@ class MeshBody:
         return _core.Shape.sampled(
             distances, tuple((low - room).tolist()), tuple((high + room).tolist()), True
         )
+
+
+def sizes_in_units(longest: float) -> str:
+    """Word how long a body would be [m] in each unit that its numbers may be in.
+
+    Examples
+    --------
+    >>> sizes_in_units(40.0)
+    'in mm: 40 mm long, cm: 400 mm long, inch: 1.02 m long, m: 40 m long'
+    """
+    lengths = {unit: longest * parse(f"1 {unit}", "length") for unit in ("mm", "cm", "inch", "m")}
+    return "in " + ", ".join(
+        f"{unit}: {format_quantity(float(f'{length:.3g}'), 'length')} long"
+        for unit, length in lengths.items()
+    )
 
 
 def read_body(file: Path) -> MeshBody:
