@@ -66,7 +66,7 @@ def write_summary(
     summary = result.summary() | {
         "design": result.design.name,
         "hash": result.design.hash,
-        "voxel_size": result.design.voxel_size,
+        "voxel_size": result.design.voxel_size if result.design.mesh is None else None,
         **provenance(),
         **(more or {}),
     }

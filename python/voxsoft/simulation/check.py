@@ -23,6 +23,7 @@ from voxsoft.simulation.choice import STATICS, kind_of, unused_settings
 from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
+from voxsoft.simulation.file_tets import cavities_of_tets, findings_of_tets
 from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
 from voxsoft.simulation.plausible import implausible_numbers
@@ -205,7 +206,8 @@ def examine(
     body
         What was meshed.
     voxels, mesh
-        The voxels of each of its bodies by name, and their mesh.
+        The voxels of each of its bodies by name, none of a body that is the mesh of a file, and
+        their mesh.
     lost
         Volume of the material that found no voxel [m³].
     setup
@@ -214,7 +216,9 @@ def examine(
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
     each = [
-        _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ()) for of in mesh.each_body
+        _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ())
+        for of in mesh.each_body
+        if of.name in voxels
     ]
     is_held, elements = False, len(mesh.tets) // 5
     if isinstance(body, Design):
@@ -252,6 +256,9 @@ def examine(
         share = elements / (len(mesh.tets) // 5 or 1)
         cost = cost_of(body, setup.mesh, min(lengths, default=None), mass, share)
     cavities = [cavity for one in each for cavity in one.cavities]
+    if not each:
+        cavities = cavities_of_tets(mesh)
+        findings += findings_of_tets(body, mesh)
     refined = isinstance(body, Design) and bool(body.refine)
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
@@ -286,7 +293,7 @@ def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, flo
     if not isinstance(body, Design):
         return {"": body}, body.mesh(), 0.0
     cells = filled(body)
-    return {name: own.voxels for name, own in cells.each.items()}, cells.mesh(), cells.lost
+    return cells.voxels_by_body, cells.mesh(), cells.lost
 
 
 def _errors(error: VoxSoftError, body: Design | Voxels) -> Iterator[Diagnostic]:

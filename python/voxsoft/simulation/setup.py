@@ -140,6 +140,9 @@ class Setup:
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
         voxels = len(setup.mesh.tets) // 5
         if short := shortage(voxels * BYTES_PER_VOXEL):
+            if design.mesh is not None:
+                what = f"the problem of {len(setup.mesh.tets):,} tetrahedra {short}"
+                raise SimulationError("mesh", what, "take a coarser mesh")
             what = f"the problem of {voxels:,} voxels {short}"
             raise SimulationError("voxel_size", what, "make the voxels larger")
         setup.check(allow_loose=allow_loose)
@@ -468,9 +471,11 @@ class Setup:
 
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
-    """Vertices of every clamp and probe that catches any, by name: what a mesh file carries."""
+    """Vertices of every clamp and probe that catches any, and of the regions of the body's file."""
     design = design.assembled
-    regions: dict[str, NDArray[np.uint32]] = {}
+    regions: dict[str, NDArray[np.uint32]] = {
+        name: vertices.astype(np.uint32) for name, vertices in mesh.regions.items()
+    }
     places: dict[str, Region] = {
         **{f"clamp_{each.name or i}": each.region for i, each in enumerate(design.clamps)},
         **{f"probe_{name}": probe for name, probe in design.probes.items()},
