@@ -19,12 +19,11 @@ from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.anchors import weak_anchors
 from voxsoft.simulation.chambers import ambiguous_indices
-from voxsoft.simulation.choice import STATICS, kind_of, unused_settings
+from voxsoft.simulation.choice import kind_of, unused_settings
 from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.file_tets import cavities_of_tets, findings_of_tets
-from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
 from voxsoft.simulation.plausible import implausible_numbers
 from voxsoft.simulation.relaxed import relaxed_parts
@@ -32,6 +31,7 @@ from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
 from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.unheld import unheld
 from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.units import format_quantity
@@ -230,7 +230,7 @@ def examine(
             is_held = setup.loose_piece is None
             mass = setup.problem.mass
             findings += weak_anchors(setup)
-            findings += _findings_of_support(setup)
+            findings += unheld(setup)
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
@@ -346,15 +346,6 @@ class _ExaminedBody:
         """A point of its frame [m] in that of the design."""
         x, y, z = self.of.placed(np.array([point]))[0].tolist()
         return x, y, z
-
-
-def _findings_of_support(setup: Setup) -> Iterator[Diagnostic]:
-    """Rigid motions that leave statics without one place for the body."""
-    design = setup.design
-    if kind_of(design, design.solver) in STATICS and (free := free_motion(setup)):
-        what = f"leave the body free to {free}"
-        hint = "hold it along these axes, or give the design an end_time to watch it move"
-        yield Diagnostic("error", "clamps", what, hint)
 
 
 def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:

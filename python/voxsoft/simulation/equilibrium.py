@@ -224,10 +224,12 @@ def sentence(
     path: _core.LoadPath,
     *,
     touches: bool = False,
+    is_cut: bool = False,
 ) -> str:
     """Say how statics ended: its control, how it ended, its iterations, its residual, its path.
 
-    What `touches` has no other ways than statics and motion over time.
+    What `touches` has no other ways than statics and motion over time; where its voxels are cut
+    (`is_cut`) full ones may let contact settle.
     """
     iterations = f"{steps} Newton iterations"
     residual = f"residual {format_percent(residual_left)} of the load"
@@ -282,6 +284,8 @@ def sentence(
                     f"{_OTHER_WAYS[way]}, a smaller load, smaller voxels, or motion over time "
                     '(method = "dynamics")'
                 )
+                if is_cut:
+                    ways = f'fill = "binary", as contact settles on full voxels more surely; {ways}'
             if way == "arc-length" and path.factor > 0.0:
                 return (
                     f"the path was followed to {carried}, where its steps ended or found no way "

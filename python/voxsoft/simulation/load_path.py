@@ -3,6 +3,8 @@
 Each equilibrium begins where the one before ended, with its contact: friction remembers the way,
 so that a way there and back is a loop. Loads and motions are made histories of one body, which is
 meshed once.
+
+Long because all that may change along a path, and how it becomes one design, stands here.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The answer of a simulation."""
+"""The answer of a simulation. Long because all that it gives is a short property of one class."""
 
 from __future__ import annotations
 

@@ -291,7 +291,8 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
             )
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
-        return sentence(way, *ended, touches=touches)
+        is_cut = setup.design.fill == "fraction"
+        return sentence(way, *ended, touches=touches, is_cut=is_cut)
     residual = f"residual {format_percent(answer.residual)} of the load"
     steps = f"{report.steps} steps"
     match report.status:
