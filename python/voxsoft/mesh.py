@@ -6,7 +6,7 @@ Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Final, Self
@@ -152,6 +152,8 @@ class Mesh:
     bodies : tuple of BodyMesh
         What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
+    regions : mapping of str to ndarray of int, shape (r,)
+        Vertices of each region that the file of the mesh names.
     """
 
     vertices: NDArray[np.float64]
@@ -165,6 +167,7 @@ class Mesh:
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
+    regions: Mapping[str, NDArray[np.integer]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -399,6 +402,10 @@ class Mesh:
             self.voxel_size == other.voxel_size
             and self.cavities == other.cavities
             and self.bodies == other.bodies
+            and self.regions.keys() == other.regions.keys()
+            and all(
+                np.array_equal(self.regions[name], other.regions[name]) for name in self.regions
+            )
             and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _DTYPES)
         )
 

@@ -71,14 +71,15 @@ def _show(report: CheckReport) -> None:
         where = f" {plain(finding.where)}:" if finding.where else ""
         hint = f" Try: {plain(finding.hint)}" if finding.hint else ""
         say(f"[{color}]{finding.severity}[/{color}]{where} {plain(finding.what)}.{hint}")
-    if report.voxels:
+    if report.tets:
         _show_body(report)
     say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")
 
 
 def _show_body(report: CheckReport) -> None:
+    voxels = f"{report.voxels:,} voxels, " if report.voxels else ""
     say(
-        f"{report.voxels:,} voxels, {report.vertices:,} vertices, {report.tets:,} tetrahedra, "
+        f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra, "
         f"mass {quantity(report.mass, 'mass')}"
     )
     for index, cavity in enumerate(report.cavities):

@@ -172,7 +172,8 @@ def _show_reactions(result: Result) -> None:
 def _voxels(result: Result) -> str:
     """How many voxels there are, and how many of them stayed large beside refined ones."""
     if not result.design.refine:
-        return f"{len(result.mesh.tets) // 5:,} voxels"
+        tets = len(result.mesh.tets)
+        return f"{tets:,} tetrahedra" if result.mesh.voxel_size is None else f"{tets // 5:,} voxels"
     from voxsoft.simulation import Setup
 
     setup = Setup(result.design, result.mesh)

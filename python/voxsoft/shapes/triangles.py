@@ -21,11 +21,13 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from voxsoft import _core
-from voxsoft.errors import ShapeError
+from voxsoft.errors import FileError, ShapeError
+from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body
 from voxsoft.shapes.nesting import Nest, Nested, taken_once, unnested
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
@@ -99,8 +101,9 @@ def _whole_path(path: object) -> object:
 class TriangleMesh(Shape):
     """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
 
-    Of tetrahedra and other volume cells the boundary counts. Small holes and turned faces do not
-    spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
+    Of tetrahedra and other volume cells the boundary counts, of the whole or of a `part`. Small
+    holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are
+    those to the triangles.
 
     Outermost closed shells enclose material, whichever side their faces are on. A shell within
     another is a chamber where it faces the other way than the outermost one around it; where it
@@ -120,14 +123,31 @@ class TriangleMesh(Shape):
     unit: Annotated[str, AfterValidator(_is_length_unit)] = Field(
         description="Length unit of the file, such as mm; mesh files do not say it."
     )
+    part: Name | None = Field(
+        None, description="Name of a part of a file of tetrahedra; default: all of it."
+    )
+    region: Name | None = Field(
+        None,
+        description="Name of a region of a file of tetrahedra, for a region of the design: all "
+        "within half a voxel of it.",
+    )
     nested: Nested | None = Field(
         None,
         description="Closed shells within others: void where material and voids alternate by "
         "depth; solid where those of the same sense are meant to be filled.",
     )
 
+    @model_validator(mode="after")
+    def _says_one(self) -> TriangleMesh:
+        if self.part is not None and self.region is not None:
+            raise ShapeError("region", "there is a part too", "make two shapes of them")
+        return self
+
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
+        if self.region is not None:
+            path, meter = Path(self.path), parse(f"1 {self.unit}", "length")
+            return _body(path).distance_to(self.region, path.name, meter)
         solid = self._solid
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
@@ -148,14 +168,24 @@ class TriangleMesh(Shape):
             changed = path.stat().st_mtime_ns
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        return _solid(path, changed, parse(f"1 {self.unit}", "length"), self.nested)
+        factor = parse(f"1 {self.unit}", "length")
+        return _solid(path, changed, factor, self.part, self.nested)
 
 
 @lru_cache(maxsize=8)
-def _solid(path: Path, changed: int, factor: float, nested: Nested | None) -> _Solid:
+def _solid(
+    path: Path, changed: int, factor: float, part: str | None, nested: Nested | None
+) -> _Solid:
     """Read a file once for as long as it does not change."""
-    surface = read_surface(path)
+    surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
     return _Solid(surface.points * factor, surface.triangles, str(path), nested)
+
+
+def _body(path: Path) -> MeshBody:
+    try:
+        return read_body(path)
+    except FileError as error:
+        raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
 
 
 # libigl's objects must go before its module does, or it reports them as leaked.

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -49,6 +49,7 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
+from voxsoft.simulation.solve_lock import SolveLock
 from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
@@ -77,6 +78,8 @@ class Setup:
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
+    lock
+        Solutions of it wait for each other, so that threads may share it.
 
     Raises
     ------
@@ -90,6 +93,7 @@ class Setup:
 
     design: Design
     mesh: Mesh
+    lock: SolveLock = field(default_factory=SolveLock, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"Setup({self.design.name!r}, {self.mesh!r})"
@@ -137,6 +141,9 @@ class Setup:
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
         voxels = len(setup.mesh.tets) // 5
         if short := shortage(voxels * BYTES_PER_VOXEL):
+            if design.mesh is not None:
+                what = f"the problem of {len(setup.mesh.tets):,} tetrahedra {short}"
+                raise SimulationError("mesh", what, "take a coarser mesh")
             what = f"the problem of {voxels:,} voxels {short}"
             raise SimulationError("voxel_size", what, "make the voxels larger")
         setup.check(allow_loose=allow_loose)
@@ -462,9 +469,11 @@ class Setup:
 
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
-    """Vertices of every clamp and probe that catches any, by name: what a mesh file carries."""
+    """Vertices of every clamp and probe that catches any, and of the regions of the body's file."""
     design = design.assembled
-    regions: dict[str, NDArray[np.uint32]] = {}
+    regions: dict[str, NDArray[np.uint32]] = {
+        name: vertices.astype(np.uint32) for name, vertices in mesh.regions.items()
+    }
     places: dict[str, Region] = {
         **{f"clamp_{each.name or i}": each.region for i, each in enumerate(design.clamps)},
         **{f"probe_{name}": probe for name, probe in design.probes.items()},
