@@ -41,6 +41,7 @@ from voxsoft.simulation.large_voxels import check_refinement, large_voxels
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.missing_cavity import why_no_cavity
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.profiles import check_profile_symmetry
@@ -431,12 +432,9 @@ class Setup:
                 continue
             where = f"loads[{index}]"
             if count == 0:
-                raise NoCavityError(
-                    where,
-                    "there is no enclosed cavity to put a pressure in",
-                    "make walls and caps at least one voxel thick, or the voxels smaller; "
-                    "the check of the design shows where a chamber leaks",
-                )
+                why, hint = why_no_cavity(self.design, self.mesh)
+                what = f"there is no enclosed cavity to put a pressure in: {why}"
+                raise NoCavityError(where, what, hint)
             self.load(index)
 
     @cached_property
