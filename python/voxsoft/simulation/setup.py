@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -48,6 +48,7 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
+from voxsoft.simulation.solve_lock import SolveLock
 from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
@@ -76,6 +77,8 @@ class Setup:
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
+    lock
+        Solutions of it wait for each other, so that threads may share it.
 
     Raises
     ------
@@ -89,6 +92,7 @@ class Setup:
 
     design: Design
     mesh: Mesh
+    lock: SolveLock = field(default_factory=SolveLock, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"Setup({self.design.name!r}, {self.mesh!r})"
