@@ -1,10 +1,14 @@
 """Hints of errors, that they can work."""
 
+from dataclasses import replace
+
 import pytest
 from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
+from voxsoft.cli.output import console
+from voxsoft.cli.run import _show_path
 from voxsoft.design import families
 from voxsoft.errors import DesignError, ShapeError
 from voxsoft.records import closest
@@ -63,12 +67,16 @@ def test_the_check_of_an_invalid_design_prints_no_mass(tmp_path):
     assert "mass" not in outcome.output
 
 
-def test_a_path_shows_statuses_as_words(tmp_path):
-    families.beam().save(tmp_path / "a.toml")
-    over = ["--over", "loads[0].value=0..1 m/s^2/2", "--out", str(tmp_path / "r")]
-    outcome = CliRunner().invoke(app, ["run", str(tmp_path / "a.toml"), *over])
-    assert outcome.exit_code == 0
-    header = next(
-        line for line in outcome.output.splitlines() if "loads[0]" in line and "┃" in line
-    )
-    assert header.strip("┃ ").split("┃")[-1].strip()
+@pytest.mark.parametrize("status", ["ok", "not-at-rest"])
+def test_a_path_shows_statuses_as_words_and_no_empty_column(status, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    console.cache_clear()
+    path = vs.follow(families.beam(), "loads[0].value=0..1 m/s^2/2")
+    last = replace(path.results[-1], status=status)
+    _show_path(replace(path, results=(*path.results[:-1], last)), ())
+    console.cache_clear()
+    printed = capsys.readouterr().err
+    header = next(line for line in printed.splitlines() if line.startswith("┃"))
+    assert all(column.strip() for column in header.strip().strip("┃").split("┃"))
+    assert "[red]" not in printed.partition("The last")[0]
+    assert ("status" in header, "not-at-rest" in printed) == (status != "ok",) * 2
