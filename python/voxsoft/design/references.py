@@ -171,7 +171,10 @@ def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDe
     parts = ((path, part) for path, part in _list(document, "parts"))
     for path, table in (*places_in(document), *parts):
         name = entry_of(table, "body")
-        if isinstance(name, str) and name not in known:
+        if isinstance(name, str) and not known:
+            what = f'"{name}" is no name: there is one body, and [[bodies]] name several'
+            yield ErrorDetail(place((*path, "body")), what, "leave body out")
+        elif isinstance(name, str) and name not in known:
             yield _unknown((*path, "body"), "body", name, known)
 
 

@@ -59,7 +59,7 @@ def read_surface(path: Path) -> Surface:
         raise ShapeError("path", f"{path.name} {WHAT}", HINT)
     if not path.name.lower().endswith(known_suffixes()):
         what = f"{path.name} is none of {' '.join(known_suffixes())}"
-        raise ShapeError("path", what, "export the part as STL, or convert it with meshio")
+        raise ShapeError("path", what, "export the part as STL or OBJ")
     points, triangles = _first_that_reads(path)
     # Some files hold colors behind the coordinates, and plane ones two coordinates.
     plane = np.zeros((len(points), max(0, 3 - points.shape[1])))

@@ -68,7 +68,7 @@ class CheckReport(Shown):
     chambers
         What the design calls each cavity; an empty text where it has no name.
     mass
-        In kg.
+        In kg; None for a design that cannot be made ready.
     thinnest_wall
         In voxels; None for an empty body.
     cost
@@ -93,7 +93,7 @@ class CheckReport(Shown):
     cavities: tuple[Cavity, ...] = field(default=(), repr=False)
     leaks: tuple[Leak, ...] = field(default=(), repr=False)
     chambers: tuple[str, ...] = ()
-    mass: float = 0.0
+    mass: float | None = None
     thinnest_wall: int | None = None
     cost: Cost | None = None
     memory: float = 0.0
@@ -119,7 +119,9 @@ class CheckReport(Shown):
             if n
         ]
         yield ", ".join(["valid" if self.valid else "not valid", *reported])
-        yield f"{counted(self.voxels, 'voxel')}, mass {format_quantity(rounded(self.mass), 'mass')}"
+        mass = self.mass
+        weight = "" if mass is None else f", mass {format_quantity(rounded(mass), 'mass')}"
+        yield f"{counted(self.voxels, 'voxel')}{weight}"
         yield from (f"body {name}: {counted(n, 'voxel')}" for name, n in self.bodies.items())
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"
@@ -220,6 +222,7 @@ def examine(
         for of in mesh.each_body
         if of.name in voxels
     ]
+    ready = not isinstance(body, Design)
     is_held, elements = False, len(mesh.tets) // 5
     if isinstance(body, Design):
         try:
@@ -228,7 +231,7 @@ def examine(
             setup.check()
             elements = setup.elements
             is_held = setup.loose_piece is None
-            mass = setup.problem.mass
+            mass, ready = setup.problem.mass, True
             findings += weak_anchors(setup)
             findings += unheld(setup)
         except VoxSoftError as error:
@@ -268,7 +271,7 @@ def examine(
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
         leaks=tuple(leak for one in each for leak in one.leaks),
         chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
-        mass=mass,
+        mass=mass if ready else None,
         thinnest_wall=thinnest,
         cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
