@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import FileError
 from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
-from voxsoft.files.region_names import comments_of, labels_of, names_in
+from voxsoft.formats.region_names import comments_of, labels_of, names_in
 from voxsoft.mesh import Mesh
 
 _DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
