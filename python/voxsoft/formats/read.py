@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Final
 
 from voxsoft.errors import FileError
-from voxsoft.formats import by_meshio
+from voxsoft.formats import abaqus, by_meshio, gmsh
 from voxsoft.formats.contents import Contents
 
 #: Own readers by suffix, before meshio.
-READERS: Final[dict[str, Callable[[Path], Contents]]] = {}
+READERS: Final[dict[str, Callable[[Path], Contents]]] = {".inp": abaqus.read, ".msh": gmsh.read}
 
 #: Formats of meshio that are drawings.
 _DRAWINGS: Final = {".svg", ".wkt"}
