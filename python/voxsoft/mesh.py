@@ -19,6 +19,7 @@ from voxsoft._arrays import frozen
 from voxsoft._memory import memory_limit, shortage
 from voxsoft.cavity import MeshCavity
 from voxsoft.errors import MeshError
+from voxsoft.formats.report import ReadReport
 from voxsoft.geometry import grid_phase, tet_volumes
 
 
@@ -152,6 +153,9 @@ class Mesh:
     bodies : tuple of BodyMesh
         What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
+    report : ReadReport or None
+        The file that it was read from beside all that was taken; None if not read. Meshes with
+        other reports may be equal.
     """
 
     vertices: NDArray[np.float64]
@@ -165,6 +169,7 @@ class Mesh:
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
+    report: ReadReport | None = None
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -195,7 +200,7 @@ class Mesh:
         ------
         MeshError
             Naming the first tet, vertex or face that is wrong: an index out of range, a position
-            that is not finite, a tet without volume, tets that overlap.
+            that is not finite, a tet without volume, tets that overlap, a vertex of no tet.
 
         Examples
         --------
@@ -209,6 +214,12 @@ class Mesh:
         """
         points = _matrix("vertices", vertices, 3, np.float64)
         corners = _matrix("tets", tets, 4, np.int32)
+        if len(lone := np.setdiff1d(np.arange(len(points)), corners)) and len(corners):
+            what = (
+                f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing would hold them"
+            )
+            hint = "keep only those of np.unique(tets, return_inverse=True)"
+            raise MeshError("vertices", what, hint)
         parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
         return cls._from_core(_core.mesh_tets(points, corners, parts), None)
 

@@ -35,15 +35,13 @@ def labels_of(names: Iterable[str]) -> dict[str, str]:
 'probe_tip_left-2', 'höhe': 'hohe', '名前': 'region'}
     """
     every = list(names)
-    taken = {name.lower() for name in every if _label(name) == name}
-    labels = {}
-    for name in every:
-        label = _label(name)
-        if label != name:
-            label = _free(label, taken)
-            taken.add(label.lower())
-        labels[name] = label
-    return labels
+    labels: dict[str, str] = {}
+    taken: set[str] = set()
+    # Names that can be labels first: they keep them, unless they differ from one by case alone.
+    for name in sorted(every, key=lambda name: _label(name) != name):
+        labels[name] = _free(_label(name), taken)
+        taken.add(labels[name].lower())
+    return {name: labels[name] for name in every}
 
 
 def _label(name: str) -> str:

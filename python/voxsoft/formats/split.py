@@ -171,7 +171,7 @@ def _check_neighbors(contents: Contents, tets: Indices, where: str) -> None:
     four, counts = np.unique(np.concatenate(quads), axis=0, return_counts=True)
     outer = four[counts == 1]
     three = {tuple(row) for row in np.concatenate(triangles).tolist()}
-    made = np.concatenate([tets[:, list(face)] for face in FACES["tetra"]])
+    made: Indices = np.concatenate([tets[:, list(face)] for face in FACES["tetra"]])
     own, uses = np.unique(np.sort(made, axis=1), axis=0, return_counts=True)
     alone = {tuple(row) for row in own[uses == 1].tolist()}
     # A triangle of the file within a quadrilateral that no cut triangle meets lies across it.
