@@ -1,7 +1,7 @@
 """Gmsh .msh of version 2.2 and 4.1, as text and binary: cells with their physical groups.
 
-A group's cells are a cell set of its name, or of its number where it has none; groups of points,
-lines and surfaces are point sets too. A cell of several groups belongs to all of them. Version 2.2
+A group's cells are a cell set of its name, or of its number where it has none; groups of lines and
+surfaces are point sets too, groups of points are these alone. A cell of several groups belongs to all of them. Version 2.2
 lists such a cell once for each group: it becomes one.
 """
 
@@ -167,7 +167,8 @@ class _Gathered:
                     continue
                 chosen = np.concatenate(members)
                 name = names.get((dimension, group), str(group))
-                cell_sets.setdefault(name, []).append(number[chosen])
+                if dimension > 0:
+                    cell_sets.setdefault(name, []).append(number[chosen])
                 if dimension < 3:
                     point_sets.setdefault(name, []).append(rows[chosen].ravel())
             blocks.append(CellBlock(kind, nodes))
