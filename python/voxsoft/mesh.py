@@ -6,7 +6,7 @@ Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Final, Self
@@ -156,6 +156,8 @@ class Mesh:
     report : ReadReport or None
         The file that it was read from beside all that was taken; None if not read. Meshes with
         other reports may be equal.
+    regions : mapping of str to ndarray of int, shape (r,)
+        Vertices of each region that the file of the mesh names.
     """
 
     vertices: NDArray[np.float64]
@@ -170,6 +172,7 @@ class Mesh:
     moments: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
     report: ReadReport | None = None
+    regions: Mapping[str, NDArray[np.integer]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -410,6 +413,10 @@ class Mesh:
             self.voxel_size == other.voxel_size
             and self.cavities == other.cavities
             and self.bodies == other.bodies
+            and self.regions.keys() == other.regions.keys()
+            and all(
+                np.array_equal(self.regions[name], other.regions[name]) for name in self.regions
+            )
             and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _DTYPES)
         )
 

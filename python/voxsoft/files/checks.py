@@ -13,6 +13,7 @@ import numpy as np
 from voxsoft.errors import UnitError, VoxSoftError
 from voxsoft.files.designs import FilePath, load
 from voxsoft.shapes import TriangleMesh, voxelize
+from voxsoft.shapes.nesting import Nested
 from voxsoft.shapes.surface_files import Surface, read_surface
 from voxsoft.simulation import CheckReport, Diagnostic, check
 from voxsoft.simulation.surfaces import findings_of_surface
@@ -53,7 +54,11 @@ def check_design(path: FilePath, assignments: Iterable[str] = ()) -> CheckReport
 
 
 def check_mesh(
-    path: FilePath, *, unit: str | None = None, voxel_size: str | float | None = None
+    path: FilePath,
+    *,
+    unit: str | None = None,
+    voxel_size: str | float | None = None,
+    nested: Nested | None = None,
 ) -> CheckReport:
     """Examine a triangle or tetrahedral mesh as a body of voxels.
 
@@ -65,6 +70,8 @@ def check_mesh(
         What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``.
     voxel_size
         Text with a unit, or a number in m; default: a 50th of the longest side.
+    nested
+        How closed shells within others are read, as in a design: ``"solid"``, ``"void"``.
 
     Returns
     -------
@@ -86,7 +93,7 @@ def check_mesh(
     meter = parse(f"1 {unit}", "length", where="--unit")
     size, chosen = _voxel_size(voxel_size, _extents(surface) * meter)
     try:
-        mesh = TriangleMesh(path=str(file), unit=unit)
+        mesh = TriangleMesh(path=str(file), unit=unit, nested=nested)
         voxels = voxelize(mesh, size)
         report = check(voxels)
         volumes = volumes_in(mesh, voxels.mesh(), file.name)
@@ -94,7 +101,7 @@ def check_mesh(
         return _report_of(error)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
     findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
-    findings += doubts(volumes, may_cut=True)
+    findings += doubts(volumes, "make the voxels smaller, or its sizes multiples of them")
     return replace(report, findings=tuple(findings), volumes=volumes)
 
 

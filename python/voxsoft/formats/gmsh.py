@@ -1,8 +1,8 @@
 """Gmsh .msh of version 2.2 and 4.1, as text and binary: cells with their physical groups.
 
 A group's cells are a cell set of its name, or of its number where it has none; groups of lines and
-surfaces are point sets too, groups of points are these alone. A cell of several groups belongs to all of them. Version 2.2
-lists such a cell once for each group: it becomes one.
+surfaces are point sets too, groups of points are these alone. A cell of several groups belongs to
+all of them. Version 2.2 lists such a cell once for each group: it becomes one.
 """
 
 from __future__ import annotations

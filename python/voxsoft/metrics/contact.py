@@ -89,12 +89,16 @@ def _force(state: State, target: Target) -> float:
     contacts = _contacts(CONTACT_FORCE, state, target)
     if any(each.of == (BODY, BODY) for each in contacts):
         return contacts[0].pressed  # what it presses itself with; each pair of forces cancels
+    return component(force_on_bodies(CONTACT_FORCE, state, target), target) if contacts else 0.0
+
+
+def force_on_bodies(metric: Metric, state: State, target: Target) -> Floats:
+    """The force of what a target names on the bodies, (3,), N; on the named one of two bodies."""
     bodies, total = state.design.body_names, np.zeros(3)
-    for each in contacts:
-        # On the named one of two bodies, on the bodies else.
+    for each in _contacts(metric, state, target):
         turned = target.object in bodies and each.of[0] != target.object
         total += np.asarray(each.force) * (-1.0 if turned else 1.0)
-    return component(total, target) if contacts else 0.0
+    return total
 
 
 def _slope_at_given_forces(state: SlopeState, target: Target) -> Floats:

@@ -9,7 +9,7 @@ from typing import Final, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design import Constraint, Design, Objective, Region
 from voxsoft.errors import ErrorDetail
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
@@ -18,7 +18,9 @@ Floats = NDArray[np.float64]
 #: What asks for a metric, with its place and its direction.
 Target = Objective | Constraint
 #: Keys of a target that say where, along what or of which voxels a metric is measured.
-Option = Literal["probe", "base", "axis", "cavity", "percentile", "object", "tendon"]
+Option = Literal[
+    "probe", "base", "axis", "cavity", "percentile", "object", "tendon", "clamp", "region"
+]
 
 #: What a metric lacks that does not take a key.
 _LACKS: Final[Mapping[Option, str]] = {
@@ -29,6 +31,8 @@ _LACKS: Final[Mapping[Option, str]] = {
     "percentile": "is not one number for each voxel",
     "object": "is not measured between the body and an object",
     "tendon": "is not that of a tendon",
+    "clamp": "is not that of a clamp",
+    "region": "is not that of what holds a region",
 }
 
 
@@ -149,6 +153,13 @@ class State(Protocol):
     @property
     def reaction(self) -> tuple[float, float, float]:
         """What all supports carry, (3,), N."""
+
+    @property
+    def clamp_reactions(self) -> Mapping[str, tuple[float, float, float]]:
+        """The force of each clamp on the body by its name, N."""
+
+    def reaction_in(self, region: Region) -> tuple[float, float, float]:
+        """The force on the body of what holds a region, (3,), N."""
 
     @property
     def penetration(self) -> Depth:

@@ -17,7 +17,7 @@ from voxsoft.metrics import Target
 from voxsoft.shapes import Shape
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.places import inside_region, voxel_size
+from voxsoft.simulation.places import inside_region, is_named, voxel_size
 from voxsoft.units import format_quantity
 
 Floats = NDArray[np.float64]
@@ -213,6 +213,7 @@ def _share_inside(
     a, b, c = corners.transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     held = inside_region(chamber, corners.mean(axis=1), shapes, reach)
+    held &= is_named(chamber, mesh)[cavity.triangles].all(axis=1)
     return float(areas[held].sum() / areas.sum())
 
 

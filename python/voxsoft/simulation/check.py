@@ -19,14 +19,20 @@ from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.anchors import weak_anchors
 from voxsoft.simulation.chambers import ambiguous_indices
-from voxsoft.simulation.choice import unused_settings
+from voxsoft.simulation.choice import STATICS, kind_of, unused_settings
+from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
+from voxsoft.simulation.file_tets import cavities_of_tets, findings_of_tets
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
 from voxsoft.simulation.plausible import implausible_numbers
+from voxsoft.simulation.relaxed import relaxed_parts
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
@@ -200,7 +206,8 @@ def examine(
     body
         What was meshed.
     voxels, mesh
-        The voxels of each of its bodies by name, and their mesh.
+        The voxels of each of its bodies by name, none of a body that is the mesh of a file, and
+        their mesh.
     lost
         Volume of the material that found no voxel [m³].
     setup
@@ -209,7 +216,9 @@ def examine(
     findings = _findings_of_loss(lost, mesh)
     mass = mesh.volume * SILICONE_DENSITY
     each = [
-        _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ()) for of in mesh.each_body
+        _ExaminedBody(of, voxels[of.name], _alone(body, of), of.mesh, ())
+        for of in mesh.each_body
+        if of.name in voxels
     ]
     is_held, elements = False, len(mesh.tets) // 5
     if isinstance(body, Design):
@@ -221,14 +230,19 @@ def examine(
             is_held = setup.loose_piece is None
             mass = setup.problem.mass
             findings += weak_anchors(setup)
+            findings += _findings_of_support(setup)
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
         findings += doubtful_volumes(body, mesh, points=PRECISE)
+        findings += [*coarse_walls(body, mesh), *vanished_shapes(body)]
         findings += _findings_of_settings(body)
         findings += [Diagnostic("warning", *problem) for problem in body.left_out]
+        if kind_of(body, body.solver).to_rest:
+            findings += relaxed_parts(body)
     if isinstance(body, Design) and setup is not None:
         findings += ambiguous_indices(body, setup.mesh)
+    findings += thin_seals(None, mesh if setup is None else setup.mesh)
     findings += implausible_numbers(body, mesh, mass)
     for one in each:
         findings += one.findings(is_held)
@@ -242,6 +256,9 @@ def examine(
         share = elements / (len(mesh.tets) // 5 or 1)
         cost = cost_of(body, setup.mesh, min(lengths, default=None), mass, share)
     cavities = [cavity for one in each for cavity in one.cavities]
+    if not each:
+        cavities = cavities_of_tets(mesh)
+        findings += findings_of_tets(body, mesh)
     refined = isinstance(body, Design) and bool(body.refine)
     return CheckReport(
         findings=tuple(sorted(findings, key=lambda finding: finding.severity)),
@@ -276,7 +293,7 @@ def _discretized(body: Design | Voxels) -> tuple[Mapping[str, Voxels], Mesh, flo
     if not isinstance(body, Design):
         return {"": body}, body.mesh(), 0.0
     cells = filled(body)
-    return {name: own.voxels for name, own in cells.each.items()}, cells.mesh(), cells.lost
+    return cells.voxels_by_body, cells.mesh(), cells.lost
 
 
 def _errors(error: VoxSoftError, body: Design | Voxels) -> Iterator[Diagnostic]:
@@ -329,6 +346,15 @@ class _ExaminedBody:
         """A point of its frame [m] in that of the design."""
         x, y, z = self.of.placed(np.array([point]))[0].tolist()
         return x, y, z
+
+
+def _findings_of_support(setup: Setup) -> Iterator[Diagnostic]:
+    """Rigid motions that leave statics without one place for the body."""
+    design = setup.design
+    if kind_of(design, design.solver) in STATICS and (free := free_motion(setup)):
+        what = f"leave the body free to {free}"
+        hint = "hold it along these axes, or give the design an end_time to watch it move"
+        yield Diagnostic("error", "clamps", what, hint)
 
 
 def _placed(found: Diagnostic, design: Design, mesh: Mesh) -> Diagnostic:
@@ -400,20 +426,8 @@ def _findings_of_settings(design: Design) -> Iterator[Diagnostic]:
 def _findings_of_voxels(
     body: Design | Voxels, voxels: Voxels, leaks: tuple[Leak, ...], is_held: bool
 ) -> Iterator[Diagnostic]:
-    hint = "thicken the body there by a voxel, or make the voxels smaller"
-    for hinge in voxels.hinges[:_LISTED]:
-        at = _middle(voxels, *hinge.cells)
-        contact = "an edge" if hinge.contact == "edge" else "a corner"
-        yield Diagnostic(
-            "warning",
-            f"voxels {hinge.cells[0]} and {hinge.cells[1]}",
-            f"touch at {contact} only, a hinge, {near(at)}",
-            hint,
-            at,
-        )
-    if len(voxels.hinges) > _LISTED:
-        what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
-        yield Diagnostic("warning", "voxels", what, hint)
+    if voxels.hinges:
+        yield _finding_of_hinges(voxels)
     components = voxels.components("face")
     if len(components) > 1 and not is_held:
         sizes = ", ".join(f"{component.count:,}" for component in components[:_LISTED])
@@ -445,6 +459,18 @@ def _findings_of_voxels(
             f"make the voxels smaller: {GOOD_WALL} or more across a wall",
             at,
         )
+
+
+def _finding_of_hinges(voxels: Voxels) -> Diagnostic:
+    """All hinges in one: a line of them is one fault."""
+    first, *others = voxels.hinges
+    at = _middle(voxels, *first.cells)
+    contact = "an edge" if first.contact == "edge" else "a corner"
+    what = f"touch at {contact} only, a hinge, {near(at)}"
+    if others:
+        what = f"{what}, and {counted(len(others), 'more hinge')} in other places"
+    hint = "thicken the body there by a voxel, or make the voxels smaller"
+    return Diagnostic("warning", f"voxels {first.cells[0]} and {first.cells[1]}", what, hint, at)
 
 
 def _middle(voxels: Voxels, *cells: Cell) -> tuple[float, float, float]:

@@ -10,7 +10,7 @@ from voxsoft._core import Status
 from voxsoft._memory import memory_limit
 from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.freedom import moves_freely
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
@@ -190,7 +190,7 @@ def find_equilibrium(
         progress=progress,
     )
     path, status = path_of(answer), answer.status
-    if status == Status.NOT_CONVERGED and path.factor == 0.0 and moves_freely(setup):
+    if status == Status.NOT_CONVERGED and free_motion(setup):
         # Singular up to rounding is all that the factor shows of it.
         status = Status.MECHANISM
     if status == Status.OUT_OF_MEMORY:
