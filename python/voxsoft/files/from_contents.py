@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.files.mesh_file import MeshFile, with_cavities
 from voxsoft.formats.contents import CORNERS, Contents
@@ -52,15 +53,17 @@ def mesh_of_contents(path: Path, contents: Contents, unit: str | None) -> MeshFi
     notes: list[str] = []
     if surfaces:
         mesh = with_cavities(mesh, surfaces, where)
+    middles = _middle_nodes(contents)
     regions: dict[str, NDArray[np.int64]] = {}
-    for name, members in contents.point_sets.items():
+    for name, members in _point_sets(contents).items():
         vertices = np.unique(new[members][new[members] >= 0])
-        if CAVITY.fullmatch(name) and name in contents.cell_sets:
-            continue
         if len(vertices):
             regions[name] = vertices
-        if lost := len(members) - len(vertices):
-            notes.append(f"Region {name} loses {lost:,} points that no volume cell uses")
+        lost = len(np.setdiff1d(members[new[members] < 0], middles))
+        if lost:
+            notes.append(f"Region {name} loses {counted(lost, 'point')} that no volume cell uses")
+    if lone := len(contents.points) - len(used) - len(middles):
+        notes.append(f"{counted(lone, 'point')} that no volume cell uses: left out")
     data = {name: values[cut.cell] for name, values in contents.arrays.items() if name != "part"}
     report = _report(contents, cut, parts, mesh, regions, meter, notes)
     if unit is not None and contents.unit is not None and contents.unit != meter:
@@ -105,15 +108,12 @@ def _report(
     notes: list[str],
 ) -> ReadReport:
     differences = [*contents.notes, *cut.notes, *parts.notes, *notes]
-    lone = len(contents.points) - len(mesh.vertices)
-    middle = _middle_nodes(contents)
-    if lone - middle > 0:
-        differences.append(f"{lone - middle:,} points that no volume cell uses are left out")
     for kind, count in held_by(contents)["cells"].items():
         base = kind.rstrip("0123456789")
         if base not in FACES and (base not in CORNERS or CORNERS[base] > 1):
-            text = "left out; their groups are regions" if contents.point_sets else "left out"
-            differences.append(f"{counted_cells(kind, count)}: {text}")
+            differences.append(
+                f"{counted_cells(kind, count)}: no volume, only their sets are regions"
+            )
     extents = np.ptp(mesh.vertices, axis=0) / meter
     cautions = [text] if (text := doubt(extents, meter)) else []
     counts = np.bincount(mesh.tet_part)
@@ -135,12 +135,30 @@ def _report(
     )
 
 
-def _middle_nodes(contents: Contents) -> int:
-    """How many points are only nodes of edges and middles of cells."""
+def _point_sets(contents: Contents) -> dict[str, NDArray[np.int64]]:
+    """Points of each region: of sets of points, and of sets of faces and lines."""
+    found: dict[str, NDArray[np.int64]] = {}
+    for name, cells in contents.cell_sets.items():
+        first = 0
+        points = [np.empty(0, np.int64)]
+        for block in contents.blocks:
+            inside = cells[(cells >= first) & (cells < first + len(block.nodes))] - first
+            if block.kind.rstrip("0123456789") not in FACES:
+                points.append(block.nodes[inside].ravel())
+            first += len(block.nodes)
+        if len(marked := np.unique(np.concatenate(points))):
+            found[name] = marked
+    found |= contents.point_sets
+    is_cavity = {name for name in contents.cell_sets if CAVITY.fullmatch(name)}
+    return {name: points for name, points in found.items() if name not in is_cavity}
+
+
+def _middle_nodes(contents: Contents) -> NDArray[np.int64]:
+    """Points that are only nodes of edges and middles of cells."""
     corners, others = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
     for block in contents.blocks:
         base = block.kind.rstrip("0123456789")
         if base in FACES:
             corners.append(block.nodes[:, : CORNERS[base]].ravel())
             others.append(block.nodes[:, CORNERS[base] :].ravel())
-    return len(np.setdiff1d(np.concatenate(others), np.concatenate(corners)))
+    return np.setdiff1d(np.concatenate(others), np.concatenate(corners))

@@ -17,6 +17,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.formats.abaqus_cards import Card, cards_of
 from voxsoft.formats.abaqus_elements import kind_of
@@ -159,7 +160,8 @@ class _Model:
         kind = kind_of(element)
         if kind is None:
             self.notes.append(
-                f"{len(card.data):,} lines of elements of type {element or '(none)'} are left out"
+                f"{counted(len(card.data), 'line')} of elements of type {element or '(none)'} "
+                "not taken: they fill no space"
             )
             return
         labels = self.scope.add_elements(card, kind)

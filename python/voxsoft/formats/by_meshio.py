@@ -75,6 +75,8 @@ def contents_of(data: meshio.Mesh, name: str) -> Contents:
     arrays: dict[str, NDArray[np.float64]] = {}
     for key, values in data.cell_data.items():
         each = [np.asarray(v) for v, kept in zip(values, whole, strict=True) if kept]
+        # VTK files hold numbers as columns of one.
+        each = [v[:, 0] if v.ndim == 2 and v.shape[1] == 1 else v for v in each]
         if all(v.ndim == 1 and v.dtype.kind in "biuf" for v in each) and each:
             arrays[key] = np.concatenate(each).astype(np.float64)
         else:

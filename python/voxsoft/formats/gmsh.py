@@ -173,6 +173,8 @@ class _Gathered:
                     point_sets.setdefault(name, []).append(rows[chosen].ravel())
             blocks.append(CellBlock(kind, nodes))
             first += len(nodes)
+        empty = set(names.values()) - {*cell_sets, *point_sets}
+        notes += [f"Group {name} holds no cell of the file" for name in sorted(empty)]
         return Contents(
             points,
             tuple(blocks),

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.formats.contents import Contents
 
@@ -69,7 +70,7 @@ def parts_of(contents: Contents, cells: NDArray[np.int64], where: str) -> Parts:
     >>> found.number.tolist(), found.names
     ([1, 1, 2, 1], {1: 'all', 2: 'stiff'})
     >>> found.notes
-    ('1 cell is in several sets; the smallest counts',)
+    ('1 cell in several sets: the smallest counts',)
     """
     sets = {name: np.flatnonzero(np.isin(cells, v)) for name, v in contents.cell_sets.items()}
     sets = {name: v for name, v in sets.items() if len(v) and not CAVITY.fullmatch(name)}
@@ -86,7 +87,7 @@ def _by_sets(contents: Contents, sets: Mapping[str, NDArray[np.int64]], count: i
     if contents.sections:
         names = [name for name in names if name in contents.sections]
         notes += [
-            f"Set {name} of {len(found):,} cells has no section and makes no part"
+            f"Set {name} of {counted(len(found), 'cell')} has no section and makes no part"
             for name, found in sets.items()
             if name not in contents.sections
         ]
@@ -96,8 +97,7 @@ def _by_sets(contents: Contents, sets: Mapping[str, NDArray[np.int64]], count: i
         owner[sets[names[rank]]] = rank
     uses = np.bincount(np.concatenate([sets[name] for name in names]), minlength=count)
     if several := int((uses > 1).sum()):
-        verb = "cell is" if several == 1 else "cells are"
-        notes.append(f"{several:,} {verb} in several sets; the smallest counts")
+        notes.append(f"{counted(several, 'cell')} in several sets: the smallest counts")
     kept = [rank for rank in range(len(names)) if (owner == rank).any()]
     notes += [
         f"Set {name} is covered by smaller ones and makes no part"
@@ -116,8 +116,7 @@ def _by_sets(contents: Contents, sets: Mapping[str, NDArray[np.int64]], count: i
         last = max(numbers, default=0) + 1
         number[owner < 0] = last
         titles[last] = "rest"
-        verb = "cell is" if rest == 1 else "cells are"
-        notes.append(f"{rest:,} {verb} in no set: part {last}, called rest")
+        notes.append(f"{counted(rest, 'cell')} in no set: part {last}, called rest")
     notes += [f'Array "{name}" makes no part: sets do' for name in _candidates(contents, None)]
     return Parts(number, titles, (), tuple(notes))
 

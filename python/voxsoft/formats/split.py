@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from voxsoft._shown import counted
 from voxsoft.errors import FileError
 from voxsoft.formats.contents import CORNERS, Contents
 from voxsoft.formats.report import counted_cells
@@ -180,8 +181,6 @@ def _check_neighbors(contents: Contents, tets: Indices, where: str) -> None:
         inside = [(*quad[:skip], *quad[skip + 1 :]) for skip in range(4)]
         across += any(each in three and each in alone for each in inside)
     if across:
-        what = (
-            f"{across:,} quadrilateral faces of hexahedra, wedges or pyramids meet tetrahedra that "
-            "cut them by the other diagonal"
-        )
+        faces = counted(across, "quadrilateral face")
+        what = f"{faces} of bricks, wedges or pyramids, which tetrahedra cut by the other diagonal"
         raise FileError(where, what, "put pyramids between them, or mesh with tetrahedra alone")

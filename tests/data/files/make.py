@@ -87,9 +87,7 @@ def no_groups():
     gmsh.model.add("arc")
     points = [gmsh.model.geo.addPoint(x, y, 0, 6) for x, y in ((5, 0), (0, 5), (-5, 0), (0, -5))]
     center = gmsh.model.geo.addPoint(0, 0, 0, 6)
-    arcs = [
-        gmsh.model.geo.addCircleArc(points[i], center, points[(i + 1) % 4]) for i in range(4)
-    ]
+    arcs = [gmsh.model.geo.addCircleArc(points[i], center, points[(i + 1) % 4]) for i in range(4)]
     disk = gmsh.model.geo.addPlaneSurface([gmsh.model.geo.addCurveLoop(arcs)])
     gmsh.model.geo.extrude([(2, disk)], 0, 0, 10)
     gmsh.model.geo.synchronize()
