@@ -217,14 +217,15 @@ class Mesh:
         """
         points = _matrix("vertices", vertices, 3, np.float64)
         corners = _matrix("tets", tets, 4, np.int32)
-        if len(lone := np.setdiff1d(np.arange(len(points)), corners)) and len(corners):
+        parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
+        arrays = _core.mesh_tets(points, corners, parts)
+        if len(lone := np.setdiff1d(np.arange(len(points)), corners)):
             what = (
                 f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing would hold them"
             )
             hint = "keep only those of np.unique(tets, return_inverse=True)"
             raise MeshError("vertices", what, hint)
-        parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
-        return cls._from_core(_core.mesh_tets(points, corners, parts), None)
+        return cls._from_core(arrays, None)
 
     @classmethod
     def from_voxel_grid(cls, grid: _core.Grid) -> Self:

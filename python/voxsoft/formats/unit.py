@@ -50,6 +50,18 @@ def meter_of(
     return stated
 
 
+def name_of(meter: float) -> str:
+    """Return the unit of so many meters.
+
+    Examples
+    --------
+    >>> name_of(0.001), name_of(0.0254), name_of(1e-6)
+    ('mm', 'inch', 'um')
+    """
+    known = {parse(f"1 {unit}", "length"): unit for unit in (*UNITS, "um", "nm", "ft")}
+    return min(known.items(), key=lambda each: abs(np.log(each[0] / meter)))[1]
+
+
 def sizes(extents: NDArray[np.float64], ask: str) -> tuple[str, str]:
     """Return the what and the hint of the error about a missing unit.
 
