@@ -155,7 +155,7 @@ def _check_turn(
     folded = int(((highest > 0) & (lowest < 0)).sum())
     if folded:
         what = f"{counted_cells(kind, folded)}, cut into tetrahedra, would overlap themselves"
-        raise FileError(where, what, "mend the folded cells, or mesh with tetrahedra")
+        raise FileError(where, what, "repair the folded cells, or mesh with tetrahedra")
 
 
 def _check_neighbors(contents: Contents, tets: Indices, where: str) -> None:

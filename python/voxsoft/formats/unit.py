@@ -16,7 +16,7 @@ _SMALLEST, _LARGEST = 0.5e-3, 5.0
 
 
 def meter_of(
-    where: str, said: float | None, given: str | None, points: NDArray[np.float64], ask: str
+    where: str, stated: float | None, given: str | None, points: NDArray[np.float64], ask: str
 ) -> float:
     """Return meters in one unit of the numbers; a given unit counts before the file's own.
 
@@ -24,7 +24,7 @@ def meter_of(
     ----------
     where
         The file, for messages.
-    said
+    stated
         Meters in the unit that the file says, None if it says none.
     given
         A unit such as ``"mm"``, or None.
@@ -45,9 +45,9 @@ def meter_of(
     """
     if given is not None:
         return parse(f"1 {given}", "length", where="unit")
-    if said is None:
+    if stated is None:
         raise UnitError(where, *sizes(np.ptp(points, axis=0), ask))
-    return said
+    return stated
 
 
 def name_of(meter: float) -> str:
