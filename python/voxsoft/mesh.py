@@ -1,5 +1,7 @@
 """Tetrahedral meshes: what the solvers work on.
 
+Long because one immutable value has its attributes, the ways to make it and its quality together.
+
 Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one by
 :meth:`voxsoft.voxels.Voxels.mesh`.
 """
@@ -220,9 +222,7 @@ class Mesh:
         parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
         arrays = _core.mesh_tets(points, corners, parts)
         if len(lone := np.setdiff1d(np.arange(len(points)), corners)):
-            what = (
-                f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing would hold them"
-            )
+            what = f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing holds them"
             hint = "keep only those of np.unique(tets, return_inverse=True)"
             raise MeshError("vertices", what, hint)
         return cls._from_core(arrays, None)

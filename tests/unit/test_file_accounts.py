@@ -53,9 +53,9 @@ def test_check_has_the_account_in_json(deck):
     assert account["held"]["cells"] == {"hexahedron": 1, "tetra": 1}
     assert account["held"]["sets"] == {"BRICK": 1, "TIP": 1}
     assert account["taken"] == {"points": 12, "triangles": 16}
-    told = " ".join(account["differences"])
+    sentences = " ".join(account["differences"])
     for word in ("1 hexahedron, 1 tetrahedron", "BRICK, TIP", "FIX"):
-        assert word in told
+        assert word in sentences
 
 
 def test_check_prints_the_account(deck):

@@ -54,21 +54,23 @@ def _differences(contents: Contents) -> list[str]:
     """Sentences on cells, sets and arrays that a surface does not have."""
     held = held_by(contents)
     solids = {kind: n for kind, n in held["cells"].items() if _base(kind) in FACES}
-    told = []
+    sentences = []
     if solids:
         listed = ", ".join(counted_cells(kind, count) for kind, count in solids.items())
-        told.append(f"The boundary of {listed} is taken")
+        sentences.append(f"The boundary of {listed} is taken")
     for kind, count in held["cells"].items():
         if kind != _base(kind) and CORNERS.get(_base(kind), 0) > 1:
-            told.append(f"{counted_cells(kind, count)}: taken by the corners, with straight edges")
+            sentences.append(
+                f"{counted_cells(kind, count)}: taken by the corners, with straight edges"
+            )
         if kind not in solids and (solids or CORNERS.get(_base(kind), 3) < 3):
-            told.append(f"{counted_cells(kind, count)}: left out")
+            sentences.append(f"{counted_cells(kind, count)}: left out")
     for word, names in (("Sets", held["sets"]), ("Regions", held["regions"])):
         if names:
-            told.append(f"{word} are not taken, the body is one: {', '.join(names)}")
+            sentences.append(f"{word} are not taken, the body is one: {', '.join(names)}")
     if held["arrays"]:
-        told.append(f"Arrays are not taken: {', '.join(held['arrays'])}")
-    return told
+        sentences.append(f"Arrays are not taken: {', '.join(held['arrays'])}")
+    return sentences
 
 
 def _base(kind: str) -> str:
