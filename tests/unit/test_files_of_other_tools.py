@@ -3,6 +3,7 @@
 import tomllib
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 
@@ -174,6 +175,34 @@ def test_folded_bricks_are_refused():
     points[6] = (-1.0, -1.0, -1.0)
     with pytest.raises(FileError, match="1 hexahedron, cut into tetrahedra, would overlap"):
         tets_of(Contents(points, (CellBlock("hexahedron", np.arange(8)[None]),)), "folded")
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "parts"),
+    [
+        ("part", [0, 1], {1: "part 0", 2: "part 1"}),
+        ("part", [3, 300], {1: "part 3", 2: "part 300"}),
+        ("part", [2, 7], {2: "part 2", 7: "part 7"}),
+        ("Material", [1.0, 2.0], {1: "Material 1", 2: "Material 2"}),
+        ("gmsh:physical", [302, 301], {1: "gmsh:physical 301", 2: "gmsh:physical 302"}),
+        ("material", [0.25, 0.5], {}),
+        ("temperature", [1, 2], {}),
+    ],
+)
+@pytest.mark.parametrize("suffix", [".vtu", ".vtk"])
+def test_arrays_of_whole_numbers_are_parts_in_every_format(tmp_path, suffix, name, values, parts):
+    points = np.concatenate([CUBE, [[0.5, 0.5, 2.0], [5, 5, 5]]])
+    cells = [("hexahedron", [[*range(8)]]), ("pyramid", [[4, 5, 6, 7, 8]])]
+    data = {name: [[values[0]], [values[1]]]}
+    meshio.Mesh(points, cells, cell_data=data).write(tmp_path / f"house{suffix}")
+    found = read_mesh_file(tmp_path / f"house{suffix}", unit="cm")
+    assert found.report.parts == parts
+    assert found.mesh.volume == pytest.approx((1 + 1 / 3) * 1e-6, rel=1e-12)
+    assert "1 point that no volume cell uses: left out" in found.report.differences
+    if parts:
+        volumes = {n: found.mesh.tet_volumes[found.mesh.tet_part == n].sum() for n in parts}
+        order = sorted(parts, reverse=values[0] > values[1])
+        assert [volumes[n] for n in order] == pytest.approx([1e-6, 1e-6 / 3], rel=1e-12)
 
 
 def test_sets_that_differ_by_case_alone_are_written_apart(tmp_path):
