@@ -205,6 +205,23 @@ def test_arrays_of_whole_numbers_are_parts_in_every_format(tmp_path, suffix, nam
         assert [volumes[n] for n in order] == pytest.approx([1e-6, 1e-6 / 3], rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("named", "match"),
+    [
+        ("../secret.inc", "outside of the deck's folder"),
+        ("absent.inc", "which is missing"),
+        ("deck.inp", "include each other in a circle"),
+    ],
+)
+def test_included_files_that_cannot_be_followed_are_named(tmp_path, named, match):
+    (tmp_path / "secret.inc").write_text("*NODE\n1, 0, 0, 0\n")
+    deck = tmp_path / "own" / "deck.inp"
+    deck.parent.mkdir()
+    deck.write_text(f"** A deck\n*INCLUDE, INPUT={named}\n")
+    with pytest.raises(FileError, match=rf"deck.inp, line 2: \*INCLUDE.*{match}"):
+        read_contents(deck)
+
+
 def test_sets_that_differ_by_case_alone_are_written_apart(tmp_path):
     mesh = read_mesh_file(FOLDER / "hybrid.inp", unit="mm").mesh
     write_mesh(tmp_path / "a.inp", mesh, regions={"tip": [0], "Tip": [1]})

@@ -115,6 +115,10 @@ def _whole(card: Card, path: Path, depth: int) -> Iterator[Card]:
         yield card
         return
     file = path.parent / named
+    # A deck from a stranger reads nothing but its own folder.
+    if not file.resolve().is_relative_to(path.parent.resolve()):
+        what = f"*{card.name} names {named}, which is outside of the deck's folder"
+        raise FileError(card.where, what, "put it beside the file")
     if not file.is_file():
         hint = "put it beside the file, or paste its lines in"
         raise FileError(card.where, f"*{card.name} names {named}, which is missing", hint)
