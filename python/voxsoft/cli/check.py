@@ -71,6 +71,9 @@ def _show(report: CheckReport) -> None:
         where = f" {plain(finding.where)}:" if finding.where else ""
         hint = f" Try: {plain(finding.hint)}" if finding.hint else ""
         say(f"[{color}]{finding.severity}[/{color}]{where} {plain(finding.what)}.{hint}")
+    if report.file is not None:
+        for line in str(report.file).splitlines():
+            say(plain(line))
     if report.tets:
         _show_body(report)
     say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")

@@ -16,6 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict
 from voxsoft.design.references import places_in
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError, ErrorDetail, FileError, VoxSoftError
+from voxsoft.formats.unit import doubt
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import Record, closest, place
 from voxsoft.shapes.mesh_bodies import MeshBody, read_body, sizes_in_units
@@ -139,6 +140,10 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
         replace(each, volume=each.volume * meter**3, area=each.area * meter**2)
         for each in mesh.cavities
     )
+    caution = doubt(np.ptp(mesh.vertices, axis=0), meter)
+    report = mesh.report and replace(
+        mesh.report, meter=meter, cautions=(caution,) if caution else ()
+    )
     scaled = replace(
         mesh,
         vertices=mesh.vertices * meter,
@@ -146,6 +151,7 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
         tet_voxel=None,
         voxel_size=None,
         regions=body.regions,
+        report=report,
     )
     return ReadMesh(scaled, body.parts)
 

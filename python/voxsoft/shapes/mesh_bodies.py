@@ -137,6 +137,10 @@ def _read(file: Path, changed: tuple[int, int]) -> MeshBody:
     # `files` lies above shapes: a shape or a design reaches up for its mesh, when it is read.
     from voxsoft.files.meshes import read_mesh_file
 
-    found = read_mesh_file(file)
+    # As if in m: the numbers of the file as they are, to which users add the unit.
+    found = read_mesh_file(file, unit="m")
+    names = {} if found.report is None else found.report.parts
     numbers = np.unique(found.mesh.tet_part).tolist()
-    return MeshBody(found.mesh, {f"part-{number}": number for number in numbers}, found.regions)
+    parts = {f"part-{number}": number for number in numbers}
+    parts |= {name: number for number, name in names.items()}
+    return MeshBody(found.mesh, parts, found.regions)

@@ -15,6 +15,7 @@ from voxsoft.design import Design, require_design
 from voxsoft.design.discretize import filled
 from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
+from voxsoft.formats.report import ReadReport
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.anchors import weak_anchors
@@ -84,6 +85,8 @@ class CheckReport(Shown):
     bodies
         Voxels of each body by its name, where there are several; places are then said in the own
         frame of a body.
+    file
+        All that the file of the body holds beside all that was taken; None for shapes.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -101,6 +104,7 @@ class CheckReport(Shown):
     leak_points: tuple[Point, ...] = field(default=(), repr=False)
     volumes: Volumes = field(default_factory=Volumes, repr=False)
     phases: Mapping[str, Point] = field(default_factory=dict, repr=False)
+    file: ReadReport | None = field(default=None, repr=False)
 
     @property
     def valid(self) -> bool:
@@ -126,6 +130,8 @@ class CheckReport(Shown):
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"
             yield f"{called} of {format_quantity(rounded(cavity.volume), 'volume')}"
+        if self.file is not None:
+            yield from str(self.file).splitlines()
         yield from shortened([f"{found.severity}: {found}" for found in self.findings])
 
     def summary(self) -> dict[str, Any]:
@@ -161,6 +167,7 @@ class CheckReport(Shown):
             ],
             "phase": list(next(iter(self.phases.values()))) if len(self.phases) == 1 else None,
             "volumes": self.volumes.summary(),
+            "file": None if self.file is None else self.file.summary(),
         }
 
 
@@ -268,6 +275,7 @@ def examine(
         voxels=elements if refined else sum(one.voxels.count for one in each),
         vertices=len(mesh.vertices),
         tets=len(mesh.tets),
+        file=mesh.report,
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
         leaks=tuple(leak for one in each for leak in one.leaks),
         chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
