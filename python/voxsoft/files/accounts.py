@@ -39,8 +39,8 @@ def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str)
     except FileError:
         # A dialect that the surface was read from by another reader: its triangles are all known.
         contents = Contents(surface.points, (), format=path.suffix.lower().lstrip("."))
-    said = 1.0 if path.suffix.lower() == ".vtu" and vtu.is_ours(path) else contents.unit
-    meter = meter_of(path.name, said, unit, points, ask)
+    known = 1.0 if path.suffix.lower() == ".vtu" and vtu.is_ours(path) else contents.unit
+    meter = meter_of(path.name, known, unit, points, ask)
     caution = doubt(np.ptp(points, axis=0), meter)
     return ReadReport(
         contents.format,
