@@ -77,7 +77,7 @@ def test_a_body_of_an_unlikely_size_has_a_caution(deck):
     )
 
 
-@pytest.mark.parametrize("suffix", [".inp", ".msh"])
+@pytest.mark.parametrize("suffix", [".inp", ".msh", ".vtu"])
 def test_our_own_files_say_their_unit(tmp_path, suffix):
     path = tmp_path / f"bar{suffix}"
     write_mesh(path, Voxels.from_array(np.ones((4, 2, 2), int), voxel_size=0.005).mesh())

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from voxsoft.errors import FileError
+from voxsoft.files import vtu
 from voxsoft.formats.contents import CORNERS, Contents
 from voxsoft.formats.read import read_contents
 from voxsoft.formats.report import ReadReport, counted_cells, held_by
@@ -38,7 +39,8 @@ def account_of_surface(path: Path, surface: Surface, unit: str | None, ask: str)
     except FileError:
         # A dialect that the surface was read from by another reader: its triangles are all known.
         contents = Contents(surface.points, (), format=path.suffix.lower().lstrip("."))
-    meter = meter_of(path.name, contents.unit, unit, points, ask)
+    known = 1.0 if path.suffix.lower() == ".vtu" and vtu.is_ours(path) else contents.unit
+    meter = meter_of(path.name, known, unit, points, ask)
     caution = doubt(np.ptp(points, axis=0), meter)
     return ReadReport(
         contents.format,
