@@ -1,4 +1,4 @@
-"""Samplers in a space whose larger part cannot be solved: do they learn to stay out of it?
+"""Whether samplers learn to stay out of the larger part of a space that cannot be solved.
 
 Walls of 10 to 20 mm and radii of 21 to 40 mm, of which walls above 12 mm count as diverged: one
 in five of the designs can be solved. The evaluation is a formula, so that the search alone is

@@ -1,4 +1,4 @@
-"""Constraints that are not known count as broken, and samplers learn from designs without answer."""
+"""Unknown constraints count as broken, and samplers learn from designs without an answer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Checks: what would go wrong with a design or a body of voxels, found before it is solved."""
+"""Checks: what would go wrong with a design or a body of voxels, found before it is solved.
+
+Long because the report and its words stand beside the checks that fill it.
+"""
 
 from __future__ import annotations
 

@@ -5,6 +5,8 @@ so that a way there and back is a loop. Loads and motions are made histories of 
 meshed once.
 
 Long because all that may change along a path, and how it becomes one design, stands here.
+
+Long because a path is followed, kept and resumed by one class that has its state.
 """
 
 from __future__ import annotations

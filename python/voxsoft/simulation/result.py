@@ -1,4 +1,7 @@
-"""The answer of a simulation. Long because all that it gives is a short property of one class."""
+"""The answer of a simulation. Long because all that it gives is a short property of one class.
+
+Long because it documents every number of a result where it is defined.
+"""
 
 from __future__ import annotations
 
