@@ -179,9 +179,9 @@ def violations(
     found = []
     for name, constraint in constraints.items():
         value = metrics.get(name)
-        unknown = value is None or isnan(value)
+        known = None if value is None or isnan(value) else value
         if constraint.min is not None:
-            found.append(inf if unknown else constraint.min - value)
+            found.append(inf if known is None else constraint.min - known)
         if constraint.max is not None:
-            found.append(inf if unknown else value - constraint.max)
+            found.append(inf if known is None else known - constraint.max)
     return tuple(found)
