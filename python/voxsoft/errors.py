@@ -57,6 +57,17 @@ class ErrorDetail(NamedTuple):
         return f"{message}. Try: {self.hint}" if self.hint else message
 
 
+def details_as_data(details: Iterable[ErrorDetail]) -> list[dict[str, str]]:
+    """Some details as plain data, ``"problems"`` in ``--json``.
+
+    Examples
+    --------
+    >>> details_as_data([ErrorDetail("wall", "is negative")])
+    [{'where': 'wall', 'what': 'is negative', 'try': ''}]
+    """
+    return [{"where": each.where, "what": each.what, "try": each.hint} for each in details]
+
+
 class VoxSoftError(Exception):
     """Base of all errors raised by VoxSoft.
 

@@ -1,12 +1,14 @@
 """Tetrahedral meshes: what the solvers work on.
 
+Long because one immutable value has its attributes, the ways to make it and its quality together.
+
 Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one by
 :meth:`voxsoft.voxels.Voxels.mesh`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any, Final, Self
@@ -19,6 +21,7 @@ from voxsoft._arrays import frozen
 from voxsoft._memory import memory_limit, shortage
 from voxsoft.cavity import MeshCavity
 from voxsoft.errors import MeshError
+from voxsoft.formats.report import ReadReport
 from voxsoft.geometry import grid_phase, tet_volumes
 
 
@@ -152,6 +155,11 @@ class Mesh:
     bodies : tuple of BodyMesh
         What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
+    report : ReadReport or None
+        The file that it was read from beside all that was taken; None if not read. Meshes with
+        other reports may be equal.
+    regions : mapping of str to ndarray of int, shape (r,)
+        Vertices of each region that the file of the mesh names.
     """
 
     vertices: NDArray[np.float64]
@@ -165,6 +173,8 @@ class Mesh:
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
+    report: ReadReport | None = None
+    regions: Mapping[str, NDArray[np.integer]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for name, dtype in _DTYPES.items():
@@ -195,7 +205,7 @@ class Mesh:
         ------
         MeshError
             Naming the first tet, vertex or face that is wrong: an index out of range, a position
-            that is not finite, a tet without volume, tets that overlap.
+            that is not finite, a tet without volume, tets that overlap, a vertex of no tet.
 
         Examples
         --------
@@ -210,7 +220,12 @@ class Mesh:
         points = _matrix("vertices", vertices, 3, np.float64)
         corners = _matrix("tets", tets, 4, np.int32)
         parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
-        return cls._from_core(_core.mesh_tets(points, corners, parts), None)
+        arrays = _core.mesh_tets(points, corners, parts)
+        if len(lone := np.setdiff1d(np.arange(len(points)), corners)):
+            what = f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing holds them"
+            hint = "keep only those of np.unique(tets, return_inverse=True)"
+            raise MeshError("vertices", what, hint)
+        return cls._from_core(arrays, None)
 
     @classmethod
     def from_voxel_grid(cls, grid: _core.Grid) -> Self:
@@ -399,6 +414,10 @@ class Mesh:
             self.voxel_size == other.voxel_size
             and self.cavities == other.cavities
             and self.bodies == other.bodies
+            and self.regions.keys() == other.regions.keys()
+            and all(
+                np.array_equal(self.regions[name], other.regions[name]) for name in self.regions
+            )
             and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in _DTYPES)
         )
 

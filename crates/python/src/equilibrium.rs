@@ -17,7 +17,8 @@ use crate::gate;
 use crate::simulate::{PyProblem, from_rows};
 use crate::watch::{Watch, collect_sensors};
 
-/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium. `memory` are the bytes
+/// The adjoint states (k, n, 3) for gradients (k, n, 3) of numbers at an equilibrium, by the vertices of the body: those
+/// that carry objects have none. `memory` are the bytes
 /// that the tangent may take; a `MemoryError` carries those that it would.
 #[pyfunction]
 #[pyo3(signature = (problem, positions, gradients, *, memory=u64::MAX))]
@@ -30,27 +31,32 @@ pub fn adjoint<'py>(
 ) -> PyResult<Bound<'py, PyArray3<f64>>> {
     let positions = problem.positions(&positions)?;
     let view = gradients.as_array();
-    let count = positions.len();
-    if view.shape()[1..] != [count, 3] {
+    let (all, own) = (positions.len(), problem.own());
+    if view.shape()[1..] != [own, 3] {
         let message = format!(
-            "gradients: shape {:?}, expected (k, {count}, 3)",
+            "gradients: shape {:?}, expected (k, {own}, 3)",
             view.shape()
         );
         return Err(PyValueError::new_err(message));
     }
     let each = |gradient: numpy::ndarray::ArrayView2<'_, f64>| {
         let row = |r: numpy::ndarray::ArrayView1<'_, f64>| [r[0], r[1], r[2]];
-        gradient.rows().into_iter().map(row).collect()
+        let mut rows: Vec<Vec3> = gradient.rows().into_iter().map(row).collect();
+        rows.resize(all, [0.0; 3]);
+        rows
     };
     let gradients: Vec<Vec<Vec3>> = view.outer_iter().map(each).collect();
     let inner = Arc::clone(&problem.problem);
+    let turn = problem.turns.take(py)?;
     let states = gate::run_owned(py, move |cancel| {
+        let _turn = turn;
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::adjoint(&inner, &positions, &gradients, memory, &mut stop)
     })?
     .map_err(to_python)?;
-    let flat: Vec<f64> = states.iter().flatten().flatten().copied().collect();
-    PyArray1::from_vec(py, flat).reshape([states.len(), count, 3])
+    let of_body = states.iter().flat_map(|state| &state[..own]);
+    let flat: Vec<f64> = of_body.flatten().copied().collect();
+    PyArray1::from_vec(py, flat).reshape([states.len(), own, 3])
 }
 
 /// A `MemoryError` carries the bytes that it takes.
@@ -131,9 +137,13 @@ pub fn equilibrium(
         positions,
         pressures,
     });
-    let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(inner);
+    let watch = Watch::new(progress, collect_sensors(&sensors), frames);
+    let mut watch = watch.of_chambers(inner).of_loads();
     let problem_of_work = Arc::clone(inner);
+    let turn = problem.turns.take(py)?;
+    let turn_of_work = turn.clone();
     let (answer, watch) = gate::run_owned(py, move |cancel| {
+        let _turn = turn_of_work;
         let mut see = |now: &Progress<'_>| watch.see(now, cancel);
         let answer = voxsoft_statics::solve(&problem_of_work, start.as_ref(), &settings, &mut see);
         (answer, watch)
@@ -187,5 +197,6 @@ pub fn equilibrium(
     };
     let path = Some(Py::new(py, path)?);
     let found = problem.answer(py, common, watch, &factor_of)?;
+    drop(turn);
     Ok(PyAnswer { path, ..found })
 }

@@ -76,13 +76,14 @@ impl PyFields {
         Ok(found)
     }
 
-    /// The same averaged on the vertices, as the studio colors by them.
+    /// The same averaged on the vertices of the body, as the studio colors by them: those that carry objects are left out.
     fn at_vertices<'py>(
         &self,
         py: Python<'py>,
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let body = self.body();
+        let own = self.problem.get().own();
         let mut state = State::at_rest(body);
         state.positions = self.positions(&positions)?;
         let (stress, scalars) = gate::run(py, |_| {
@@ -92,11 +93,12 @@ impl PyFields {
                 self.fields.smooth(&values)
             };
             let columns: [Vec<f64>; 6] = std::array::from_fn(smooth);
-            let stress: Vec<[f64; 6]> = (0..state.positions.len())
+            let stress: Vec<[f64; 6]> = (0..own)
                 .map(|vertex| std::array::from_fn(|k| columns[k][vertex]))
                 .collect();
-            let scalars = [Field::VonMises, Field::Stretch, Field::EnergyDensity]
+            let mut scalars = [Field::VonMises, Field::Stretch, Field::EnergyDensity]
                 .map(|field| self.fields.evaluate(body, &state, field));
+            scalars.iter_mut().for_each(|values| values.truncate(own));
             (stress, scalars)
         })?;
         let found = PyDict::new(py);
@@ -110,7 +112,8 @@ impl PyFields {
         Ok(found)
     }
 
-    /// The derivative of the largest principal stretch of an element by the positions of all vertices, in 1/m.
+    /// The derivative of the largest principal stretch of an element by the positions of the vertices of the
+    /// body, in 1/m.
     fn stretch_slope<'py>(
         &self,
         py: Python<'py>,
@@ -123,11 +126,8 @@ impl PyFields {
             let message = format!("element {element} is past the last of {count}");
             return Err(PyIndexError::new_err(message));
         }
-        let body = self.body();
-        Ok(from_rows(
-            py,
-            &self.fields.stretch_slope(body, &positions, element),
-        ))
+        let slope = self.fields.stretch_slope(self.body(), &positions, element);
+        Ok(from_rows(py, &slope[..self.problem.get().own()]))
     }
 }
 

@@ -23,6 +23,7 @@ mod tendon;
 mod touch;
 mod touch_answer;
 mod transient;
+mod turn;
 mod voxels;
 mod watch;
 

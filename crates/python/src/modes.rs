@@ -26,7 +26,9 @@ pub fn modes<'py>(
     let positions = problem.positions(&positions)?;
     let vertices = positions.len();
     let inner = Arc::clone(&problem.problem);
+    let turn = problem.turns.take(py)?;
     let found = gate::run_owned(py, move |cancel| {
+        let _turn = turn;
         let mut stop = || cancel.load(Ordering::Relaxed);
         voxsoft_statics::modes(&inner, &positions, count, memory, &mut stop)
     })?

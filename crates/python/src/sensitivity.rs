@@ -90,7 +90,9 @@ pub fn sensitivities<'py>(
         });
         parameters.push(shared.collect::<PyResult<_>>()?);
     }
+    let turn = problem.turns.take(py)?;
     let ends = gate::run_owned(py, move |cancel| {
+        let _turn = turn;
         let mut stop = || cancel.load(Ordering::Relaxed);
         let moments = touch.take_recorded();
         let borrowed: Vec<Vec<Varied<'_, Touch>>> = parameters

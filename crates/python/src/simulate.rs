@@ -25,6 +25,7 @@ use crate::materials::PyMaterial;
 use crate::skin::PySkin;
 use crate::tendon::{PyTendon, TendonPart, tendons};
 use crate::touch::{BodyPart, BondPart, Freedom, ObjectPart, TouchParts, Touching, Way, Whole};
+use crate::turn::Turns;
 use crate::watch::{Watch, collect_sensors};
 
 pub(crate) fn rows<const N: usize, T: numpy::Element + Copy>(
@@ -77,6 +78,7 @@ pub struct PyProblem {
     pub(crate) materials: Vec<Material>,
     pub(crate) problem: Arc<Problem>,
     pub(crate) touching: Option<Arc<Touching>>,
+    pub(crate) turns: Turns,
 }
 
 /// Collects clamps and loads before the problem is made.
@@ -698,6 +700,7 @@ impl PyProblem {
                 expected,
             }));
         }
+        let _turn = self.turns.take(peaks.py())?;
         bricks.set_peaks(&peaks.as_array().to_vec());
         Ok(())
     }
@@ -746,6 +749,7 @@ impl PyProblem {
         positions: PyReadonlyArray2<'_, f64>,
     ) -> PyResult<Vec<Py<PyTendon>>> {
         let positions = self.positions(&positions)?;
+        let _turn = self.turns.take(py)?;
         self.problem.start_loads();
         let factor_of = |load: &Load| load.history.at(f64::INFINITY);
         tendons(py, &self.problem, &positions, &factor_of)
@@ -772,6 +776,7 @@ impl PyProblem {
             state.positions = self.positions(&start)?;
         }
         let mut watch = Watch::new(progress, Vec::new(), false);
+        let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
             relax(&self.problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
@@ -817,6 +822,7 @@ impl PyProblem {
         };
         let state = State::at_rest(self.problem.body());
         let mut watch = Watch::new(progress, collect_sensors(&sensors), frames);
+        let _turn = self.turns.take(py)?;
         let answer = gate::run(py, |cancel| {
             simulate(&self.problem, state, &settings, &mut |now| {
                 watch.see(now, cancel)
@@ -871,6 +877,7 @@ impl PyProblem {
                 materials,
                 problem: Arc::new(problem),
                 touching,
+                turns: Turns::default(),
             })
         })?
         .map_err(to_python)

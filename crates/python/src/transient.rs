@@ -49,7 +49,10 @@ pub fn transient(
     let touching = problem.touching.as_ref().map(Arc::clone);
     let mut watch = Watch::new(progress, collect_sensors(&sensors), frames).of_chambers(&inner);
     let seen: Mutex<Seen> = Mutex::default();
+    let turn = problem.turns.take(py)?;
+    let turn_of_work = turn.clone();
     let (solution, watch, seen) = gate::run_owned(py, move |cancel| {
+        let _turn = turn_of_work;
         let mut see = |now: &Progress<'_>| {
             inner.body().begin(now.time);
             if let Some(touching) = touching.as_ref().filter(|_| now.record) {
@@ -85,6 +88,7 @@ pub fn transient(
         breakdown: solution.breakdown,
     };
     let found = problem.answer(py, answer, watch, &|load| load.history.at(time))?;
+    drop(turn);
     Ok(PyAnswer { history, ..found })
 }
 

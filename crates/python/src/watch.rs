@@ -41,6 +41,8 @@ pub(crate) struct Watch {
     pub(crate) frames: Vec<f64>,
     /// What fills chambers, and what was read of each at every record.
     fluid: Option<Fluid>,
+    /// The load factor of the last equilibrium, for a search that tries others.
+    reached: Option<f64>,
     pub(crate) chambers: Vec<f64>,
     pub(crate) raised: Option<PyErr>,
 }
@@ -61,6 +63,7 @@ impl Watch {
             records: Vec::new(),
             frames: Vec::new(),
             fluid: None,
+            reached: None,
             chambers: Vec::new(),
             raised: None,
         }
@@ -70,6 +73,14 @@ impl Watch {
     pub(crate) fn of_chambers(self, problem: &Problem) -> Self {
         Self {
             fluid: problem.fluid().cloned(),
+            ..self
+        }
+    }
+
+    /// The same that reports which load was reached, and not which one is tried.
+    pub(crate) fn of_loads(self) -> Self {
+        Self {
+            reached: Some(0.0),
             ..self
         }
     }
@@ -89,7 +100,16 @@ impl Watch {
                     .extend(readings.iter().flat_map(|reading| reading.numbers()));
             }
         }
-        self.report((now.steps, now.time, now.residual), cancel)
+        let time = match &mut self.reached {
+            Some(reached) => {
+                if now.record {
+                    *reached = now.time;
+                }
+                *reached
+            }
+            None => now.time,
+        };
+        self.report((now.steps, time, now.residual), cancel)
     }
 
     fn report(&mut self, arguments: (u64, f64, f64), cancel: &AtomicBool) -> ControlFlow<()> {

@@ -319,6 +319,7 @@ impl Path<'_, '_> {
         let mut cuts = 0;
         let mut last = f64::INFINITY;
         let mut now = 0.0;
+        let mut limit = None;
         self.equilibrium.largest_turn = (!warm).then_some(LARGEST_TURN);
         loop {
             let step = length.get();
@@ -351,6 +352,9 @@ impl Path<'_, '_> {
                             }
                             Along::Dead => next < 1.0,
                         };
+                        if limit.is_none() && !warm && loose.is_none() && found.iterations > EASY {
+                            limit = self.crossed_limit(&trial, point, along, settings);
+                        }
                         self.accept(trial, point, found.iterations, found.residual);
                         if let Some(point) = self.points.last_mut() {
                             point.stable = stable;
@@ -358,7 +362,7 @@ impl Path<'_, '_> {
                         last = next - now;
                         now = next;
                         if next == 1.0 {
-                            return self.end(along, loose, settings);
+                            return self.end(along, loose, limit, settings);
                         }
                         length.succeeded(found.iterations <= easy);
                         continue;
@@ -404,7 +408,7 @@ impl Path<'_, '_> {
                     if now < 1.0 {
                         continue;
                     }
-                    return self.end(along, loose, settings);
+                    return self.end(along, loose, limit, settings);
                 }
                 // Contact makes corners in the path, which no tangent foresees; and what fills chambers is not proportional to the
                 // load, so that no direction leads ahead.
@@ -425,7 +429,13 @@ impl Path<'_, '_> {
     }
 
     /// The end of load control, where all that grows is there.
-    fn end(&mut self, along: Along, loose: Option<&Loose>, settings: &Settings) -> Ending {
+    fn end(
+        &mut self,
+        along: Along,
+        loose: Option<&Loose>,
+        limit: Option<f64>,
+        settings: &Settings,
+    ) -> Ending {
         match (along, loose) {
             (Along::All { .. } | Along::Time { .. }, Some(loose)) => {
                 let mut search = AtLoad {
@@ -436,7 +446,8 @@ impl Path<'_, '_> {
                 self.release(loose, &mut search, settings)
             }
             (Along::All { .. } | Along::Time { .. }, None) => {
-                Ending::new(Status::AtRest, None, 1.0)
+                self.snaps.extend(limit);
+                Ending::new(Status::AtRest, limit, 1.0)
             }
             (Along::Dead, _) => {
                 self.looking = false;

@@ -13,7 +13,7 @@ use common::touching::{NONE, add_box, moved, touching};
 use common::{block, vertices_where};
 use voxsoft_contact::touch::{Surface, Touch};
 use voxsoft_solid::vector::Vec3;
-use voxsoft_solid::{Body, Clamp, History, Load, Pressure, Problem, Spring, Springs, Status};
+use voxsoft_solid::{Body, Clamp, History, Load, Mesh, Pressure, Problem, Spring, Springs, Status};
 use voxsoft_statics::{Answer, Control, Settings, Start, solve};
 
 /// The side of the block, its height over the anchors, their distance, m; a spring, N/m.
@@ -51,7 +51,8 @@ enum Push {
 /// That spring, N/m: softer than the truss is where it snaps through, so that its end goes back there.
 const PULLER: f64 = 30.0;
 
-fn guided(push: &Push) -> (Problem, Arc<Touch>) {
+/// The block on its truss, without the plate: mesh, clamps, loads, springs, and the surface of the plate.
+fn on_a_truss(push: &Push) -> (Mesh, Vec<Clamp>, Vec<Load>, Vec<Spring>, Surface) {
     let sign = match push {
         Push::Weight(_) | Push::Slowly(..) | Push::Clamp(_) => -1.0,
         Push::Chamber => 1.0,
@@ -123,6 +124,12 @@ fn guided(push: &Push) -> (Problem, Arc<Touch>) {
             .map(|other| chamber(&mesh.vertices, &bottom, base, other))
             .to_vec(),
     };
+    (mesh, clamps, loads, springs, plate)
+}
+
+fn guided(push: &Push) -> (Problem, Arc<Touch>) {
+    let (mesh, clamps, loads, springs, plate) = on_a_truss(push);
+    let body = Body::new(&mesh, &[common::rubber()]).unwrap();
     let surfaces = vec![Surface::of_voxels(body.voxels(), 2), plate];
     let table = vec![vec![NONE, 0.0], vec![0.0, NONE]];
     let (problem, touch) = touching(&mesh, clamps, loads, surfaces, table, SIDE);
@@ -237,6 +244,37 @@ fn an_arc_leads_past_a_limit_and_onto_a_plate() {
 }
 
 /// Over the time of a history, there and back, each stretch begins with the equilibrium of the one before.
+#[test]
+fn load_control_reports_the_limit_that_it_crossed() {
+    // All of it at once, and in steps so long that one of them crosses the limit; below the limit there is none.
+    for (part, first_step) in [(1.3, 1.0), (2.0, 0.4), (0.8, 1.0), (0.8, 0.4)] {
+        let (mesh, clamps, loads, springs, _) = on_a_truss(&Push::Weight(part * largest()));
+        let body = Body::new(&mesh, &[common::rubber()]).unwrap();
+        let problem = Problem::new(body, clamps, loads, None).unwrap();
+        let problem = problem.with_term(Arc::new(Springs(springs))).unwrap();
+        let settings = Settings {
+            first_step,
+            ..Settings::default()
+        };
+        let answer = solve(
+            &problem,
+            None,
+            &settings,
+            &mut |_| ControlFlow::Continue(()),
+        );
+        assert_eq!(answer.status, Status::AtRest);
+        if part < 1.0 {
+            assert_eq!((answer.limit, answer.snaps.len()), (None, 0));
+            continue;
+        }
+        // The block is a thousand times as stiff as the truss; the largest of the points that a walk stops at is off by the
+        // square of a step.
+        let limit = answer.limit.unwrap();
+        assert!((limit * part - 1.0).abs() < 0.02, "{limit} {part}");
+        assert_eq!(answer.snaps, [limit]);
+    }
+}
+
 #[test]
 fn a_path_over_time_follows_the_history_of_its_load() {
     let history = History::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0, 0.25]).unwrap();

@@ -1,4 +1,5 @@
-//! Implicit steps: the rest of statics, the closed form's motion, momentum, hands and sudden loads.
+//! Implicit steps: the rest of statics, the closed form of a motion, momentum, falls, hands and sudden loads. Long because each of
+//! these is a closed form with its derivation beside it.
 
 mod common;
 
@@ -207,18 +208,24 @@ fn swing(material: HyperelasticMaterial, settings: ImplicitSettings, steps: usiz
 /// The same of an oscillator of one mass with `omega` times its frequency, by the formula alone.
 fn oscillator(z: f64, omega: f64, steps: usize) -> Vec<f64> {
     let (mut x, mut v) = (vec![1e-4, 1e-4], vec![0.0, 0.0]);
-    for step in 0..steps {
-        // Backward Euler first: nothing is known of what was before.
-        let (rate, first, second) = if step == 0 {
-            (1.0 / z, 1.0, 0.0)
-        } else {
-            (1.5 / z, 4.0 / 3.0, -1.0 / 3.0)
+    let part = 1.0 - 0.5f64.sqrt();
+    for step in 0..=steps {
+        // The two stages of the first step first: nothing is known of what was before.
+        let (rate, first, second) = match step {
+            0 => (1.0 / (part * z), 1.0, 0.0),
+            1 => (1.0 / (part * z), 1.0 / part - 1.0, 2.0 - 1.0 / part),
+            _ => (1.5 / z, 4.0 / 3.0, -1.0 / 3.0),
         };
         let mix = |a: &[f64]| first * a[a.len() - 1] + second * a[a.len() - 2];
         let (from, speed) = (mix(&x), mix(&v));
         let next = (rate * rate * from + rate * speed) / (rate * rate + omega * omega);
         v.push(rate * (next - from));
         x.push(next);
+        if step == 1 {
+            // Between its stages there is no state of a step.
+            x.remove(x.len() - 2);
+            v.remove(v.len() - 2);
+        }
     }
     x.split_off(2)
 }
@@ -271,11 +278,32 @@ fn a_bar_swings_as_the_closed_form_and_the_formula_say() {
     }
 }
 
+/// The logarithm of what an oscillator of one mass has lost at its fourth extremum, let go from rest with a relaxed branch of so
+/// much stiffness and `ωτ = 1`: by the rule of Runge and Kutta, whose error is the fourth power of a step.
+fn released_decay(branch: f64) -> f64 {
+    let rate = |y: [f64; 3]| [y[1], -y[0] - branch * y[2], y[1] - y[2]];
+    let step = 1e-3;
+    let moved = |y: [f64; 3], k: [f64; 3], h: f64| std::array::from_fn(|i| y[i] + h * k[i]);
+    let (mut y, mut extrema) = ([1.0, 0.0, 0.0], 0);
+    loop {
+        let a = rate(y);
+        let b = rate(moved(y, a, step / 2.0));
+        let c = rate(moved(y, b, step / 2.0));
+        let d = rate(moved(y, c, step));
+        let next: [f64; 3] =
+            std::array::from_fn(|i| y[i] + step / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        extrema += u32::from(y[1] * next[1] < 0.0);
+        if extrema == 4 {
+            return -next[0].abs().ln();
+        }
+        y = next;
+    }
+}
+
 #[test]
 fn viscous_stress_damps_as_the_closed_form_says() {
     let young = 60e3;
-    // A uniaxial stretch at ν near ½ is deviatoric, so that the loss factor is τω, and that of a branch
-    // γ ωτ/(1 + ω²τ²) of a stiffness that is γ ω²τ²/(1 + ω²τ²) higher: the size falls as exp(−loss ωt/2).
+    // A uniaxial stretch at ν near ½ is deviatoric, so that the loss factor is τω: the size falls as exp(−loss ωt/2).
     let plain = HyperelasticMaterial::neo_hookean(young, 0.49, 1000.0).unwrap();
     let frequency = PI / 0.4 * (young / 1000.0f64).sqrt();
     let z = 0.1;
@@ -296,8 +324,10 @@ fn viscous_stress_damps_as_the_closed_form_says() {
     let branch = 0.1 / 0.9;
     let relaxing = plain.with_prony(vec![(0.1, 1.0 / frequency)]).unwrap();
     let decay = own - last_extremum(&swing(relaxing, settings, steps)).ln();
-    let expected = branch / 4.0 / (1.0 + branch / 2.0) * 4.0 * PI;
-    assert!((decay / expected - 1.0).abs() < 0.05, "{decay} {expected}");
+    // As much storage as loss at ωτ = 1: what is late by z/2 loses that part of its loss. The rest is of second order, and
+    // the bar 0.2 % slow.
+    let expected = released_decay(branch) * (1.0 - z / 2.0);
+    assert!((decay / expected - 1.0).abs() < 0.02, "{decay} {expected}");
 }
 
 #[test]
@@ -320,6 +350,37 @@ fn a_free_body_takes_all_of_the_momentum_it_is_given() {
         let off = norm(sub(momentum, expected)) / norm(expected);
         assert!(off < 1e-9, "{off:.1e}");
         assert!(look.kinetic > 0.0 && look.elastic > 0.0);
+    }
+}
+
+#[test]
+fn a_free_body_falls_as_far_as_gravity_says_from_the_first_step_on() {
+    let mesh = block([2, 2, 2], 5e-3);
+    let body = Body::new(&mesh, &[rubber()]).unwrap();
+    let weight = Load::gravity([0.0, 0.0, -9.81]);
+    let problem = Problem::new(body, vec![], vec![weight], None).unwrap();
+    let mut run = Implicit::new(problem, SWING);
+    let step = run.step();
+    for count in 1..=6 {
+        let look = run.advance(1);
+        // Steps end at multiples of their length, whatever stages the first one has.
+        assert!((look.time - f64::from(count) * step).abs() < 1e-12);
+        let masses = run.problem().body().masses();
+        let (mut fallen, mut speed) = (0.0, 0.0);
+        let moved = run
+            .state()
+            .positions
+            .iter()
+            .zip(run.problem().body().rest());
+        for ((x, rest), (v, m)) in moved.zip(run.state().velocities.iter().zip(masses)) {
+            fallen += m * (rest[2] - x[2]);
+            speed -= m * v[2];
+        }
+        let mass: f64 = masses.iter().sum();
+        // Both formulas are exact where the acceleration is constant, and momentum is kept to rounding.
+        let expected = [9.81 * look.time.powi(2) / 2.0, 9.81 * look.time];
+        assert!((fallen / mass / expected[0] - 1.0).abs() < 1e-9, "{fallen}");
+        assert!((speed / mass / expected[1] - 1.0).abs() < 1e-9, "{speed}");
     }
 }
 

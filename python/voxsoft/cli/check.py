@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -33,14 +33,21 @@ def check(
     voxel_size: Annotated[
         str | None, typer.Option("--voxel-size", help="Voxel size for a mesh file, '2 mm'.")
     ] = None,
+    nested: Annotated[
+        Literal["solid", "void"] | None,
+        typer.Option("--nested", help="Closed shells within others in a mesh file: solid, void."),
+    ] = None,
     json: Json = False,
 ) -> None:
     """Check for what would go wrong: units, components, hinges, cavities, leaks, walls, cost."""
     from voxsoft import files
 
     is_design = source.suffix.lower() == ".toml"
-    if is_design and (unit or voxel_size):
-        say("--unit and --voxel-size are for mesh files; for a design, use --set voxel_size='2 mm'")
+    if is_design and (unit or voxel_size or nested):
+        say(
+            "--unit, --voxel-size and --nested are for mesh files; for a design, use "
+            "--set voxel_size='2 mm'"
+        )
         raise typer.Exit(USAGE)
     if not is_design and sets:
         say("--set is for designs; a mesh file has --unit and --voxel-size")
@@ -49,7 +56,7 @@ def check(
         if is_design:
             report = files.check_design(source, sets or [])
         else:
-            report = files.check_mesh(source, unit=unit, voxel_size=voxel_size)
+            report = files.check_mesh(source, unit=unit, voxel_size=voxel_size, nested=nested)
         if json:
             print_json(report.summary())
         else:
@@ -64,15 +71,19 @@ def _show(report: CheckReport) -> None:
         where = f" {plain(finding.where)}:" if finding.where else ""
         hint = f" Try: {plain(finding.hint)}" if finding.hint else ""
         say(f"[{color}]{finding.severity}[/{color}]{where} {plain(finding.what)}.{hint}")
-    if report.voxels:
+    if report.file is not None:
+        for line in str(report.file).splitlines():
+            say(plain(line))
+    if report.tets:
         _show_body(report)
     say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")
 
 
 def _show_body(report: CheckReport) -> None:
+    voxels = f"{report.voxels:,} voxels, " if report.voxels else ""
     say(
-        f"{report.voxels:,} voxels, {report.vertices:,} vertices, {report.tets:,} tetrahedra, "
-        f"mass {quantity(report.mass, 'mass')}"
+        f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra"
+        + ("" if report.mass is None else f", mass {quantity(report.mass, 'mass')}")
     )
     for index, cavity in enumerate(report.cavities):
         volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")

@@ -17,6 +17,7 @@ from voxsoft.errors import (
     OutsideCodeError,
     StudyError,
     VoxSoftError,
+    details_as_data,
 )
 
 OK: Final = 0
@@ -34,7 +35,8 @@ MEANINGS: Final = {
     INVALID: "the design, mesh or data is not valid; nothing was solved",
     NOT_AT_REST: "the run did not come to rest, or diverged",
     FAILED: "the machine failed: a file cannot be written, memory is short, a storage or an "
-    "outside code does not answer; what was finished is kept",
+    "outside code does not answer; what was finished is kept, and summary.json of a run is written "
+    "before all other files",
     DIFFERS: "a job that was repeated has other results than its folder",
     INTERRUPTED: "stopped by Ctrl-C; what was finished is kept",
 }
@@ -65,10 +67,7 @@ def exit_code(error: BaseException) -> int:
 
 def problems_of(error: VoxSoftError) -> list[dict[str, str]]:
     """Every problem of an error as plain data."""
-    return [
-        {"where": problem.where, "what": problem.what, "try": problem.hint}
-        for problem in error.problems
-    ]
+    return details_as_data(error.problems)
 
 
 @contextmanager

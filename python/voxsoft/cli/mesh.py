@@ -19,7 +19,7 @@ def mesh(
     design: DesignFile,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="File to write: .vtu .msh .inp .stl .obj (in m)."),
+        typer.Option("--out", "-o", help="File to write: .vtu .msh .inp (in m) .stl .obj (in mm)."),
     ] = None,
     sets: Sets = None,
     json: Json = False,
@@ -36,6 +36,8 @@ def mesh(
             print_json(figures | {"file": None if out is None else str(out)})
             return
         for name, value in figures.items():
+            if value is None:
+                continue
             say(f"{name.replace('_', ' ')}: {_shown(name, value)}")
         if out is not None:
             say(f"wrote {out}")
@@ -44,7 +46,7 @@ def mesh(
 def _figures(made: Mesh) -> dict[str, Any]:
     quality = made.quality
     return {
-        "voxels": len(made.tets) // 5,
+        "voxels": None if made.voxel_size is None else len(made.tets) // 5,
         "vertices": len(made.vertices),
         "tets": len(made.tets),
         "edges": len(made.edges),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from voxsoft._folders import folder_name
-from voxsoft.cli.exits import NOT_AT_REST, errors_in_words
+from voxsoft.cli.exits import FAILED, NOT_AT_REST, errors_in_words
 from voxsoft.cli.options import DesignFile, Json, Sets
 from voxsoft.cli.output import plain, print_json, quantity, say, show_table
 
@@ -85,6 +85,10 @@ def run(
             if outcome.path is not None:
                 _show_path(outcome.path, outcome.path_bars)
             _show(outcome.found, outcome.error_bars, folder)
+    for problem in outcome.unwritten:
+        say(f"[red]error:[/red] {plain(str(problem))}")
+    if outcome.unwritten:
+        raise typer.Exit(FAILED)
     if outcome.found.status != "ok":
         raise typer.Exit(NOT_AT_REST)
 
@@ -106,11 +110,16 @@ def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
                 row.append("0")
             else:
                 row.append(quantity(value, kind) if bar is None else str(bar))
-    for row, result in zip(rows, path.results, strict=True):
-        row.append("" if result.status == "ok" else f"[red]{result.status}[/red]")
+    statuses = [result.status for result in path.results]
+    doubtful = [status != "ok" for status in statuses]
+    columns = [path.over.key, *names]
+    if any(doubtful):
+        columns.append("status")
+        for row, status in zip(rows, statuses, strict=True):
+            row.append(status)
     color = "green" if path.status == "ok" else "red"
     say(f"[{color}]{path.status}[/{color}]: {plain(path.message)}")
-    show_table(f"Along {path.over.key}", [path.over.key, *names, ""], rows)
+    show_table(f"Along {path.over.key}", columns, rows, doubtful)
     say("The last equilibrium:")
 
 
@@ -136,6 +145,7 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     for name, metric in metrics.items():
         bar = bars.metrics.get(name) if bars else None
         say(f"{plain(name)}: {quantity(result.metrics[name], METRICS[metric].kind)}{_with(bar)}")
+    _show_reactions(result)
     for name, tendon in result.tendons.items():
         say(f"{plain(name)}: {tendon.words}")
     for supply in result.supplies:
@@ -153,10 +163,22 @@ def _show(result: Result, bars: ErrorBars | None, folder: Path) -> None:
     say(f"wrote {plain(str(folder))}")
 
 
+def _show_reactions(result: Result) -> None:
+    forces = result.clamp_reactions
+    if forces:
+        rounding = _ROUNDING * max(abs(each) for force in forces.values() for each in force)
+        rows = [
+            [name, *("0" if abs(each) <= rounding else quantity(each, "force") for each in force)]
+            for name, force in forces.items()
+        ]
+        show_table("Reactions of clamps", ["clamp", "x", "y", "z"], rows)
+
+
 def _voxels(result: Result) -> str:
     """How many voxels there are, and how many of them stayed large beside refined ones."""
     if not result.design.refine:
-        return f"{len(result.mesh.tets) // 5:,} voxels"
+        tets = len(result.mesh.tets)
+        return f"{tets:,} tetrahedra" if result.mesh.voxel_size is None else f"{tets // 5:,} voxels"
     from voxsoft.simulation import Setup
 
     setup = Setup(result.design, result.mesh)

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from voxsoft.comparison.richardson import Estimate, discretization_error
 from voxsoft.design import Design
+from voxsoft.design.file_mesh import refuse_file_mesh
 from voxsoft.errors import VoxSoftError
 from voxsoft.materials import card_names
 from voxsoft.simulation import Result, simulate
@@ -200,6 +201,7 @@ def confirm(
     'the ranking is the same'
     """
     refuse_bodies(design, "the confirmation of a study")
+    refuse_file_mesh(design, "confirmations")
     rubber, materials = as_rubber(design)
     first = next(iter(study.objectives))
     trials = [trial for trial in study.ranking if trial.same_as is None][:count]

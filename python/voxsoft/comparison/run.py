@@ -23,6 +23,7 @@ from voxsoft.comparison.outside import OutsideAnswer
 from voxsoft.comparison.quantities import of_answer, of_result
 from voxsoft.comparison.scikit_fem import run_scikit_fem, scikit_fem_version
 from voxsoft.design import Design, Solver, require_design
+from voxsoft.design.file_mesh import refuse_file_mesh
 from voxsoft.errors import MissingPackageError, SimulationError, VoxSoftError
 from voxsoft.mesh import Mesh
 from voxsoft.simulation import Diagnostic, Result, Setup, simulate
@@ -104,6 +105,7 @@ def compare(
     ('xpbd, 10 mm', 'xpbd, 5 mm')
     """
     refuse_bodies(require_design(design), "comparisons")
+    refuse_file_mesh(design, "comparisons")
     refuse_supplies(design, "comparisons")
     limit = si_value(time_limit, "time", "time_limit", positive=True)
     splits = [int(split) for split in splits]

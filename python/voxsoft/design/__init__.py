@@ -7,6 +7,7 @@ from voxsoft.design.chamber import Chamber
 from voxsoft.design.clamp import Clamp, Motion, Rotation
 from voxsoft.design.contact import Contact, ContactPair
 from voxsoft.design.dielectric import Dielectric
+from voxsoft.design.file_mesh import FileMesh
 from voxsoft.design.fluid import Gas, Liquid
 from voxsoft.design.history import History
 from voxsoft.design.layer import Layer
@@ -48,6 +49,7 @@ __all__ = [
     "Design",
     "Dielectric",
     "FiberStrain",
+    "FileMesh",
     "Floor",
     "FlowSupply",
     "Force",

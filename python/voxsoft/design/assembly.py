@@ -107,6 +107,10 @@ def body_problems(design: Design) -> Iterator[ErrorDetail]:
             yield ErrorDetail(f"{where}.name", what, "give it another name")
         own = [part for part in design.parts if part.body == name]
         full = body.included is not None or bool(body.parts)
+        if body.included is not None and body.included.mesh is not None:
+            what = f"is the mesh {body.included.mesh.label}; several bodies need voxels"
+            hint = 'make it of shapes, such as { kind = "mesh", path = "...", unit = "..." }'
+            yield ErrorDetail(f"{where}.design", what, hint)
         if not full and not own:
             hint = 'name a design, or write parts = [{ shape = "...", material = "..." }]'
             yield ErrorDetail(where, "has neither a design nor parts", hint)
@@ -133,7 +137,9 @@ def body_problems(design: Design) -> Iterator[ErrorDetail]:
 
 
 def nothing_built(document: Mapping[str, Any]) -> Iterator[ErrorDetail]:
-    """A design is of parts, or of bodies."""
+    """A design is of parts, or of bodies, and on voxels of some size."""
+    if "voxel_size" not in document:
+        yield ErrorDetail("voxel_size", "is missing")
     if not document.get("bodies"):
         if document.get("parts") is None:
             yield ErrorDetail("parts", "is missing")
@@ -386,6 +392,7 @@ class _Included:
             motion = Isometry(*self._frame).motion(motion)
         axes = "".join(sorted(self._axis("xyz".index(axis), where) for axis in clamp.axes))
         return clamp.replace(
+            name=None if clamp.name is None else self._name(clamp.name),
             region=self._region(clamp.region, where),
             axes="xyz" if clamp.axes == "xyz" else axes,
             motion=motion or self.body.motion,

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pydantic import field_validator, model_validator
 
 from voxsoft.design.history import History
+from voxsoft.design.operands import Name
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
@@ -73,6 +76,8 @@ class Clamp(Record):
         The held axes, such as ``"xyz"`` (default) or ``"z"`` for a symmetry plane.
     motion
         The way the held vertices go; default: they stay.
+    name
+        What results and metrics call it; default: its place, ``"clamps[0]"``.
 
     Examples
     --------
@@ -87,6 +92,7 @@ class Clamp(Record):
     region: Region
     axes: str = "xyz"
     motion: Motion | None = None
+    name: Name | None = None
 
     @field_validator("axes")
     @classmethod
@@ -100,6 +106,27 @@ class Clamp(Record):
         if self.motion and self.motion.rotation and self.axes != "xyz":
             raise DesignError("axes", "a turning clamp holds all axes", 'write "xyz"')
         return self
+
+
+def clamp_names(clamps: Sequence[Clamp]) -> list[str]:
+    """What results call each clamp of a design: its name, else its place.
+
+    Examples
+    --------
+    >>> base = Region(x=(0, 0))
+    >>> clamp_names([Clamp(region=base, name="base"), Clamp(region=base)])
+    ['base', 'clamps[1]']
+    """
+    return [clamp.name or f"clamps[{index}]" for index, clamp in enumerate(clamps)]
+
+
+def check_clamps(clamps: Sequence[Clamp]) -> None:
+    """Refuse a name that two clamps have: results could not say which of them is meant."""
+    names = clamp_names(clamps)
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            what = f'"{name}" is the name of clamps[{names.index(name)}] too'
+            raise DesignError(f"clamps[{index}].name", what, "give it another name")
 
 
 def check_direction(vector: Vector) -> Vector:

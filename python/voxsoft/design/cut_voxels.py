@@ -19,6 +19,7 @@ from voxsoft.design.cut_cells import (
     measures_of,
 )
 from voxsoft.design.model import Design
+from voxsoft.design.narrow_rooms import with_narrow_rooms
 from voxsoft.design.rooms import ROOM_TETS, room_parts
 from voxsoft.errors import DesignError, ShapeError
 from voxsoft.mesh import Mesh
@@ -114,7 +115,7 @@ class CutVoxels:
         True
         """
         cells = cut_cells(design, design.voxel_size / refine)
-        active = cells.filled >= LEAST_FILLED
+        active = with_narrow_rooms(design, cells, cells.filled >= LEAST_FILLED)
         if not active.any():
             raise ShapeError(
                 "parts",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.design.cut_voxels import CutVoxels
+from voxsoft.design.file_mesh import FileMesh, tets_of
 from voxsoft.design.grid import grid_of
 from voxsoft.design.joined import joined
 from voxsoft.design.model import Design
@@ -46,7 +47,12 @@ def voxels_of(design: Design) -> Voxels:
         names = ", ".join(design.body_names)
         what = f"has several bodies, each with voxels of its own: {names}"
         raise DesignError("bodies", what, "take one of them by design.alone(name)")
-    return filled(design).voxels
+    if design.mesh is not None:
+        what = f"the body is the mesh {design.mesh.label}: it has no voxels"
+        raise DesignError("mesh", what, "take its tetrahedra, by mesh_of")
+    voxels = filled(design).voxels
+    assert voxels is not None  # there is no mesh of a file
+    return voxels
 
 
 @dataclass(frozen=True)
@@ -57,8 +63,9 @@ class Filled:
     ----------
     voxels
         Its cells; of full ones those before they are refined. Of several bodies those of the first.
+        None where the body is the mesh of a file.
     count
-        How many voxels the mesh will have.
+        How many voxels the mesh will have; five tetrahedra of a file count as one.
     lost
         Volume of the material that found no voxel [m³].
     mesh
@@ -67,11 +74,16 @@ class Filled:
         Each body for itself, by name, in its own frame; empty where there is only one.
     """
 
-    voxels: Voxels
+    voxels: Voxels | None
     count: int
     lost: float
     mesh: Callable[[], Mesh]
     bodies: Mapping[str, Filled] = field(default_factory=dict)
+
+    @property
+    def voxels_by_body(self) -> dict[str, Voxels]:
+        """The voxels of each body by its name; none of the mesh of a file."""
+        return {name: own.voxels for name, own in self.each.items() if own.voxels is not None}
 
     @property
     def each(self) -> Mapping[str, Filled]:
@@ -91,6 +103,8 @@ def filled(design: Design, refine: int = 1) -> Filled:
     """
     if require_design(design).bodies:
         return _filled_bodies(design.assembled, refine)
+    if design.mesh is not None:
+        return _filled_by_file(design, design.mesh, refine)
     if design.refine:
         refine *= TIMES_AS_SMALL
     if design.fill == "fraction":
@@ -99,6 +113,14 @@ def filled(design: Design, refine: int = 1) -> Filled:
     voxels = grid_of(design).voxels()
     mesh = (lambda: voxels.refine(refine).mesh()) if refine > 1 else voxels.mesh
     return Filled(voxels, voxels.count * refine**3, 0.0, mesh)
+
+
+def _filled_by_file(design: Design, source: FileMesh, refine: int) -> Filled:
+    if refine > 1:
+        what = f"cuts voxels, and the body is the mesh {source.label}"
+        raise DesignError("solver.refine", what, "leave it out; refine the mesh where it was made")
+    mesh = tets_of(design, source)
+    return Filled(None, len(mesh.tets) // 5, 0.0, lambda: mesh)
 
 
 def _filled_bodies(design: Design, refine: int) -> Filled:

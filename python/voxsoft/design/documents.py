@@ -82,13 +82,19 @@ def with_absolute_paths(document: Mapping[str, Any], folder: Path) -> Document:
     return whole
 
 
-def _with_whole_meshes(value: Any, folder: Path) -> Any:  # noqa: ANN401 - a document holds anything
+def is_mesh(key: object, table: Mapping[str, Any]) -> bool:
+    """Whether a table under a key names the file of a mesh: as a shape, or as the body."""
+    named = table.get("kind") == "mesh" or (key == "mesh" and "kind" not in table)
+    return named and isinstance(table.get("path"), str)
+
+
+def _with_whole_meshes(value: Any, folder: Path, key: object = "") -> Any:  # noqa: ANN401 - a document holds anything
     if isinstance(value, list):
         return [_with_whole_meshes(entry, folder) for entry in value]
     if not isinstance(value, dict):
         return value
-    table = {key: _with_whole_meshes(entry, folder) for key, entry in value.items()}
-    if table.get("kind") == "mesh" and isinstance(table.get("path"), str):
+    table = {key: _with_whole_meshes(entry, folder, key) for key, entry in value.items()}
+    if is_mesh(key, table):
         table["path"] = str(folder.absolute() / table["path"])
     return table
 
@@ -153,9 +159,8 @@ def _mesh_references(value: object, steps: Steps) -> Iterator[tuple[Steps, str]]
         for index, entry in enumerate(value):
             yield from _mesh_references(entry, (*steps, index))
     elif isinstance(value, Mapping):
-        path = value.get("path")
-        if value.get("kind") == "mesh" and isinstance(path, str):
-            yield (*steps, "path"), path
+        if is_mesh(steps[-1] if steps else "", value):
+            yield (*steps, "path"), value["path"]
         for key, entry in value.items():
             yield from _mesh_references(entry, (*steps, key))
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from voxsoft.design.documents import is_mesh
 from voxsoft.units import round_significant
 
 # Words about the design, ways to vary it, and what a study asks of it: the answer of a
@@ -39,16 +40,16 @@ def hash_of(document: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _canonical(value: object) -> object:
+def _canonical(value: object, key: str = "") -> object:
     if isinstance(value, str):
         return value
     if isinstance(value, Mapping):
-        if value.get("kind") == "mesh":
+        if is_mesh(key, value):
             value = {**value, "path": _content(str(value.get("path")))}
         return {
-            str(key): _canonical(entry)
-            for key, entry in value.items()
-            if entry is not None and key not in _ABOUT_CONSTANTS
+            str(name): _canonical(entry, str(name))
+            for name, entry in value.items()
+            if entry is not None and name not in _ABOUT_CONSTANTS
         }
     if isinstance(value, (list, tuple)):
         return [_canonical(entry) for entry in value]

@@ -36,6 +36,7 @@ from voxsoft.design.clamp import Clamp
 from voxsoft.design.contact import BODY, Contact, contact_problems
 from voxsoft.design.documents import plain_document, with_absolute_paths, written_path
 from voxsoft.design.emptiness import with_stand_ins, without_empty_shapes
+from voxsoft.design.file_mesh import FileMesh, mesh_problems, with_element_size
 from voxsoft.design.history import History, with_named
 from voxsoft.design.identity import NOT_PHYSICS, hash_of
 from voxsoft.design.kept_formulas import with_kept_formulas
@@ -80,7 +81,10 @@ class Design(Record):
     name
         What to call it.
     voxel_size
-        Edge of a voxel.
+        Edge of a voxel. A design with a `mesh` has none; the attribute is then the edge of a cube
+        with five of its tetrahedra.
+    mesh
+        The file whose tetrahedra are the body, in place of shapes on a grid.
     fill
         What a cell that the surface cuts becomes. ``"binary"`` (default): full if its center is
         inside, else empty. ``"fraction"``: it carries the part of it that is inside, in mass,
@@ -155,7 +159,9 @@ class Design(Record):
     schema_: Literal["voxsoft/1"] = Field(SCHEMA, alias="schema")
     name: Name
     description: str = ""
-    voxel_size: PositiveLength
+    # Without a default in the schema; whether it is due, the mesh decides.
+    voxel_size: PositiveLength = Field(default_factory=float)
+    mesh: FileMesh | None = None
     fill: Literal["binary", "fraction"] = "binary"
     parameters: Table[ParameterName, Parameter] = Field(default_factory=FrozenDict, max_length=200)
     shapes: Table[Name, AnyShape] = Field(default_factory=FrozenDict)
@@ -254,10 +260,12 @@ class Design(Record):
         source = with_parameter_values(source, context.get("overrides", {}))
         found = Resolution.of(source)
         if context.get("whole"):
-            return handler(with_stand_ins(found.document))
+            return handler(with_element_size(with_stand_ins(found.document))[0])
         document, empty = without_empty_shapes(found.document)
         document, unnamed = with_named(document)
-        problems, only_formulas = [*found.problems, *unnamed], bool(found.problems) and not unnamed
+        document, unsized = with_element_size(document)
+        problems = [*found.problems, *unnamed, *unsized]
+        only_formulas = bool(found.problems) and not unnamed and not unsized
         included: Included | None = None
         try:
             design = handler(document)
@@ -265,6 +273,7 @@ class Design(Record):
             wrong = [*problems_of(error, cls, document, found.reported), *nothing_built(document)]
         else:
             wrong = [*nothing_built(document), *design._assemble(empty)]
+            wrong += [] if unsized or wrong else mesh_problems(design)
             if not wrong:
                 whole = design.assembled
                 tables = frozenset(whole.chambers), frozenset(whole.probes)
@@ -355,7 +364,8 @@ class Design(Record):
             if isinstance(value, (tuple, Mapping)) and value
         ]
         size = format_quantity(self.voxel_size, "length")
-        return f"<Design {self.name}: voxels of {size}, {', '.join(held)}>"
+        body = f"voxels of {size}" if self.mesh is None else f"the mesh {self.mesh.label}"
+        return f"<Design {self.name}: {body}, {', '.join(held)}>"
 
     @property
     def empty_shapes(self) -> tuple[str, ...]:
@@ -443,8 +453,13 @@ class Design(Record):
     ) -> Document:
         """Plain data; with `cards`, materials in place of the paths of their cards."""
         try:
+            unsaid = () if self.mesh is None else ("voxel_size", "fill")
             dumped = self.model_dump(
-                mode="json", by_alias=True, exclude_none=True, exclude={*exclude}, context=context
+                mode="json",
+                by_alias=True,
+                exclude_none=True,
+                exclude={*exclude, *unsaid},
+                context=context,
             )
         except PydanticSerializationError as error:
             what = "hold a Python function, which no file can hold"

@@ -26,11 +26,11 @@ class Object(Record):
         ``"fixed"`` (default), ``"free"``, or the way that it goes, as a clamp does. What is free
         moves as its weight and what it touches let it, over time or to where it is in equilibrium.
     density, mass
-        Of a free object, either of them. Its moments of inertia are those of a solid of one
-        density.
+        Of a free object, either of them. Volume and moments of inertia are those of its shape, of
+        one density.
     voxel_size
-        How finely its surface is traced: edges are rounded by a third of it. Default: the voxel
-        size of the design.
+        How finely its surface is traced: its triangles have sides of about a third of it. Edges
+        and corners stay sharp. Default: the voxel size of the design.
 
     Examples
     --------

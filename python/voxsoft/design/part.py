@@ -42,7 +42,8 @@ class Part(Record):
     Parameters
     ----------
     shape
-        Name of a shape of the design, or a shape.
+        Name of a shape of the design, or a shape; where the body is a mesh, the name of a part of
+        its file, or ``"all"``.
     material
         Name of a material card or of one of the design's own materials, the path of a card's
         file (``"runs/mine/mine.toml"``), or a material. A relative path is meant from the folder of

@@ -169,9 +169,12 @@ def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDe
     """Regions and parts that are of a body which there is not."""
     known = [] if included.bodies == (BODY,) else included.bodies
     parts = ((path, part) for path, part in _list(document, "parts"))
-    for path, table in (*_regions(document), *parts):
+    for path, table in (*places_in(document), *parts):
         name = entry_of(table, "body")
-        if isinstance(name, str) and name not in known:
+        if isinstance(name, str) and not known:
+            what = f'"{name}" is no name: there is one body, and [[bodies]] name several'
+            yield ErrorDetail(place((*path, "body")), what, "leave body out")
+        elif isinstance(name, str) and name not in known:
             yield _unknown((*path, "body"), "body", name, known)
 
 
@@ -179,13 +182,14 @@ def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:
     """Collect the names of shapes with their places, all over the design."""
     for name, shape in _table(document, "shapes").items():
         yield from operand_names(shape, ("shapes", name))
-    for path, part in _list(document, "parts"):
-        yield from _operand(entry_of(part, "shape"), (*path, "shape"))
-    for path, region in _regions(document):
+    if document.get("mesh") is None:  # else parts are those of its file
+        for path, part in _list(document, "parts"):
+            yield from _operand(entry_of(part, "shape"), (*path, "shape"))
+    for path, region in places_in(document):
         yield from _operand(entry_of(region, "shape"), (*path, "shape"))
 
 
-def _regions(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
+def places_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Any]]:
     """Whatever may name a shape beside the shapes and parts: places, at any depth."""
     for key, value in document.items():
         if key not in ("shapes", "parts", "parameters"):

@@ -24,6 +24,9 @@ class Region(Record):
         A ball.
     shape
         The inside of a shape: its name, or the shape itself.
+    name
+        The name of a region of the file, in a design whose body is the mesh of one: exactly its
+        vertices.
     body
         The name of a body, in whose own frame all this is then meant, before it is turned and
         moved; alone: all of that body. Default: all bodies, in the frame of the design.
@@ -50,6 +53,7 @@ class Region(Record):
     center: Point | None = None
     radius: PositiveLength | None = None
     shape: ShapeOrName | None = None
+    name: Name | None = None
     body: Name | None = None
 
     @model_validator(mode="after")
@@ -67,7 +71,7 @@ class Region(Record):
             raise DesignError("", "says nowhere", hint)
 
     def _conditions(self) -> list[object]:
-        places = (self.x, self.y, self.z, self.radius, self.shape)
+        places = (self.x, self.y, self.z, self.radius, self.shape, self.name)
         return [place for place in places if place is not None]
 
 

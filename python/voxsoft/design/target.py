@@ -17,6 +17,7 @@ from pydantic import (
 from voxsoft.design.chamber import CavityChoice
 from voxsoft.design.operands import Name
 from voxsoft.design.parameter import AnyQuantity, as_one_kind, read_quantity, write_quantities
+from voxsoft.design.region import Region
 from voxsoft.errors import DesignError
 from voxsoft.records import Record
 from voxsoft.units import Proportion, read_from_file
@@ -52,6 +53,11 @@ class Objective(Record):
         body with itself. Default: the only object there is.
     tendon
         The name of a tendon, for a metric of one. Default: the only one there is.
+    clamp
+        The name of a clamp, or its place, ``"clamps[0]"``, for a metric of supports. Default: all
+        that hold the body.
+    region
+        Where supports count, in the unloaded body. Default: everywhere.
     along
         Which number of a path of equilibria counts: ``"last"``, ``"largest"``, ``"smallest"`` or
         ``"mean"``. Default: the last. Without a path there is only one.
@@ -72,6 +78,8 @@ class Objective(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
+    clamp: Name | None = None
+    region: Region | None = None
     along: Along | None = None
     accuracy: Proportion | None = None
 
@@ -99,7 +107,7 @@ class Constraint(Record):
     ----------
     metric
         Name of the metric.
-    probe, base, axis, cavity, percentile, object, tendon, along, accuracy
+    probe, base, axis, cavity, percentile, object, tendon, clamp, region, along, accuracy
         As for :class:`Objective`.
     min, max
         The bounds, with units where the metric has one; at least one of them.
@@ -120,6 +128,8 @@ class Constraint(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
+    clamp: Name | None = None
+    region: Region | None = None
     along: Along | None = None
     accuracy: Proportion | None = None
     min: AnyQuantity | None = None

@@ -6,7 +6,8 @@ import csv
 import io
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from voxsoft.design.documents import with_paths_from
-from voxsoft.errors import OutputError
+from voxsoft.errors import ErrorDetail, OutputError
 from voxsoft.files.atomic import write_atomically
 from voxsoft.files.meshes import write_mesh
 from voxsoft.files.toml_text import write_toml
@@ -26,6 +27,8 @@ def write_run(
     result: Result, folder: str | os.PathLike[str], *, more: Mapping[str, Any] | None = None
 ) -> Path:
     """Write a run folder: ``design.toml`` (resolved), ``summary.json`` and ``result.vtu``.
+
+    The numbers come first: what cannot be written after them costs nothing that is on disk.
 
     Parameters
     ----------
@@ -38,23 +41,43 @@ def write_run(
 
     Raises
     ------
-    FileError
-        The folder cannot be written.
+    OutputError
+        The folder cannot be written, or files of it; the others are there.
     """
+    folder = write_summary(result, folder, more=more)
+    unwritten = Unwritten(folder)
+    with unwritten.attempt("design.toml"):
+        resolved = with_paths_from(result.design.resolved, folder)
+        write_atomically(folder / "design.toml", write_toml(resolved))
+    if len(result.recording.times) > 1:
+        with unwritten.attempt("history.csv"):
+            write_atomically(folder / "history.csv", _history_csv(result))
+    with unwritten.attempt("result.vtu"):
+        _write_fields(result, folder / "result.vtu")
+    unwritten.raise_any()
+    return folder
+
+
+def write_summary(
+    result: Result, folder: str | os.PathLike[str], *, more: Mapping[str, Any] | None = None
+) -> Path:
+    """Write the numbers of a run, ``summary.json``; arguments as for :func:`write_run`."""
     folder = make_folder(folder)
-    resolved = with_paths_from(result.design.resolved, folder)
-    write_atomically(folder / "design.toml", write_toml(resolved))
     summary = result.summary() | {
         "design": result.design.name,
         "hash": result.design.hash,
-        "voxel_size": result.design.voxel_size,
+        "voxel_size": result.design.voxel_size if result.design.mesh is None else None,
         **provenance(),
         **(more or {}),
     }
     write_json(folder / "summary.json", summary)
+    return folder
+
+
+def _write_fields(result: Result, target: Path) -> None:
     contact = result.contact_field
     write_mesh(
-        folder / "result.vtu",
+        target,
         result.mesh,
         point_data={
             "displacement": result.displacements,
@@ -66,9 +89,46 @@ def write_run(
         cell_data=result.fields.cell_data(result.mesh),
         regions=named_regions(result.design, result.mesh),
     )
-    if len(result.recording.times) > 1:
-        write_atomically(folder / "history.csv", _history_csv(result))
-    return folder
+
+
+class Unwritten:
+    """Files of a folder that could not be written, whatever the reason, while others are.
+
+    Examples
+    --------
+    >>> unwritten = Unwritten(Path("runs/beam"))
+    >>> with unwritten.attempt("body.png"):
+    ...     raise ValueError("nothing to draw")
+    >>> str(unwritten.problems[0])
+    'runs/beam/body.png: was not written: nothing to draw. Try: the numbers are in summary.json \
+beside it'
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._problems: list[ErrorDetail] = []
+
+    @property
+    def problems(self) -> tuple[ErrorDetail, ...]:
+        """Where and why, for each file."""
+        return tuple(self._problems)
+
+    @contextmanager
+    def attempt(self, name: str) -> Iterator[None]:
+        """Go on after whatever fails while a file is written."""
+        try:
+            yield
+        except OutputError as error:
+            self._problems += error.problems
+        except Exception as error:  # A finished run is not given up for one of its files.
+            what = f"was not written: {error or type(error).__name__}"
+            hint = "the numbers are in summary.json beside it"
+            self._problems.append(ErrorDetail(str(self._folder / name), what, hint))
+
+    def raise_any(self) -> None:
+        """Raise one error for all of them, if there are any."""
+        if self._problems:
+            raise OutputError.listing(self._problems)
 
 
 def provenance() -> dict[str, Any]:
@@ -109,6 +169,9 @@ def _history_csv(result: Result) -> str:
     names = list(result.recording.probes)
     header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
     columns = [result.recording.times[:, None], *(result.recording.probes[name] for name in names)]
+    for name, (positions, _) in result.recording.objects.items():
+        header += [f"{name}_{axis}_m" for axis in "xyz"]
+        columns.append(positions)
     for name, chamber in result.recording.chambers.items():
         header += [f"{name}_pressure_Pa", f"{name}_volume_m3", f"{name}_mass_kg"]
         columns.append(np.column_stack((chamber.pressure, chamber.volume, chamber.mass)))

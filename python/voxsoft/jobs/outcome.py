@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
+from voxsoft.errors import ErrorDetail, details_as_data
+
 if TYPE_CHECKING:
     from voxsoft.comparison import Confirmation, ErrorBars
     from voxsoft.simulation import LoadPath
@@ -47,6 +49,8 @@ class JobOutcome(Generic[Found]):
         The path that a run followed, whose last equilibrium is what was found.
     path_bars
         The error bars along it, as far as it was followed.
+    unwritten
+        Files that could not be written after the numbers were, each with the reason.
     """
 
     folder: Path
@@ -58,15 +62,20 @@ class JobOutcome(Generic[Found]):
     error_bars: ErrorBars | None = None
     path: LoadPath | None = None
     path_bars: tuple[ErrorBars, ...] = ()
+    unwritten: tuple[ErrorDetail, ...] = ()
 
     @property
     def summary(self) -> dict[str, Any]:
         """Plain data in SI units: the ``--json`` of its verb."""
-        more = {} if self.confirmed is None else {"confirmed": self.confirmed.summary()}
+        more: dict[str, Any] = (
+            {} if self.confirmed is None else {"confirmed": self.confirmed.summary()}
+        )
         if self.error_bars is not None:
             more["error_bars"] = self.error_bars.summary()
         if self.path is not None:
             more |= path_summary(self.path, self.path_bars)
+        if self.unwritten:
+            more["problems"] = details_as_data(self.unwritten)
         return self.found.summary() | more | {"folder": str(self.folder)}
 
 

@@ -10,7 +10,16 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY, names_of
 from voxsoft.errors import DesignError, ErrorDetail
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target, Touch
+from voxsoft.metrics.definition import (
+    NOT_NEGATIVE,
+    SHARE,
+    Floats,
+    Metric,
+    SlopeState,
+    State,
+    Target,
+    Touch,
+)
 from voxsoft.metrics.vectors import component
 from voxsoft.records import closest
 
@@ -89,12 +98,16 @@ def _force(state: State, target: Target) -> float:
     contacts = _contacts(CONTACT_FORCE, state, target)
     if any(each.of == (BODY, BODY) for each in contacts):
         return contacts[0].pressed  # what it presses itself with; each pair of forces cancels
+    return component(force_on_bodies(CONTACT_FORCE, state, target), target) if contacts else 0.0
+
+
+def force_on_bodies(metric: Metric, state: State, target: Target) -> Floats:
+    """The force of what a target names on the bodies, (3,), N; on the named one of two bodies."""
     bodies, total = state.design.body_names, np.zeros(3)
-    for each in contacts:
-        # On the named one of two bodies, on the bodies else.
+    for each in _contacts(metric, state, target):
         turned = target.object in bodies and each.of[0] != target.object
         total += np.asarray(each.force) * (-1.0 if turned else 1.0)
-    return component(total, target) if contacts else 0.0
+    return total
 
 
 def _slope_at_given_forces(state: SlopeState, target: Target) -> Floats:
@@ -130,5 +143,7 @@ CONTACT_GAP: Final = Metric(
     "contact_gap", "length", _gap, _slope_at_given_forces, frozenset({"object"})
 )
 # Without slopes: they change in jumps, where a point comes into contact or begins to slip.
-CONTACT_AREA: Final = Metric("contact_area", "area", _area, None, frozenset({"object"}))
-STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}))
+CONTACT_AREA: Final = Metric(
+    "contact_area", "area", _area, None, frozenset({"object"}), bounds=NOT_NEGATIVE
+)
+STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}), bounds=SHARE)

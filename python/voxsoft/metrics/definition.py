@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, Protocol
@@ -9,7 +10,7 @@ from typing import Final, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.design import Constraint, Design, Objective
+from voxsoft.design import Constraint, Design, Objective, Region
 from voxsoft.errors import ErrorDetail
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
@@ -18,7 +19,9 @@ Floats = NDArray[np.float64]
 #: What asks for a metric, with its place and its direction.
 Target = Objective | Constraint
 #: Keys of a target that say where, along what or of which voxels a metric is measured.
-Option = Literal["probe", "base", "axis", "cavity", "percentile", "object", "tendon"]
+Option = Literal[
+    "probe", "base", "axis", "cavity", "percentile", "object", "tendon", "clamp", "region"
+]
 
 #: What a metric lacks that does not take a key.
 _LACKS: Final[Mapping[Option, str]] = {
@@ -29,6 +32,8 @@ _LACKS: Final[Mapping[Option, str]] = {
     "percentile": "is not one number for each voxel",
     "object": "is not measured between the body and an object",
     "tendon": "is not that of a tendon",
+    "clamp": "is not that of a clamp",
+    "region": "is not that of what holds a region",
 }
 
 
@@ -151,6 +156,13 @@ class State(Protocol):
         """What all supports carry, (3,), N."""
 
     @property
+    def clamp_reactions(self) -> Mapping[str, tuple[float, float, float]]:
+        """The force of each clamp on the body by its name, N."""
+
+    def reaction_in(self, region: Region) -> tuple[float, float, float]:
+        """The force on the body of what holds a region, (3,), N."""
+
+    @property
     def penetration(self) -> Depth:
         """Where the body is in itself or in its floor."""
 
@@ -191,6 +203,11 @@ class SlopeState(State, Protocol):
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
 
 
+#: Bounds of what is never negative, and of a share.
+NOT_NEGATIVE: Final = (0.0, math.inf)
+SHARE: Final = (0.0, 1.0)
+
+
 @dataclass(frozen=True)
 class Metric:
     """A number that a design may ask for.
@@ -217,6 +234,8 @@ class Metric:
         Whether a body has what it measures; a result lists it unasked only then. Default: all have.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
+    bounds
+        Between which the number lies for every body, in SI units: an estimate beyond is none.
 
     Examples
     --------
@@ -235,6 +254,7 @@ class Metric:
     is_costly: bool = False
     is_of: Callable[[State], bool] | None = None
     home: str = ""
+    bounds: tuple[float, float] = (-math.inf, math.inf)
 
     def refusals(self, target: Target) -> Iterator[ErrorDetail]:
         """Find the keys of a target that this metric would not use."""

@@ -209,11 +209,12 @@ def _field_names(model: type[Record], path: Sequence[str | int], document: objec
         ]
         # A step that no field has is a key of a mapping such as [shapes]: same type as before.
         reached = [r for annotation in inner for r in records_in(annotation)] or reached
-    kind = here.get("kind") if isinstance(here, Mapping) else None
+    chosen = here if isinstance(here, Mapping) else {}
     exact = [
         m
         for m in reached
-        if kind and "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
+        for tag in ("kind", "model")  # tells which of several tables this is
+        if tag in m.model_fields and chosen.get(tag) in get_args(m.model_fields[tag].annotation)
     ]
     return {f.alias or n for m in exact or reached for n, f in m.model_fields.items()}
 

@@ -73,7 +73,7 @@ def closest(name: str, known: Iterable[str]) -> str:
     >>> closest("color", ["shape", "material"])
     'known are material, shape'
     """
-    names = sorted(known)
+    names = sorted({*known} - {name})  # what is known elsewhere does not help here
     matches = difflib.get_close_matches(name, names, n=1)
     if matches:
         return f'did you mean "{matches[0]}"?'

@@ -3,7 +3,7 @@
 The winding number tells how often a surface wraps around a point: 1 inside a closed surface, 0
 outside, −1 inside one whose faces are turned, and something between near a hole. Inside is where
 its size exceeds one half [1]_. Neighbors that disagree on which side is outside are turned to agree
-first; an inner shell of opposite orientation is a cavity.
+first; then :mod:`voxsoft.shapes.nesting` decides what closed shells enclose.
 
 References
 ----------
@@ -21,11 +21,14 @@ from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from voxsoft import _core
-from voxsoft.errors import ShapeError
+from voxsoft.errors import FileError, ShapeError
+from voxsoft.records import Name
 from voxsoft.shapes.base import Scope, Shape, Triple
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body
+from voxsoft.shapes.nesting import Nest, Nested, taken_once, unnested
 from voxsoft.shapes.shells import Hole, holes_of, in_one_sense
 from voxsoft.shapes.surface_files import read_surface
 from voxsoft.units import format_quantity, parse
@@ -50,10 +53,19 @@ class SurfaceState(NamedTuple):
         Triangles that had to be turned, as their neighbors have their outside on the other side.
     holes
         The widest first, in m.
+    doubled
+        Triangles of bodies that occur twice with opposite sense, and were taken once.
+    nest
+        Shells that lie in others, in m and m³.
+    nested
+        How the shape says that they are read; None where it does not.
     """
 
     turned: int
     holes: tuple[Hole, ...]
+    doubled: int = 0
+    nest: Nest = Nest()
+    nested: Nested | None = None
 
     @property
     def opening(self) -> str:
@@ -89,8 +101,14 @@ def _whole_path(path: object) -> object:
 class TriangleMesh(Shape):
     """The inside of a mesh from a file: STL, OBJ, PLY, OFF, or anything that meshio reads.
 
-    Of tetrahedra and other volume cells the boundary counts. Small holes and turned faces do not
-    spoil the inside; ``voxsoft check`` tells of both. Distances are those to the triangles.
+    Of tetrahedra and other volume cells the boundary counts, of the whole or of a `part`. Small
+    holes and turned faces do not spoil the inside; ``voxsoft check`` tells of both. Distances are
+    those to the triangles.
+
+    Outermost closed shells enclose material, whichever side their faces are on. A shell within
+    another is a chamber where it faces the other way than the outermost one around it; where it
+    faces likewise it is filled, with a warning. ``nested="void"`` makes shells chambers and bodies
+    by turns, whichever way they face; ``nested="solid"`` says that the filled ones are meant.
 
     Examples
     --------
@@ -105,9 +123,31 @@ class TriangleMesh(Shape):
     unit: Annotated[str, AfterValidator(_is_length_unit)] = Field(
         description="Length unit of the file, such as mm; mesh files do not say it."
     )
+    part: Name | None = Field(
+        None, description="Name of a part of a file of tetrahedra; default: all of it."
+    )
+    region: Name | None = Field(
+        None,
+        description="Name of a region of a file of tetrahedra, for a region of the design: all "
+        "within half a voxel of it.",
+    )
+    nested: Nested | None = Field(
+        None,
+        description="Closed shells within others: void where material and voids alternate by "
+        "depth; solid where those of the same sense are meant to be filled.",
+    )
+
+    @model_validator(mode="after")
+    def _says_one(self) -> TriangleMesh:
+        if self.part is not None and self.region is not None:
+            raise ShapeError("region", "there is a part too", "make two shapes of them")
+        return self
 
     def make(self, scope: Scope) -> _core.Shape:
         """Return the compiled shape."""
+        if self.region is not None:
+            path, meter = Path(self.path), parse(f"1 {self.unit}", "length")
+            return _body(path).distance_to(self.region, path.name, meter)
         solid = self._solid
         return _core.Shape.sampled(solid.distances, solid.low, solid.high, solid.is_closed)
 
@@ -128,14 +168,24 @@ class TriangleMesh(Shape):
             changed = path.stat().st_mtime_ns
         except OSError as error:
             raise ShapeError("path", f"{path} cannot be read: {error.strerror}") from None
-        return _solid(path, changed, parse(f"1 {self.unit}", "length"))
+        factor = parse(f"1 {self.unit}", "length")
+        return _solid(path, changed, factor, self.part, self.nested)
 
 
 @lru_cache(maxsize=8)
-def _solid(path: Path, changed: int, factor: float) -> _Solid:
+def _solid(
+    path: Path, changed: int, factor: float, part: str | None, nested: Nested | None
+) -> _Solid:
     """Read a file once for as long as it does not change."""
-    surface = read_surface(path)
-    return _Solid(surface.points * factor, surface.triangles, str(path))
+    surface = read_surface(path) if part is None else _body(path).surface_of(part, path.name)
+    return _Solid(surface.points * factor, surface.triangles, str(path), nested)
+
+
+def _body(path: Path) -> MeshBody:
+    try:
+        return read_body(path)
+    except FileError as error:
+        raise ShapeError("path", f"{path.name}: {error.what}", error.hint) from None
 
 
 # libigl's objects must go before its module does, or it reports them as leaked.
@@ -153,16 +203,25 @@ class _Solid:
         Vertices of each triangle, shape (t, 3).
     name
         What error messages call it.
+    nested
+        How shells within others are read.
     """
 
     def __init__(
-        self, points: NDArray[np.float64], triangles: NDArray[np.int64], name: str
+        self,
+        points: NDArray[np.float64],
+        triangles: NDArray[np.int64],
+        name: str,
+        nested: Nested | None = None,
     ) -> None:
         import igl
 
+        triangles, doubled = taken_once(triangles)
         _refuse_soup(triangles, name)
         triangles, turned = in_one_sense(points, triangles)
-        self.state = SurfaceState(turned, holes_of(points, triangles))
+        holes = holes_of(points, triangles)
+        triangles, nest = unnested(points, triangles, nested)
+        self.state = SurfaceState(turned, holes, doubled, nest, nested)
         self.is_closed = _is_closed(triangles)
         used = points[np.unique(triangles)]
         low, high = used.min(axis=0), used.max(axis=0)

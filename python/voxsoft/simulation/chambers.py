@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Chamber, Design
-from voxsoft.errors import DesignError, NoCavityError
+from voxsoft.errors import DesignError, ErrorDetail, NoCavityError
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Target
 from voxsoft.shapes import Shape
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
-from voxsoft.simulation.places import inside_region, voxel_size
+from voxsoft.simulation.missing_cavity import why_no_cavity
+from voxsoft.simulation.places import inside_region, is_named, voxel_size
 from voxsoft.units import format_quantity
 
 Floats = NDArray[np.float64]
@@ -54,6 +55,12 @@ def check_chambers(design: Design, mesh: Mesh) -> None:
         Two names for one cavity, or a region that holds several.
     """
     _, errors = _named_cavities(design, mesh)
+    if errors and not mesh.cavities:
+        why, hint = why_no_cavity(design, mesh)
+        what = f"there is no enclosed cavity to name: {why}"
+        raise NoCavityError.listing(
+            ErrorDetail(f"chambers.{name}", what, hint) for name in design.chambers
+        )
     if errors:
         missing = any(isinstance(error, NoCavityError) for error in errors)
         kind = NoCavityError if missing else DesignError
@@ -213,6 +220,7 @@ def _share_inside(
     a, b, c = corners.transpose(1, 0, 2)
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     held = inside_region(chamber, corners.mean(axis=1), shapes, reach)
+    held &= is_named(chamber, mesh)[cavity.triangles].all(axis=1)
     return float(areas[held].sum() / areas.sum())
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft import _core
-from voxsoft.design import Design
+from voxsoft.design import Design, Region
 from voxsoft.design.contact import BODY, FLOOR
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
@@ -19,12 +19,13 @@ from voxsoft.simulation.apart import Surface
 from voxsoft.simulation.compliance import compliance_of
 from voxsoft.simulation.fields import fields_of
 from voxsoft.simulation.loads.actions import SurfacePressure
-from voxsoft.simulation.motion import moved_by
+from voxsoft.simulation.motion import held_axes, moved_by
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
 from voxsoft.simulation.result import pressures_of
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.supports import Force, clamp_reactions, reaction_in
 from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState
 from voxsoft.simulation.vibration import modes_of
@@ -100,6 +101,19 @@ class LoadedState:
         of_objects = [each.force for each in self.contacts if each.of[1] != BODY]
         x, y, z = np.sum(of_objects, axis=0) - self.net_forces.sum(axis=0)
         return float(x), float(y), float(z)
+
+    @property
+    def clamp_reactions(self) -> dict[str, Force]:
+        """The force of each clamp on the body by its name, N."""
+        return clamp_reactions(self.design, self.setup.clamped, self._support_forces)
+
+    def reaction_in(self, region: Region) -> Force:
+        """The force on the body of what holds a region, N."""
+        return reaction_in(self.design, self.mesh, region, self._support_forces)
+
+    @property
+    def _support_forces(self) -> Floats:
+        return np.where(held_axes(self.setup), -self.net_forces, 0.0)
 
     @property
     def penetration(self) -> Penetration:

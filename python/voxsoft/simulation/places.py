@@ -49,7 +49,10 @@ def vertices_in(
     """
     points = mesh.vertices if points is None else points
     caught = [
-        np.flatnonzero(inside_region(region, at, shapes, _HALF * voxel_size(body.mesh)))
+        np.flatnonzero(
+            inside_region(region, at, shapes, _HALF * voxel_size(body.mesh))
+            & is_named(region, body.mesh)
+        )
         + body.first_vertex
         for body, at in _bodies_meant(region, mesh, points)
     ]
@@ -152,6 +155,7 @@ def place_of(
     for (body, at), (_, exactly) in meant:
         size = voxel_size(body.mesh)
         weights[body.vertices] = _weights(probe, at, exactly, shapes, size)
+        weights[body.vertices] *= is_named(probe, body.mesh)
     caught = np.flatnonzero(weights)
     if caught.size == 0:
         raise DesignError(where, f"touches nothing; {_spans(probe, mesh)}", _TRY)
@@ -186,6 +190,16 @@ def voxel_size(mesh: Mesh) -> float:
     if mesh.voxel_size is not None:
         return float(mesh.voxel_size)
     return float(np.cbrt(5.0 * mesh.quality.volume / len(mesh.tets)))
+
+
+def is_named(region: Region, mesh: Mesh) -> NDArray[np.bool_]:
+    """Which vertices of a mesh are of the region of its file that a region names, (n,).
+
+    All where it names none; an unknown name is reported where the design is read.
+    """
+    if region.name is None:
+        return np.ones(len(mesh.vertices), dtype=bool)
+    return np.isin(np.arange(len(mesh.vertices)), mesh.regions.get(region.name, ()))
 
 
 def inside_region(

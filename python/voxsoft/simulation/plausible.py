@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.materials import Rigid
 from voxsoft.mesh import Mesh
+from voxsoft.shapes import TriangleMesh
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
 from voxsoft.units import format_quantity
@@ -18,6 +20,8 @@ from voxsoft.units import format_quantity
 # thousand, the slip of a unit, of it.
 #: m: inflatable arms of a few meters are the longest; a finger in meters for millimeters has 80.
 _LONGEST: Final = 5.0
+#: m: a cell has a tenth, a robot of an insect's size ten times as much.
+_SHORTEST: Final = 0.5e-3
 #: kg: a body of 5 m that is full of silicone from end to end has a ton from 0.45 m across.
 _HEAVIEST: Final = 1000.0
 #: m: there are at least some voxels in 5 m; a voxel of 0.5 mm in meters has 0.5.
@@ -59,23 +63,36 @@ def implausible_numbers(body: object, mesh: Mesh, mass: float) -> Iterator[Diagn
     loads[0].value: 3 Pa is less than 5 mm of water. Try: pressures in Python are in Pa: write \
 3*kPa or "3 kPa"
     """
-    yield from _of_size(mesh, mass)
+    yield from _of_size(body, mesh, mass)
     if isinstance(body, Design):
         yield from _of_loads(body)
         yield from _of_materials(body)
         yield from _of_magnets(body)
 
 
-def _of_size(mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
+def _of_size(body: object, mesh: Mesh, mass: float) -> Iterator[Diagnostic]:
+    hint = _hint_on_size(body)
     longest = float(np.ptp(mesh.vertices, axis=0).max())
     if mesh.voxel_size is not None and mesh.voxel_size > _COARSEST:
         size = format_quantity(mesh.voxel_size, "length")
         yield _warning("voxel_size", f"is {size}: each voxel is as large as a robot", _METERS)
-    if longest > _LONGEST:
+    if not _SHORTEST <= longest <= _LONGEST:
         size = format_quantity(float(f"{longest:.4g}"), "length")
-        yield _warning("parts", f"the body is {size} long", _METERS)
+        yield _warning("parts", f"the body is {size} long", hint)
     if mass > _HEAVIEST:
-        yield _warning("parts", f"the body has a mass of {mass:,.0f} kg", _METERS)
+        yield _warning("parts", f"the body has a mass of {mass:,.0f} kg", hint)
+
+
+def _hint_on_size(body: object) -> str:
+    """What to try where a body has hardly the size that was meant."""
+    if isinstance(body, Design):
+        made_of = [each for shape in body.shapes.values() for each in shape.every()]
+        files = [(each.path, each.unit) for each in made_of if isinstance(each, TriangleMesh)]
+        files += [] if body.mesh is None else [(body.mesh.path, body.mesh.unit or "its own unit")]
+        if files:
+            read = dict.fromkeys(f"{Path(path).name} is read in {unit}" for path, unit in files)
+            return f"check the unit: {', '.join(read)}"
+    return _METERS
 
 
 def _of_loads(design: Design) -> Iterator[Diagnostic]:

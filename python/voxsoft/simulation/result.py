@@ -1,4 +1,7 @@
-"""The answer of a simulation."""
+"""The answer of a simulation. Long because all that it gives is a short property of one class.
+
+Long because it documents every number of a result where it is defined.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft._shown import Shown, rounded, shortened
-from voxsoft.design import Design, Objective
+from voxsoft.design import Design, Objective, Region
 from voxsoft.design.chamber import chosen_cavities
 from voxsoft.design.contact import FLOOR
 from voxsoft.errors import DesignError
@@ -20,6 +23,7 @@ from voxsoft.geometry import mean_displacement
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import METRICS, Place, Target, metric_named
 from voxsoft.metrics.contact import object_problems
+from voxsoft.metrics.reaction import support_problems
 from voxsoft.metrics.tendon import tendon_problems
 from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.diagnostic import Diagnostic
@@ -30,6 +34,8 @@ from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
+from voxsoft.simulation.relaxed import relaxed_parts
+from voxsoft.simulation.supports import Force, clamp_reactions, clamped_vertices, reaction_in
 from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState, Pose
 from voxsoft.simulation.volumes import Volumes, volumes_of
@@ -222,6 +228,30 @@ class Result(Shown):
         """Stress and strain in each voxel, and averaged on the vertices."""
         return fields_of(self.design, self.mesh, self.positions, peaks=self.peaks)
 
+    @cached_property
+    def clamp_reactions(self) -> Mapping[str, Force]:
+        """The force of each clamp on the body in N, by its name or its place, ``"clamps[0]"``.
+
+        Each force counts once: where several clamps hold the same axis of a vertex, for the last.
+        """
+        clamped = clamped_vertices(self.design, self.mesh)
+        return clamp_reactions(self.design, clamped, self.reactions)
+
+    def reaction_in(self, region: Region) -> Force:
+        """The force in N on the body of all that holds the vertices in a region.
+
+        Parameters
+        ----------
+        region
+            Where, in the unloaded body.
+
+        Raises
+        ------
+        DesignError
+            The region catches nothing.
+        """
+        return reaction_in(self.design, self.mesh, region, self.reactions)
+
     @property
     def chamber_volumes(self) -> dict[str, float]:
         """Volume of each named chamber now, in m³."""
@@ -239,6 +269,8 @@ class Result(Shown):
         percentile: float | None = None,
         object: str | None = None,
         tendon: str | None = None,
+        clamp: str | None = None,
+        region: Region | Mapping[str, Any] | None = None,
     ) -> float:
         """Return one metric in SI units.
 
@@ -262,6 +294,10 @@ class Result(Shown):
             default: the only object there is.
         tendon
             The tendon, by its name; default: the only one there is.
+        clamp
+            The clamp, by its name or its place, ``"clamps[0]"``; default: all that hold the body.
+        region
+            Where supports count; default: everywhere.
 
         Raises
         ------
@@ -277,12 +313,15 @@ class Result(Shown):
             percentile=percentile,
             object=object,
             tendon=tendon,
+            clamp=clamp,
+            region=region,
         )
         metric = metric_named(name)
         problems = [
             *metric.refusals(target),
             *object_problems(metric, target, self.design),
             *tendon_problems(metric, target, self.design),
+            *support_problems(metric, target, self.design),
         ]
         if problems:
             raise DesignError.listing(problems)
@@ -365,6 +404,8 @@ class Result(Shown):
         if self.supplies:
             fluids = Fluids(self.design, self.mesh)
             found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
+        if self.solver["way"] != "dynamics":
+            found = (*relaxed_parts(self.design), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)
@@ -434,6 +475,7 @@ class Result(Shown):
             "penetration": self.penetration.depth,
             "warnings": [warning.summary() for warning in self.warnings],
             "reaction": list(self.reaction),
+            "reactions": {name: list(force) for name, force in self.clamp_reactions.items()},
             "load": list(self.load),
             "volumes": self.volumes.summary(),
             "voxels": len(self.mesh.tets) // 5 if self.mesh.voxel_size else None,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -20,6 +20,7 @@ from voxsoft.cavity import MeshCavity
 from voxsoft.design import Design, Probe, Region
 from voxsoft.design.assembly import with_origins
 from voxsoft.design.attachment import PlaceOnBody, attachments_of
+from voxsoft.design.clamp import check_clamps
 from voxsoft.design.discretize import mesh_of
 from voxsoft.design.joined import edge_directions
 from voxsoft.errors import (
@@ -40,6 +41,7 @@ from voxsoft.simulation.large_voxels import check_refinement, large_voxels
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.missing_cavity import why_no_cavity
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.profiles import check_profile_symmetry
@@ -47,6 +49,8 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
+from voxsoft.simulation.solve_lock import SolveLock
+from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
 from voxsoft.simulation.touching import (
@@ -74,6 +78,8 @@ class Setup:
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
+    lock
+        Solutions of it wait for each other, so that threads may share it.
 
     Raises
     ------
@@ -87,6 +93,7 @@ class Setup:
 
     design: Design
     mesh: Mesh
+    lock: SolveLock = field(default_factory=SolveLock, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"Setup({self.design.name!r}, {self.mesh!r})"
@@ -134,6 +141,9 @@ class Setup:
         setup = cls(design, mesh_of(design, refine or design.solver.refine))
         voxels = len(setup.mesh.tets) // 5
         if short := shortage(voxels * BYTES_PER_VOXEL):
+            if design.mesh is not None:
+                what = f"the problem of {len(setup.mesh.tets):,} tetrahedra {short}"
+                raise SimulationError("mesh", what, "take a coarser mesh")
             what = f"the problem of {voxels:,} voxels {short}"
             raise SimulationError("voxel_size", what, "make the voxels larger")
         setup.check(allow_loose=allow_loose)
@@ -142,6 +152,7 @@ class Setup:
     def check(self, *, allow_loose: bool | None = None) -> None:
         """Raise the error that keeps this setup from being solved, if any."""
         check_targets(self.design)
+        check_clamps(self.design.clamps)
         check_chambers(self.design, self.mesh)
         check_windings(self.design, self.mesh)
         check_refinement(self.design)
@@ -408,10 +419,7 @@ class Setup:
     @cached_property
     def clamped(self) -> list[NDArray[np.uint32]]:
         """The vertices of each clamp."""
-        return [
-            self.vertices_in(clamp.region, f"clamps[{index}].region")
-            for index, clamp in enumerate(self.design.clamps)
-        ]
+        return clamped_vertices(self.design, self.mesh, self.points)
 
     def vertices_in(self, region: Region, where: str) -> NDArray[np.uint32]:
         """Vertices that a region catches; `where` is the place an error names."""
@@ -424,12 +432,9 @@ class Setup:
                 continue
             where = f"loads[{index}]"
             if count == 0:
-                raise NoCavityError(
-                    where,
-                    "there is no enclosed cavity to put a pressure in",
-                    "make walls and caps at least one voxel thick, or the voxels smaller; "
-                    "the check of the design shows where a chamber leaks",
-                )
+                why, hint = why_no_cavity(self.design, self.mesh)
+                what = f"there is no enclosed cavity to put a pressure in: {why}"
+                raise NoCavityError(where, what, hint)
             self.load(index)
 
     @cached_property
@@ -464,11 +469,13 @@ class Setup:
 
 
 def named_regions(design: Design, mesh: Mesh) -> dict[str, NDArray[np.uint32]]:
-    """Vertices of every clamp and probe that catches any, by name: what a mesh file carries."""
+    """Vertices of every clamp and probe that catches any, and of the regions of the body's file."""
     design = design.assembled
-    regions: dict[str, NDArray[np.uint32]] = {}
+    regions: dict[str, NDArray[np.uint32]] = {
+        name: vertices.astype(np.uint32) for name, vertices in mesh.regions.items()
+    }
     places: dict[str, Region] = {
-        **{f"clamp_{index}": clamp.region for index, clamp in enumerate(design.clamps)},
+        **{f"clamp_{each.name or i}": each.region for i, each in enumerate(design.clamps)},
         **{f"probe_{name}": probe for name, probe in design.probes.items()},
     }
     points = on_the_body(design, mesh)

@@ -8,6 +8,7 @@ from voxsoft.design import Constraint, Design, Objective
 from voxsoft.errors import DesignError, ErrorDetail
 from voxsoft.metrics import METRICS
 from voxsoft.metrics.contact import object_problems
+from voxsoft.metrics.reaction import support_problems
 from voxsoft.metrics.tendon import tendon_problems
 from voxsoft.records import closest
 from voxsoft.units import KINDS, describe_dimension
@@ -83,6 +84,10 @@ def _problems(
         yield ErrorDetail(
             f"{where}.probe", f"is missing: where is {name} measured?", f"name {known}"
         )
-    found = (*object_problems(metric, target, design), *tendon_problems(metric, target, design))
+    found = (
+        *object_problems(metric, target, design),
+        *tendon_problems(metric, target, design),
+        *support_problems(metric, target, design),
+    )
     for problem in (*metric.refusals(target), *found):
         yield ErrorDetail(f"{where}.{problem.where}", problem.what, problem.hint)

@@ -355,8 +355,13 @@ class Touching:
     @cached_property
     def solids(self) -> tuple[Solid | None, ...]:
         """What each free object answers to forces with; None for those that are held."""
-        pairs = zip(self.design.objects, self.surfaces, strict=True)
-        return tuple(Solid.of(surface, each) if each.is_free else None for each, surface in pairs)
+        rows = zip(self.design.objects, self.traced, self.surfaces, strict=True)
+        return tuple(
+            Solid.of(traced, each, self.design, now.middle - traced.middle)
+            if each.is_free
+            else None
+            for each, traced, now in rows
+        )
 
     @cached_property
     def floor(self) -> Surface | None:

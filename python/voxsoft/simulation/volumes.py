@@ -158,7 +158,7 @@ def volumes_in(shape: Shape, mesh: Mesh, name: str, points: int = PRECISE) -> Vo
     """
     if mesh.voxel_size is None:
         return Volumes()
-    cells = _Cells.of(mesh, mesh.voxel_size)
+    cells = GridRegions.of(mesh, mesh.voxel_size)
     (material,), rooms = _described([shape.build()], cells, _affordable(shape.every(None), points))
     pairs = zip(mesh.cavities, rooms.tolist(), strict=True)
     return Volumes(
@@ -178,7 +178,7 @@ def doubtful_volumes(
     >>> from voxsoft.design.discretize import mesh_of
     >>> ball = families.sphere()
     >>> print(*doubtful_volumes(ball, mesh_of(ball)))  # doctest: +ELLIPSIS
-    parts[0]: ...
+    cavity 0: the chamber has 17 mL in voxels; its shapes have 14 mL (+2...%). Try: ...
     """
     low, high = _SUSPECT
     try:
@@ -187,28 +187,31 @@ def doubtful_volumes(
             volumes = volumes_of(design, mesh, max(points, _AGAIN * QUICK))
     except VoxSoftError:
         return  # a shape without a value somewhere is reported where it is sampled
-    may_cut = design.fill == "binary" and not design.bodies and _is_rubber(design)
-    yield from doubts(volumes, may_cut=may_cut)
+    yield from doubts(volumes, _remedy(design))
 
 
-def doubts(volumes: Volumes, *, may_cut: bool) -> Iterator[Diagnostic]:
-    """Word the large differences among volumes; `may_cut` names cut voxels as a remedy."""
+def doubts(volumes: Volumes, remedy: str) -> Iterator[Diagnostic]:
+    """Word the large differences among volumes, with what to try."""
     for kind, found in (("part", volumes.parts), ("chamber", volumes.cavities)):
         for name, volume in found.items():
             if abs(volume.difference) >= LARGE:
-                yield _doubt(kind, name, volume, may_cut=may_cut)
+                yield _doubt(kind, name, volume, remedy)
 
 
-def _doubt(kind: str, name: str, volume: Volume, *, may_cut: bool) -> Diagnostic:
+def _remedy(design: Design) -> str:
+    whole = "multiples" if not design.symmetry else "even multiples across a plane of symmetry"
+    ways = f"make the voxels smaller, or its sizes {whole} of the voxel size"
+    may_cut = design.fill == "binary" and not design.bodies and _is_rubber(design)
+    return f'set fill = "fraction", {ways}' if may_cut else ways
+
+
+def _doubt(kind: str, name: str, volume: Volume, remedy: str) -> Diagnostic:
     simulated, described = (format_quantity(float(f"{v:.3g}"), "volume") for v in volume)
     what = f"the {kind} has {simulated} in voxels; its shapes have {described}"
     if math.isfinite(volume.difference):
         digits = 0 if abs(volume.difference) > _LARGER else 1
         what += f" ({volume.difference:+.{digits}%})"
-    ways = "make the voxels smaller, or its sizes multiples of the voxel size"
-    if may_cut:
-        ways = f'set fill = "fraction", {ways}'
-    return Diagnostic("warning", name, what, ways)
+    return Diagnostic("warning", name, what, remedy)
 
 
 def _is_rubber(design: Design) -> bool:
@@ -231,7 +234,7 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
     size = mesh.voxel_size
     if size is None or mesh.tet_voxel is None or not design.parts:
         return None
-    cells = _Cells.of(mesh, size)
+    cells = GridRegions.of(mesh, size)
     material, room = _described(built_parts(design), cells, _affordable(shapes_of(design), points))
     own = tet_volumes(mesh.vertices, mesh.tets)
     if mesh.fractions is not None:
@@ -245,7 +248,7 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
 
 
 @dataclass(frozen=True, eq=False)
-class _Cells:
+class GridRegions:
     """The cells of a body's grid, with a rim of empty ones.
 
     `parts` is the part of each from 1, 0 for none; `rooms` the cavity of each from 0, -1 for the
@@ -258,7 +261,8 @@ class _Cells:
     rooms: NDArray[np.int16]
 
     @classmethod
-    def of(cls, mesh: Mesh, size: float) -> _Cells:
+    def of(cls, mesh: Mesh, size: float) -> GridRegions:
+        """Return those of the voxels of a mesh, of edge `size` [m]."""
         corners = mesh.vertices[mesh.tets.reshape(-1, 20)].min(axis=1)
         origin = corners.min(axis=0) - _RIM * size
         cells = np.rint((corners - origin) / size).astype(np.intp)
@@ -284,7 +288,9 @@ def _affordable(shapes: Iterable[Shape], points: int) -> int:
     return points // _OF_A_FILE if any(isinstance(e, TriangleMesh) for e in shapes) else points
 
 
-def _described(shapes: Sequence[_core.Shape], cells: _Cells, points: int) -> tuple[Floats, Floats]:
+def _described(
+    shapes: Sequence[_core.Shape], cells: GridRegions, points: int
+) -> tuple[Floats, Floats]:
     """Volumes of the parts and of the cavities of the shapes [m³], each by number."""
     near = cells.near
     whole = np.bincount(cells.parts[~near], minlength=len(shapes) + 1)[1:].astype(float)

@@ -103,12 +103,13 @@ class StudioBody:
         except VoxSoftError as error:
             refusal = error
         seconds = time.perf_counter() - started
-        voxels = {name: own.voxels for name, own in cells.each.items()}
-        return cls(topology, rev, setup, voxels, surface, cells.lost, refusal, seconds)
+        return cls(
+            topology, rev, setup, cells.voxels_by_body, surface, cells.lost, refusal, seconds
+        )
 
     @property
     def voxel_count(self) -> int:
-        """Of all bodies."""
+        """Of all bodies; 0 where the body is the mesh of a file."""
         return sum(voxels.count for voxels in self.voxels.values())
 
     @property
@@ -208,7 +209,7 @@ class StudioBody:
             not_live=self.not_live,
             touches=has_contact(setup.design),
             seconds=self.seconds,
-            memory=float(self.voxel_count * BYTES_PER_VOXEL),
+            memory=len(mesh.tets) / 5 * BYTES_PER_VOXEL,
             bodies=_bodies(mesh, self.surface),
             planes=[
                 events.BodyPlane(axis=plane.axis, at=plane.at) for plane in setup.design.symmetry
@@ -241,7 +242,7 @@ def filled_within_memory(design: Design) -> Filled:
     VoxSoftError
         It would need more, or cannot be put on a grid.
     """
-    for name in design.body_names:
+    for name in design.body_names if design.mesh is None else ():
         _refuse_far_too_large(design.alone(name))
     cells = filled(design, design.solver.refine)
     _refuse_too_large(cells.count)

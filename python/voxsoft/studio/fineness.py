@@ -104,7 +104,8 @@ def halved(source: Mapping[str, Any], design: Design) -> list[Change]:
     Raises
     ------
     DesignError
-        A body is a design of several bodies: their voxels are written in that design.
+        A body is a design of several bodies: their voxels are written in that design. Or the body
+        is the mesh of a file.
 
     Examples
     --------
@@ -112,6 +113,9 @@ def halved(source: Mapping[str, Any], design: Design) -> list[Change]:
     >>> halved({"voxel_size": "5 mm"}, families.beam())
     [(['voxel_size'], '2.5 mm')]
     """
+    if design.mesh is not None:
+        what = f"the body is {design.mesh.label}, whose elements are as they are"
+        raise DesignError("mesh", what, "name a finer mesh")
     changes: list[Change] = [(["voxel_size"], _half(source["voxel_size"]))]
     for index, body in enumerate(design.bodies):
         own = body.included

@@ -163,9 +163,14 @@ def _poses(design: Design, bodies: Sequence[str | None]) -> list[events.BodyPose
     ]
 
 
+def _made_of_shapes(design: Design) -> tuple[Part, ...]:
+    """The parts of a design that shapes make; none where a file does."""
+    return design.parts if design.mesh is None else ()
+
+
 def _users(design: Design, shape: Shape) -> Iterator[Part]:
     """The parts that are made of a shape, whole or with others."""
-    for part in design.parts:
+    for part in _made_of_shapes(design):
         own = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
         if any(each is shape for each in own.every(design.shapes)):
             yield part
@@ -174,7 +179,7 @@ def _users(design: Design, shape: Shape) -> Iterator[Part]:
 def _room(design: Design, bodies: Sequence[str | None]) -> tuple[Triple, Triple]:
     """The box of some bodies and a bit more, in their own frames; of all where there are none."""
     boxes = []
-    for part in design.parts:
+    for part in _made_of_shapes(design):
         if bodies and part.body not in bodies:
             continue
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape

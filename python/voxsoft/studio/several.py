@@ -245,6 +245,10 @@ def _lowest(design: Design) -> float:
 
 
 def _boxes(design: Design) -> Iterator[tuple[list[float], list[float]]]:
+    if design.mesh is not None:
+        vertices = design.mesh.read().mesh.vertices
+        yield vertices.min(axis=0).tolist(), vertices.max(axis=0).tolist()
+        return
     for part in design.parts:
         shape = design.shapes[part.shape] if isinstance(part.shape, str) else part.shape
         yield corners_of(shape, None, design.shapes)

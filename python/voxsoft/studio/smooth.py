@@ -29,7 +29,8 @@ def pack_smooth(design: Design, voxels: Mapping[str, Voxels], topology: int) -> 
     Returns
     -------
     bytes or None
-        None where the shapes have no surface that could be traced finely enough.
+        None where the shapes have no surface that could be traced finely enough, or the body is the
+        mesh of a file.
 
     Examples
     --------
@@ -40,6 +41,8 @@ def pack_smooth(design: Design, voxels: Mapping[str, Voxels], topology: int) -> 
     >>> packed is not None and packed[4]
     3
     """
+    if not voxels:
+        return None  # the surface of a file's mesh is drawn as it is
     design = design.assembled
     names = [part.body or "" for part in design.parts]
     poses = {body.name: body.pose for body in design.bodies}

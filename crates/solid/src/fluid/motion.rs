@@ -131,6 +131,13 @@ impl Fluid {
 
     /// Takes a state as the end of a step of a motion.
     pub fn take_step(&self, positions: &[Vec3]) {
+        let before = self.state().exchanged.clone();
+        self.take_stage(positions);
+        self.state().before = before;
+    }
+
+    /// The same of a stage after the first one of a step: what was a step ago stays so.
+    pub fn take_stage(&self, positions: &[Vec3]) {
         let volumes = self.volumes(positions);
         let mut state = self.state();
         let Some(step) = state.step.clone() else {
@@ -153,7 +160,7 @@ impl Fluid {
                 }
             })
             .collect();
-        state.before = std::mem::replace(&mut state.exchanged, exchanged);
+        state.exchanged = exchanged;
         let power = self.network.power(&found.pressures, step.time);
         state.count(
             &self.network,

@@ -39,6 +39,7 @@ use self::minimize::{End, Search, Tolerance};
 use self::objective::{Goal, Objective, Value};
 use self::pressures::Pressures;
 use self::quasi_newton::Memory;
+use self::scheme::Stage;
 use self::stepper::STEPS;
 use self::viscosity::Viscosity;
 use crate::settings::LinearSolver;
@@ -145,6 +146,8 @@ pub struct Implicit {
     state: State,
     /// The state one step ago, from which the next one learns.
     before: Option<State>,
+    /// Which part of the motion comes next.
+    stage: Stage,
     /// Potential, energy and forces at the state.
     value: Value,
     /// Vertices that the floor carries.
@@ -196,6 +199,7 @@ impl Implicit {
             pressures: Pressures::new(problem.body()),
             viscosity: Viscosity::new(problem.body(), settings.retardation),
             before: None,
+            stage: Stage::First,
             value: Value::default(),
             carried: vec![false; state.positions.len()],
             settled: true,
@@ -373,6 +377,7 @@ impl Implicit {
         self.pressures = Pressures::at(self.problem.body(), &state.positions);
         self.state = state;
         self.before = None;
+        self.stage = Stage::First;
         self.touching = false;
         if let Some(contact) = self.problem.contact() {
             contact.start(&self.state.positions);

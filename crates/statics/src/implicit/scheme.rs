@@ -7,10 +7,38 @@
 //! x̂ = a₁ xₙ + a₂ xₙ₋₁,  v̂ likewise,   a₁ = (1 + ω)²/(1 + 2ω),   a₂ = −ω²/(1 + 2ω).
 //! ```
 //!
-//! The first step has nothing before it: `a₁ = 1`, `a₂ = 0`, `β = 1`, backward Euler.
+//! A step that nothing goes before has `a₁ = 1`, `a₂ = 0`, `β = 1`: backward Euler, which is off by `g h²/2` where a body
+//! begins to fall. A motion therefore begins by a step in two stages, the diagonally implicit method of second order of
+//! Alexander (1977, doi 10.1137/0714068): backward Euler over the part `γ` ([`FIRST_PART`]), then, with the part `c` of both
+//! that the first stage was,
+//!
+//! ```text
+//! σ = 1/((1 − b) h),   a₁ = b/c,   a₂ = 1 − a₁,   b = 1/(2 − 2c),
+//! ```
+//!
+//! where `h` is the length of both. What a step does not resolve is damped by both stages, as by backward Euler; a mean of
+//! old and new forces would let a load that is there at once ring for ever.
+
+use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 
 use voxsoft_solid::State;
 use voxsoft_solid::vector::{Vec3, add, scale};
+
+/// The part `γ` of the first step of a motion that its first stage is: both stages have the same `σ`.
+pub(crate) const FIRST_PART: f64 = 1.0 - FRAC_1_SQRT_2;
+/// The second stage over the first, `(1 − γ)/γ`.
+pub(crate) const SECOND_OVER_FIRST: f64 = 1.0 + SQRT_2;
+
+/// Which part of a motion comes next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stage {
+    /// The first stage of the first step.
+    First,
+    /// Its second stage.
+    Second,
+    /// Any step after the first one, or after a failed one.
+    Later,
+}
 
 /// What a step starts from.
 pub(crate) struct Start {
@@ -26,7 +54,7 @@ pub(crate) struct Start {
 
 impl Start {
     /// A step of `step` seconds from `now`, with the state before it where there is one.
-    pub fn new(now: &State, before: Option<&State>, step: f64) -> Self {
+    pub fn new(now: &State, before: Option<&State>, step: f64, stage: Stage) -> Self {
         let Some(before) = before else {
             return Self {
                 rate: 1.0 / step,
@@ -35,18 +63,28 @@ impl Start {
                 velocities: now.velocities.clone(),
             };
         };
-        let ratio = step / (now.time - before.time);
-        let first = (1.0 + ratio).powi(2) / (1.0 + 2.0 * ratio);
-        let second = -ratio * ratio / (1.0 + 2.0 * ratio);
+        let last = now.time - before.time;
+        let (rate, weights) = if stage == Stage::Second {
+            let part = last / (last + step);
+            let weight = 0.5 / (1.0 - part);
+            let rate = 1.0 / ((1.0 - weight) * (last + step));
+            (rate, [weight / part, 1.0 - weight / part])
+        } else {
+            let ratio = step / last;
+            let rate = (1.0 + 2.0 * ratio) / ((1.0 + ratio) * step);
+            let first = (1.0 + ratio).powi(2) / (1.0 + 2.0 * ratio);
+            let second = -ratio * ratio / (1.0 + 2.0 * ratio);
+            (rate, [first, second])
+        };
         let mix = |a: &[Vec3], b: &[Vec3]| {
             let pairs = a.iter().zip(b);
             pairs
-                .map(|(a, b)| add(scale(first, *a), scale(second, *b)))
+                .map(|(a, b)| add(scale(weights[0], *a), scale(weights[1], *b)))
                 .collect()
         };
         Self {
-            rate: (1.0 + 2.0 * ratio) / ((1.0 + ratio) * step),
-            weights: [first, second],
+            rate,
+            weights,
             positions: mix(&now.positions, &before.positions),
             velocities: mix(&now.velocities, &before.velocities),
         }

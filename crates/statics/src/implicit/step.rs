@@ -4,7 +4,7 @@ use voxsoft_solid::vector::{Vec3, scale, sub};
 use voxsoft_solid::{Ask, Breakdown, Damping, Load, State};
 
 use super::objective::{Goal, Value};
-use super::scheme::Start;
+use super::scheme::{FIRST_PART, SECOND_OVER_FIRST, Stage, Start};
 use super::{ANCHOR_SPEED, Failure, Implicit, MAX_BACK_OFFS, PATIENCE};
 
 impl Implicit {
@@ -28,6 +28,7 @@ impl Implicit {
                     self.good = 0;
                     self.step /= 2.0;
                     self.before = None;
+                    self.stage = Stage::Later;
                     if self.step < least {
                         return Err(Failure::Lost);
                     }
@@ -36,13 +37,27 @@ impl Implicit {
         }
     }
 
-    /// By the second-order formula, but for what touches.
+    /// By the second-order formula, but for what touches; the first step in its two stages.
     fn try_step(&mut self, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
+        if self.stage == Stage::First {
+            self.take_stage(FIRST_PART * self.step, go_on)?;
+            self.stage = Stage::Second;
+        }
+        let step = match (self.stage, &self.before) {
+            (Stage::Second, Some(before)) => SECOND_OVER_FIRST * (self.state.time - before.time),
+            _ => self.step,
+        };
+        self.take_stage(step, go_on)?;
+        self.stage = Stage::Later;
+        Ok(())
+    }
+
+    fn take_stage(&mut self, step: f64, go_on: &mut dyn FnMut(Ask) -> bool) -> Result<(), Failure> {
         let second_order = self.before.is_some() && !self.touching;
-        let mut found = self.find(second_order, go_on);
+        let mut found = self.find(step, second_order, go_on);
         if second_order && matches!(&found, Ok((next, _)) if self.touches(&next.positions)) {
             self.go_back();
-            found = self.find(false, go_on);
+            found = self.find(step, false, go_on);
         }
         let (next, value) = found.inspect_err(|_| self.go_back())?;
         self.accept(next, value)
@@ -51,12 +66,12 @@ impl Implicit {
     /// The end of a step that starts from the state, by the second-order formula or by backward Euler.
     fn find(
         &mut self,
+        step: f64,
         second_order: bool,
         go_on: &mut dyn FnMut(Ask) -> bool,
     ) -> Result<(State, Value), Failure> {
-        let step = self.step;
         let before = self.before.as_ref().filter(|_| second_order);
-        let start = Start::new(&self.state, before, step);
+        let start = Start::new(&self.state, before, step, self.stage);
         let braked = start.rate + self.damping_rate;
         let inertia = start.rate * braked;
         let free: Vec<Vec3> = start
@@ -130,7 +145,11 @@ impl Implicit {
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &value);
         }
-        self.before = Some(std::mem::replace(&mut self.state, next));
+        let left = std::mem::replace(&mut self.state, next);
+        // The first stage is of first order, and no state that a later step may look back to.
+        if self.stage != Stage::Second {
+            self.before = Some(left);
+        }
         self.value = value;
         Ok(())
     }

@@ -62,31 +62,33 @@ impl Run<'_> {
         now
     }
 
-    /// Whether a state has more energy than the last one had and was given.
+    /// Whether a state has more energy than the last one had and was given. A second stage gives back what the first one has
+    /// lost, so that both count as one step.
     pub(super) fn gains_energy(&self, next: &State, found: &Now) -> bool {
+        let (from, then) = match (&self.begun, &self.before) {
+            (Some(begun), Some(before)) => (before, begun),
+            _ => (&self.state, &self.now),
+        };
         let held = self.problem.held();
         let mut work = 0.0;
-        for (vertex, (x, old)) in next.positions.iter().zip(&self.state.positions).enumerate() {
+        for (vertex, (x, old)) in next.positions.iter().zip(&from.positions).enumerate() {
             let way = sub(*x, *old);
-            let mean = add(found.external[vertex], self.now.external[vertex]);
+            let mean = add(found.external[vertex], then.external[vertex]);
             work += dot(mean, way) / 2.0;
             for axis in (0..3).filter(|axis| held[vertex][*axis]) {
                 // What is met within a step pushes back for all of it.
-                let mean = (found.reactions[vertex][axis] + self.now.reactions[vertex][axis]) / 2.0;
+                let mean = (found.reactions[vertex][axis] + then.reactions[vertex][axis]) / 2.0;
                 let last = found.reactions[vertex][axis];
                 work += f64::max(mean * way[axis], last * way[axis]);
             }
             let brake = self.damping_rate * self.problem.body().masses()[vertex];
             work -= brake * dot(next.velocities[vertex], way);
         }
-        work += self.work_of_growth(next.time);
-        let (kinetic, stored) = (
-            found.kinetic - self.now.kinetic,
-            found.elastic - self.now.elastic,
-        );
+        work += self.work_of_growth(from, next.time);
+        let (kinetic, stored) = (found.kinetic - then.kinetic, found.elastic - then.elastic);
         let turned_over = kinetic.abs() + stored.abs() + work.abs();
-        let moving = found.kinetic + self.now.kinetic;
-        let stored_in_all = found.elastic.abs() + self.now.elastic.abs();
+        let moving = found.kinetic + then.kinetic;
+        let stored_in_all = found.elastic.abs() + then.elastic.abs();
         let negligible = NEGLIGIBLE_STRAIN.powi(2) * self.problem.body().unit_strain_energy();
         let allowed = GAIN * turned_over + GAIN_OF_MOTION * moving + ROUNDING * stored_in_all;
         kinetic + stored - work > allowed + negligible
@@ -98,17 +100,17 @@ impl Run<'_> {
         self.moving.body().begin(time);
     }
 
-    /// What materials that grow from now to a time in s have done, in J: what the body stores more where it is.
-    fn work_of_growth(&self, time: f64) -> f64 {
+    /// What materials that grow from a state on to a time in s have done, in J: what the body stores more where it is.
+    fn work_of_growth(&self, from: &State, time: f64) -> f64 {
         let body = self.problem.body();
-        if body.growth_end() <= self.state.time {
+        if body.growth_end() <= from.time {
             return 0.0;
         }
         let stored = |time: f64| {
             body.begin(time);
-            body.brick_term().energy(&self.state.positions)
+            body.brick_term().energy(&from.positions)
         };
-        let before = stored(self.state.time);
+        let before = stored(from.time);
         stored(time) - before
     }
 

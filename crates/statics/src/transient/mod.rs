@@ -33,6 +33,7 @@ use voxsoft_solid::{
 
 use self::energy::Now;
 use crate::equilibrium::{Equilibrium, Failure};
+use crate::implicit::scheme::{FIRST_PART, SECOND_OVER_FIRST, Stage};
 use crate::inertia::Inertia;
 use crate::settings::LinearSolver;
 use crate::system::{FactorError, Means};
@@ -134,6 +135,8 @@ impl Transient {
             inertia: &inertia,
             now: Now::default(),
             before: None,
+            stage: Stage::First,
+            begun: None,
             damping_rate: match self.damping {
                 Damping::Rate(rate) => rate,
                 Damping::Critical => 0.0,
@@ -171,6 +174,9 @@ struct Run<'a> {
     now: Now,
     /// The state one step ago.
     before: Option<State>,
+    stage: Stage,
+    /// Forces and energies where the step began of which the state is the first stage.
+    begun: Option<Now>,
     damping_rate: f64,
     step: f64,
     /// Good steps since the last halving.
@@ -251,7 +257,7 @@ impl Run<'_> {
         let least = self.settings.step * 0.5f64.powi(MAX_BACK_OFFS as i32);
         loop {
             self.steps += 1;
-            let step = self.next_step(recorded);
+            let (whole, step) = self.next_step(recorded);
             let failure = match self.try_step(step, observer) {
                 Ok(()) => {
                     self.good += 1;
@@ -270,7 +276,11 @@ impl Run<'_> {
                 failure,
                 Stop::Failed(Failure::Memory(_) | Failure::Cancelled)
             );
-            self.step = step / 2.0;
+            self.step = whole / 2.0;
+            if self.stage == Stage::Second {
+                self.stage = Stage::Later;
+                self.begun = None;
+            }
             if hopeless || self.step < least {
                 return Err(failure);
             }
@@ -279,19 +289,25 @@ impl Run<'_> {
         }
     }
 
-    /// As long as asked, but not beyond the end or the next record.
-    fn next_step(&self, recorded: i64) -> f64 {
+    /// As long as asked, but not beyond the end or the next record; and the stage of it that comes next.
+    fn next_step(&self, recorded: i64) -> (f64, f64) {
+        if let (Stage::Second, Some(before)) = (self.stage, &self.before) {
+            let second = SECOND_OVER_FIRST * (self.state.time - before.time);
+            return (second, second);
+        }
         let end = self.settings.end_time.unwrap_or(f64::INFINITY);
         let each = self.settings.record_interval;
         let record = each.map_or(f64::INFINITY, |each| (recorded + 1) as f64 * each);
         let left = end.min(record) - self.state.time;
         // Two steps of equal length rather than one with a rest.
         let parts = (left / self.step - SAME_TIME).ceil().max(1.0);
-        if left.is_finite() {
+        let whole = if left.is_finite() {
             left / parts
         } else {
             self.step
-        }
+        };
+        let begins = self.stage == Stage::First;
+        (whole, if begins { FIRST_PART * whole } else { whole })
     }
 
     /// A step by the second-order formula, or again by backward Euler if that one gains energy.
@@ -319,13 +335,26 @@ impl Run<'_> {
         let factor_of = |load: &Load| load.history.at(next.time);
         self.problem.accept_loads(&next.positions, &factor_of);
         if let Some(fluid) = self.problem.fluid() {
-            fluid.take_step(&next.positions);
+            if self.stage == Stage::Second {
+                fluid.take_stage(&next.positions);
+            } else {
+                fluid.take_step(&next.positions);
+            }
         }
         if self.settings.damping == Damping::Critical {
             self.damping_rate = 2.0 * self.frequency(&next, &found);
         }
-        self.before = Some(std::mem::replace(&mut self.state, next));
-        self.now = found;
+        let left = std::mem::replace(&mut self.state, next);
+        // The first stage is of first order, and no state that a later step may look back to.
+        if self.stage != Stage::Second {
+            self.before = Some(left);
+        }
+        let then = std::mem::replace(&mut self.now, found);
+        self.begun = (self.stage == Stage::First).then_some(then);
+        self.stage = match self.stage {
+            Stage::First => Stage::Second,
+            Stage::Second | Stage::Later => Stage::Later,
+        };
         Ok(())
     }
 }

@@ -25,7 +25,7 @@ impl Run<'_> {
         before: Option<&State>,
         observer: &mut Observer<'_>,
     ) -> Result<(State, Now), Stop> {
-        let start = Start::new(&self.state, before, step);
+        let start = Start::new(&self.state, before, step, self.stage);
         let braked = start.rate + self.damping_rate;
         let coast = |(x, v): (&Vec3, &Vec3)| add(*x, scale(1.0 / braked, *v));
         let free = start.positions.iter().zip(&start.velocities).map(coast);
