@@ -51,7 +51,9 @@ def test_a_family_is_rubber_and_opens_without_a_warning(name):
     design = families.family(name)
     assert all(isinstance(design.material_of(part), Hyperelastic) for part in design.parts)
     # Round ones on whole voxels have another volume, and say so.
-    doubts = [f for f in check(design).findings if "in voxels" not in f.what and "sealed" not in f.what]
+    doubts = [
+        f for f in check(design).findings if "in voxels" not in f.what and "sealed" not in f.what
+    ]
     assert doubts == []
 
 
