@@ -193,7 +193,7 @@ def own_parts(**entries):
             "has parts of its own",
         ),
         ({"clamps": [{"region": {"body": "hihg"}}]}, "clamps[0].region.body", '"high"'),
-        ({"probes": {"a": {"body": "x", "point": (0, 0, 0)}}}, "probes.a.body", "no body"),
+        ({"probes": {"a": {"body": "x", "point": (0, 0, 0)}}}, "probes.a.body", "is no name"),
         ({"objects": [{"name": "low", "shape": "block"}]}, "objects[0].name", "is taken"),
         ({"contact": {"pairs": [{"of": ["low", "body"]}]}}, "contact.pairs[0].of", '"body"'),
         (
@@ -201,7 +201,7 @@ def own_parts(**entries):
             "layers[0].region.body",
             "bonded to one body",
         ),
-        ({"bodies": []}, "parts[0].body", "no body"),
+        ({"bodies": []}, "parts[0].body", "is no name"),
         ({"bodies": [], "parts": []}, "parts", "at least 1"),
     ],
 )  # fmt: skip
