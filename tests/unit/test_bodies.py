@@ -193,7 +193,7 @@ def own_parts(**entries):
             "has parts of its own",
         ),
         ({"clamps": [{"region": {"body": "hihg"}}]}, "clamps[0].region.body", '"high"'),
-        ({"probes": {"a": {"body": "x", "point": (0, 0, 0)}}}, "probes.a.body", "is no name"),
+        ({"probes": {"a": {"body": "x", "point": (0, 0, 0)}}}, "probes.a.body", "no body"),
         ({"objects": [{"name": "low", "shape": "block"}]}, "objects[0].name", "is taken"),
         ({"contact": {"pairs": [{"of": ["low", "body"]}]}}, "contact.pairs[0].of", '"body"'),
         (
