@@ -119,7 +119,8 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
             hint = "close it in the program that it came from: what is inside it is a guess"
             raise DesignError(f"{where}.shape", what, hint)
     size = each.voxel_size or design.voxel_size
-    voxels = voxelize(shape, size, names=design.shapes)
+    # The surface is traced between the cells: where the grid lies does not move it.
+    voxels = voxelize(shape, size, names=design.shapes, phase=(0.0, 0.0, 0.0))
     built = shape.build(design.shapes)
     traced = trace([built], voxels)
     if traced is None:
