@@ -78,10 +78,8 @@ def _show(report: CheckReport) -> None:
 
 def _show_body(report: CheckReport) -> None:
     voxels = f"{report.voxels:,} voxels, " if report.voxels else ""
-    say(
-        f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra, "
-        f"mass {quantity(report.mass, 'mass')}"
-    )
+    mass = "" if report.mass is None else f", mass {quantity(report.mass, 'mass')}"
+    say(f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra{mass}")
     for index, cavity in enumerate(report.cavities):
         volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")
         name = report.chambers[index] if index < len(report.chambers) else ""

@@ -29,6 +29,7 @@ def new(
     if template not in families.FAMILIES:
         known = ", ".join(families.FAMILIES)
         raise typer.BadParameter(f"{template!r} is not one of {known}", param_hint="--template")
+    name = name.removesuffix(".toml")
     path = folder / f"{name}.toml"
     if path.name != f"{name}.toml":
         raise typer.BadParameter("holds a folder; name that with --folder", param_hint="NAME")

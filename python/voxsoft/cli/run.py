@@ -110,11 +110,14 @@ def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
                 row.append("0")
             else:
                 row.append(quantity(value, kind) if bar is None else str(bar))
-    for row, result in zip(rows, path.results, strict=True):
-        row.append("" if result.status == "ok" else f"[red]{result.status}[/red]")
+    columns = [path.over.key, *names]
+    if any(result.status != "ok" for result in path.results):
+        columns.append("status")
+        for row, result in zip(rows, path.results, strict=True):
+            row.append(result.status)
     color = "green" if path.status == "ok" else "red"
     say(f"[{color}]{path.status}[/{color}]: {plain(path.message)}")
-    show_table(f"Along {path.over.key}", [path.over.key, *names, ""], rows)
+    show_table(f"Along {path.over.key}", columns, rows)
     say("The last equilibrium:")
 
 

@@ -172,7 +172,10 @@ def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDe
     for path, table in (*places_in(document), *parts):
         name = entry_of(table, "body")
         if isinstance(name, str) and name not in known:
-            yield _unknown((*path, "body"), "body", name, known)
+            hint = closest(name, known) or "leave it out: without [[bodies]] there is one body"
+            yield ErrorDetail(
+                place((*path, "body")), f'there is no body of the name "{name}"', hint
+            )
 
 
 def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:

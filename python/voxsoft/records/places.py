@@ -66,6 +66,8 @@ def _unquoted(text: str) -> str:
 def closest(name: str, known: Iterable[str]) -> str:
     """Suggest the known name closest to a wrong one, or list what there is.
 
+    A name that was refused is not suggested, whoever else knows it.
+
     Examples
     --------
     >>> closest("materal", ["shape", "material"])
@@ -73,7 +75,7 @@ def closest(name: str, known: Iterable[str]) -> str:
     >>> closest("color", ["shape", "material"])
     'known are material, shape'
     """
-    names = sorted(known)
+    names = sorted({*known} - {name})
     matches = difflib.get_close_matches(name, names, n=1)
     if matches:
         return f'did you mean "{matches[0]}"?'

@@ -63,7 +63,8 @@ class CheckReport(Shown):
     chambers
         What the design calls each cavity; an empty text where it has no name.
     mass
-        In kg.
+        In kg; None for a design that cannot be solved, whose materials are not all known. Voxels
+        without a design are taken for silicone.
     thinnest_wall
         In voxels; None for an empty body.
     cost
@@ -88,7 +89,7 @@ class CheckReport(Shown):
     cavities: tuple[Cavity, ...] = field(default=(), repr=False)
     leaks: tuple[Leak, ...] = field(default=(), repr=False)
     chambers: tuple[str, ...] = ()
-    mass: float = 0.0
+    mass: float | None = None
     thinnest_wall: int | None = None
     cost: Cost | None = None
     memory: float = 0.0
@@ -114,7 +115,10 @@ class CheckReport(Shown):
             if n
         ]
         yield ", ".join(["valid" if self.valid else "not valid", *reported])
-        yield f"{counted(self.voxels, 'voxel')}, mass {format_quantity(rounded(self.mass), 'mass')}"
+        weight = (
+            "" if self.mass is None else f", mass {format_quantity(rounded(self.mass), 'mass')}"
+        )
+        yield f"{counted(self.voxels, 'voxel')}{weight}"
         yield from (f"body {name}: {counted(n, 'voxel')}" for name, n in self.bodies.items())
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"
@@ -215,7 +219,7 @@ def examine(
         for of in mesh.each_body
         if of.name in voxels
     ]
-    is_held, elements = False, len(mesh.tets) // 5
+    is_held, is_weighed, elements = False, not isinstance(body, Design), len(mesh.tets) // 5
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
@@ -223,7 +227,7 @@ def examine(
             setup.check()
             elements = setup.elements
             is_held = setup.loose_piece is None
-            mass = setup.problem.mass
+            mass, is_weighed = setup.problem.mass, True
             findings += weak_anchors(setup)
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
@@ -258,7 +262,7 @@ def examine(
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
         leaks=tuple(leak for one in each for leak in one.leaks),
         chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
-        mass=mass,
+        mass=mass if is_weighed else None,
         thinnest_wall=thinnest,
         cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
