@@ -68,7 +68,7 @@ def test_a_field_of_another_kind_is_answered_by_fields_of_this_one(place, kind, 
     assert {name.strip('"') for name in meant.split(", ")} <= own
 
 
-def test_a_body_by_name_without_bodies_is_told_that_there_is_one():
+def test_a_body_by_name_without_bodies_learns_that_there_is_one():
     document = families.beam().document
     document["probes"]["tip"] = {"x": [0, "100 mm"], "body": "body"}
     (problem,) = problems_of(document)
