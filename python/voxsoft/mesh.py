@@ -1,5 +1,7 @@
 """Tetrahedral meshes: what the solvers work on.
 
+Long because one immutable value has its attributes, the ways to make it and its quality together.
+
 Enter here with a mesh of your own by :meth:`Mesh.from_tets`; a grid gives one by
 :meth:`voxsoft.voxels.Voxels.mesh`.
 """
@@ -19,6 +21,7 @@ from voxsoft._arrays import frozen
 from voxsoft._memory import memory_limit, shortage
 from voxsoft.cavity import MeshCavity
 from voxsoft.errors import MeshError
+from voxsoft.formats.report import ReadReport
 from voxsoft.geometry import grid_phase, tet_volumes
 
 
@@ -152,6 +155,9 @@ class Mesh:
     bodies : tuple of BodyMesh
         What it is joined from, in the order of vertices and tets; empty for a mesh of one body.
         Joined, `voxel_size` is that of the smallest voxels, and `moments` are along their edges.
+    report : ReadReport or None
+        The file that it was read from beside all that was taken; None if not read. Meshes with
+        other reports may be equal.
     regions : mapping of str to ndarray of int, shape (r,)
         Vertices of each region that the file of the mesh names.
     """
@@ -167,6 +173,7 @@ class Mesh:
     fractions: NDArray[np.float64] | None = None
     moments: NDArray[np.float64] | None = None
     bodies: tuple[BodyMesh, ...] = ()
+    report: ReadReport | None = None
     regions: Mapping[str, NDArray[np.integer]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -198,7 +205,7 @@ class Mesh:
         ------
         MeshError
             Naming the first tet, vertex or face that is wrong: an index out of range, a position
-            that is not finite, a tet without volume, tets that overlap.
+            that is not finite, a tet without volume, tets that overlap, a vertex of no tet.
 
         Examples
         --------
@@ -213,7 +220,12 @@ class Mesh:
         points = _matrix("vertices", vertices, 3, np.float64)
         corners = _matrix("tets", tets, 4, np.int32)
         parts = np.ones(len(corners), np.uint8) if tet_part is None else _parts(tet_part)
-        return cls._from_core(_core.mesh_tets(points, corners, parts), None)
+        arrays = _core.mesh_tets(points, corners, parts)
+        if len(lone := np.setdiff1d(np.arange(len(points)), corners)):
+            what = f"{len(lone):,} belong to no tet, the first is {lone[0]}: nothing holds them"
+            hint = "keep only those of np.unique(tets, return_inverse=True)"
+            raise MeshError("vertices", what, hint)
+        return cls._from_core(arrays, None)
 
     @classmethod
     def from_voxel_grid(cls, grid: _core.Grid) -> Self:

@@ -1236,6 +1236,7 @@ export interface EquilibriumEvent {
   largest_strain: number;
   warnings: Finding[];
   tendons: Summarized[];
+  reactions: Summarized[];
   supplies: Summarized[];
   grips: Grip[];
   error_bars: string;

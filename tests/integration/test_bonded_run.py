@@ -74,9 +74,9 @@ def test_what_cannot_be_written_after_the_numbers_costs_no_numbers(tmp_path):
     summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
     assert summary["status"] == "ok"
     assert "top" in summary["probes"]
-    told = json.loads(done.stdout)
-    assert told["status"] == "ok"
-    assert told["problems"][0]["where"].endswith("result.vtu")
+    printed = json.loads(done.stdout)
+    assert printed["status"] == "ok"
+    assert printed["problems"][0]["where"].endswith("result.vtu")
     assert (out / "thumbnail.png").exists()
 
 

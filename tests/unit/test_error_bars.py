@@ -8,8 +8,10 @@ import pytest
 
 import voxsoft as vs
 from voxsoft.comparison import ErrorBar, discretization_error
+from voxsoft.comparison.error_bar import share_of
 from voxsoft.design import Body, families
 from voxsoft.jobs import RunSpec, run_job
+from voxsoft.metrics import METRICS
 from voxsoft.simulation.choice import settings_at_rest
 from voxsoft.units import kPa, mm
 
@@ -246,3 +248,35 @@ def test_an_accuracy_of_a_peak_is_refused_in_words():
     bars = vs.error_bars(vs.simulate(beam.replace(objectives=peak)))
     assert "stress is the largest of all voxels" in bars.sentence
     assert "percentile" in bars.hint
+
+
+def test_an_estimate_that_cannot_be_is_not_known():
+    volume = METRICS["cavity_volume"].bounds
+    bar = ErrorBar.within(1.2e-6, -2e-6, 3e-6, "volume", volume)
+    assert str(bar) == "not known: smaller voxels point to -2 mL, beyond what it can be"
+    assert bar.summary() == {
+        "value": 1.2e-6,
+        "estimate": None,
+        "error": None,
+        "reason": "smaller voxels point to -2 mL, beyond what it can be",
+    }
+    assert share_of([bar]) is None
+    assert ErrorBar.within(1.2e-6, 1.5e-6, 3e-6, "volume", volume).summary()["estimate"] == 1.5e-6
+    pressure = METRICS["chamber_pressure"].bounds
+    assert ErrorBar.within(-9e4, -1.2e5, 3e4, "pressure", pressure).unknown
+    assert not ErrorBar.within(-9e4, -1.0e5, 3e4, "pressure", pressure).unknown
+
+
+def test_a_chamber_that_shrinks_with_its_voxels_to_less_than_nothing_is_not_known():
+    # One voxel of 2 mm, and one of 1 mm: extrapolated that is -6 mm³.
+    block = vs.Box(size=(10 * mm,) * 3, corner=(0, 0, 0))
+    room = vs.Box(size=(1.2 * mm,) * 3, corner=(4.9 * mm,) * 3)
+    part = vs.Part(shape=block - room, material=RUBBER)
+    design = beam(error="finer").replace(
+        voxel_size=2 * mm, parts=[part], loads=[vs.Pressure(value=1 * kPa)], probes={}
+    )
+    bars = vs.error_bars(vs.simulate(design))
+    (volume,) = bars.volumes
+    assert volume.unknown.startswith("smaller voxels point to -")
+    assert bars.summary()["cavities"][0]["estimate"] is None
+    assert bars.metrics["cavity_volume"].unknown

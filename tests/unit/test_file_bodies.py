@@ -1,6 +1,7 @@
 """Designs whose body is the mesh of a file: its parts, regions and cavities."""
 
 import json
+import pickle
 import shutil
 
 import numpy as np
@@ -12,7 +13,7 @@ from voxsoft.cli.app import app
 from voxsoft.design import Body, FileMesh, families
 from voxsoft.design.discretize import mesh_of, voxels_of
 from voxsoft.errors import DesignError
-from voxsoft.files import load, read_mesh, write_mesh
+from voxsoft.files import load, read_mesh, save, write_mesh
 from voxsoft.simulation.setup import Setup
 from voxsoft.studio.body import StudioBody
 from voxsoft.studio.smooth import pack_smooth
@@ -284,3 +285,15 @@ def test_a_part_or_region_that_the_file_has_not_is_refused(folder, change, probl
     shape = {"kind": "mesh", "path": str(folder / "bar.msh"), "unit": "mm", **change}
     with pytest.raises(vs.VoxSoftError, match=problem):
         mesh_of(of_voxels(folder, shapes={**of_voxels(folder).shapes, "soft": shape}))
+
+
+@pytest.mark.parametrize("unit", ["mm", "m", "inch"])
+def test_a_body_of_a_file_is_saved_and_loaded_as_it_is(design, folder, unit):
+    given = design.replace(mesh={"path": design.mesh.path, "unit": unit})
+    save(given, folder / "again.toml")
+    again = load(folder / "again.toml")
+    assert again == given
+    assert (again.hash, again.document) == (given.hash, given.document)
+    assert again.clamps[0].region.name == "FIX"
+    assert pickle.loads(pickle.dumps(given)) == given
+    assert given.replace() == given

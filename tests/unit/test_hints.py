@@ -1,108 +1,94 @@
-"""Suggestions of errors: each works, and none repeats the word that was refused."""
+"""Hints of errors, that they can work."""
 
-from typing import get_args
+from dataclasses import replace
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
-from voxsoft.design import AnyLoad, families
-from voxsoft.materials.model import AnyMaterial
+from voxsoft.cli.output import console
+from voxsoft.cli.run import _show_path
+from voxsoft.design import families
+from voxsoft.errors import DesignError, ShapeError
 from voxsoft.records import closest
-from voxsoft.simulation.simulator import Simulator
+from voxsoft.shapes import TriangleMesh
 
 
-def problems_of(document):
-    with pytest.raises(vs.VoxSoftError) as caught:
-        vs.Design.from_document(document)
-    return caught.value.problems
+@pytest.mark.parametrize("known", [["shear"], ["shear", "sheer"], ["young"], []])
+def test_a_suggestion_is_never_the_word_itself(known):
+    assert '"shear"' not in closest("shear", known)
 
 
-WORDS = st.text("abce", min_size=1, max_size=4)
+@pytest.mark.parametrize("model", ["neo-hookean", "yeoh", "lattice"])
+def test_a_key_of_another_material_is_not_suggested(model):
+    material = {"model": model, "mu": "20 kPa", "shear": "20 kPa"}
+    with pytest.raises(DesignError) as caught:
+        families.beam().replace(parts=[{"shape": "body", "material": material}])
+    hints = {each.where: each.hint for each in caught.value.problems}
+    assert hints["parts[0].material.shear"]
+    for name in ("edge_compliance", "mu", "alpha"):
+        assert f'"{name}"' not in hints["parts[0].material.shear"]
 
 
-@given(WORDS, st.lists(WORDS))
-def test_a_wrong_name_is_never_suggested(name, known):
-    assert f'"{name}"' not in closest(name, known)
-    assert name not in closest(name, known).removeprefix("known are ").split(", ")
+def test_a_body_that_has_no_name_is_not_to_be_named():
+    with pytest.raises(DesignError, match=r"there is one body.*leave body out"):
+        families.beam().replace(probes={"x": {"body": "body", "x": (0, 0)}}, objectives={})
 
 
-def fields_by(tag, union):
-    """The fields of each record of a union, by its word for the tag."""
-    records = get_args(get_args(union)[0])
-    return {
-        record.model_fields[tag].default: {
-            info.alias or name for name, info in record.model_fields.items()
-        }
-        for record in records
-    }
+def test_a_format_that_nothing_converts_is_not_sent_to_a_converter(tmp_path):
+    (tmp_path / "a.unv").write_text("")
+    with pytest.raises(ShapeError) as caught:
+        TriangleMesh(path=tmp_path / "a.unv", unit="mm").build()
+    assert "meshio" not in str(caught.value)
+    assert "STL" in str(caught.value)
 
 
-LOADS = fields_by("kind", AnyLoad)
-MATERIALS = fields_by("model", AnyMaterial)
-
-
-def cases():
-    for place, kinds in (("loads", LOADS), ("material", MATERIALS)):
-        for kind, own in kinds.items():
-            yield from (
-                (place, kind, own, field) for field in sorted(set().union(*kinds.values()) - own)
-            )
-
-
-@pytest.mark.parametrize(("place", "kind", "own", "field"), [*cases()])
-def test_a_field_of_another_kind_is_answered_by_fields_of_this_one(place, kind, own, field):
-    document = families.beam().document
-    if place == "loads":
-        document["loads"] = [{"kind": kind, field: 1}]
-        where = f"loads[0].{field}"
-    else:
-        document["parts"][0]["material"] = {"model": kind, field: 1}
-        where = f"parts[0].material.{field}"
-    (hint,) = (each.hint for each in problems_of(document) if each.where == where)
-    meant = hint.removeprefix("did you mean ").removeprefix("known are ").removesuffix("?")
-    assert meant
-    assert {name.strip('"') for name in meant.split(", ")} <= own
-
-
-def test_a_body_by_name_without_bodies_learns_that_there_is_one():
-    document = families.beam().document
-    document["probes"]["tip"] = {"x": [0, "100 mm"], "body": "body"}
-    (problem,) = problems_of(document)
-    assert problem.where == "probes.tip.body"
-    assert problem.hint == "leave it out: without [[bodies]] there is one body"
-    del document["probes"]["tip"]["body"]
-    assert vs.Design.from_document(document)
-
-
-def test_new_takes_a_name_with_its_suffix(tmp_path):
+def test_a_new_design_may_be_called_as_its_file(tmp_path):
     outcome = CliRunner().invoke(app, ["new", "q.toml", "--folder", str(tmp_path)])
     assert outcome.exit_code == 0
-    assert [each.name for each in tmp_path.iterdir()] == ["q.toml"]
+    assert [file.name for file in tmp_path.iterdir()] == ["q.toml"]
+    assert vs.load(tmp_path / "q.toml").name == "q"
 
 
-def test_an_invalid_design_has_no_mass(tmp_path):
-    file = tmp_path / "loose.toml"
-    families.beam().replace(clamps=[], loads=[vs.Gravity()]).save(file)
-    report = vs.check(vs.files.load(file))
+def test_a_design_that_is_not_valid_has_no_mass():
+    report = vs.check(families.beam().replace(clamps=[]))
     assert not report.valid
     assert report.mass is None
+    assert report.summary()["mass"] is None
     assert "mass" not in str(report)
-    shown = CliRunner().invoke(app, ["check", str(file)]).output
-    assert "vertices" in shown
-    assert "mass" not in shown
-    assert vs.check(families.beam()).mass > 0
+    assert vs.check(families.beam()).mass == pytest.approx(0.0107)
+
+
+def test_the_check_of_an_invalid_design_prints_no_mass(tmp_path):
+    families.beam().replace(clamps=[]).save(tmp_path / "a.toml")
+    outcome = CliRunner().invoke(app, ["check", str(tmp_path / "a.toml")])
+    assert "80 voxels" in outcome.output
+    assert "mass" not in outcome.output
+
+
+@pytest.mark.parametrize("status", ["ok", "not-at-rest"])
+def test_a_path_shows_statuses_as_words_and_no_empty_column(status, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "200")
+    console.cache_clear()
+    path = vs.follow(families.beam(), "loads[0].value=0..1 m/s^2/2")
+    last = replace(path.results[-1], status=status)
+    _show_path(replace(path, results=(*path.results[:-1], last)), ())
+    console.cache_clear()
+    printed = capsys.readouterr().err
+    header = next(line for line in printed.splitlines() if line.startswith("┃"))
+    assert all(column.strip() for column in header.strip().strip("┃").split("┃"))
+    assert "[red]" not in printed.partition("The last")[0]
+    assert ("status" in header, "not-at-rest" in printed) == (status != "ok",) * 2
 
 
 def test_a_tendon_is_no_load_of_a_simulator():
-    beam = families.beam().replace(
-        loads=[],
-        tendons=[{"name": "flexor", "through": [[0, 0.005, 0.005], [0.1, 0.005, 0.005]],
-                  "tension": "0.1 N"}],
-    )  # fmt: skip
+    line = {"through": [[0, 0.005, 0.005], [0.1, 0.005, 0.005]], "tension": "0.1 N"}
+    beam = families.beam().replace(loads=[], tendons=[{"name": "flexor", **line}])
+    simulator = vs.Simulator(beam, time_step="20 ms")
     with pytest.raises(vs.VoxSoftError, match=r"flexor.*is a tendon.*history") as caught:
-        Simulator(beam, time_step="20 ms").step({"flexor": "0.3 N"})
+        simulator.step({"flexor": "0.3 N"})
     assert "[[loads]]" not in str(caught.value)
+    with pytest.raises(vs.VoxSoftError, match=r"pull.*is no load.*call step\(\)"):
+        simulator.step({"pull": "0.3 N"})
+    assert simulator.step().time > 0.0

@@ -1,6 +1,5 @@
 """Paths of equilibria: over a load, a motion, a parameter, and the time of histories."""
 
-import dataclasses
 import json
 
 import numpy as np
@@ -9,7 +8,6 @@ from typer.testing import CliRunner
 
 import voxsoft as vs
 from voxsoft.cli.app import app
-from voxsoft.cli.run import _show_path
 from voxsoft.comparison import path_error_bars
 from voxsoft.design.contact import Contact
 from voxsoft.errors import DesignError, SimulationError
@@ -312,14 +310,3 @@ def test_histories_of_supplies_are_refused_along_a_path_of_values():
     )
     with pytest.raises(SimulationError, match=r"supplies\[0\].history"):
         vs.follow(filled, "supplies[0].value=0..0.1 mL/3")
-
-
-@pytest.mark.parametrize("status", ["ok", "not-at-rest"])
-def test_the_table_of_a_path_names_what_failed_without_markup(capfd, status):
-    path = vs.follow(beam(), "loads[1].value[2]", ["-10 mN", "-20 mN"])
-    last = dataclasses.replace(path.results[1], status=status)
-    _show_path(dataclasses.replace(path, results=(path.results[0], last)), ())
-    header, _, *rows = capfd.readouterr().err.split("┏")[1].splitlines()[1:]
-    columns = [cell.strip() for cell in header.strip("┃ ").split("┃")]
-    assert columns[-1] == ("tip.z" if status == "ok" else "status")
-    assert ("│ not-at-rest │" in rows[1]) == (status != "ok")

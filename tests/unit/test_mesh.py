@@ -95,7 +95,7 @@ def test_a_hinge_is_a_nonmanifold_edge():
 
 
 def test_a_mesh_does_not_freeze_the_arrays_it_is_given():
-    vertices = CORNERS.copy()
+    vertices = CORNERS[:4].copy()
     mesh = Mesh.from_tets(vertices, [[0, 1, 2, 3]])
     vertices[0] = 9.0
     assert mesh.vertices[0].tolist() == [0.0, 0.0, 0.0]
@@ -117,6 +117,7 @@ def test_a_mesh_does_not_freeze_the_arrays_it_is_given():
         ((CORNERS, [[0, 1, 2, 3]], [1, 1]), "2 part ids were given for 1"),
         ((CORNERS, [[0, 1, 2, 3]], [0]), "numbered 1 to 255"),
         ((CORNERS, [[0, 1, 2, 3]], [[1]]), "tet_part: has shape"),
+        ((CORNERS, [[0, 1, 2, 3]]), "vertices: 1 belong to no tet, the first is 4"),
     ],
 )
 def test_bad_tets_are_named(arguments, match):

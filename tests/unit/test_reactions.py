@@ -146,3 +146,11 @@ def test_a_mesh_file_has_the_vertices_of_a_clamp_by_its_name(tmp_path):
     held = content.regions["clamp_jaw"]
     assert content.point_data["reaction"][held].sum(axis=0)[0] == pytest.approx(PULL, rel=5e-4)
     assert "clamp_1" in content.regions
+
+
+def test_the_card_of_a_result_in_the_studio_has_the_reactions():
+    from voxsoft.studio.equilibrium import _force_in_words
+
+    # Less than E A e by the second order of the strain.
+    force = vs.simulate(bar()).clamp_reactions["jaw"]
+    assert _force_in_words(force) == "(0.9999 mN, 0, 0)"

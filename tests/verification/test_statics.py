@@ -9,7 +9,7 @@ from voxsoft import _core
 from voxsoft.errors import DisconnectedError
 from voxsoft.materials.homogeneous import EXPONENTS, nominal_stress
 from voxsoft.simulation import Setup, simulate
-from voxsoft.simulation.freedom import moves_freely
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.units import kPa, mm
 
 #: Poisson's ratio of the blocks: K/μ is 5000, and an incompressible closed form is off by about
@@ -301,7 +301,7 @@ def test_a_load_beyond_all_bounds_is_not_called_a_free_part():
     held = [vs.Clamp(region=vs.Region(x=(0, 0)))]
     push = vs.Force(region=vs.Region(x=(2 * SIDE, 2 * SIDE)), value=(-1e6, 0, 0))
     design = box_design((2 * SIDE, SIDE, SIDE), SIDE, RUBBER, held, [push])
-    assert not moves_freely(Setup.of(design))
+    assert not free_motion(Setup.of(design))
     result = simulate(design, method="statics")
     assert result.status == "not-at-rest"
     assert result.message.startswith("no equilibrium")

@@ -49,10 +49,6 @@ pub(crate) const SNAP: f64 = 0.0125;
 /// A step that would leave less than a tenth of itself goes to the end.
 const LAST: f64 = 1.1;
 
-/// The part of the work of the loads that a step may set free before it is looked whether it has crossed a limit: half of it
-/// where the answer is linear, less where the body gets stiffer, all of it where it gives way at once.
-const SET_FREE: f64 = 0.6;
-
 /// How often on a path a step to a state that is not stable is cut before such a state is taken: one that
 /// is left after that lies past a bifurcation, not beside the path.
 pub(crate) const UNSTABLE_CUTS: u32 = 5;
@@ -288,33 +284,6 @@ impl Path<'_, '_> {
             equilibrium.go_on_directly().ok()?;
         }
         control::look_for_limit(self, settings)
-    }
-
-    /// The limit that the step from the last equilibrium to another one has crossed, if there is one: the loads drop there, and the
-    /// body snaps. A step that sets free no more than ordinary ones do is not looked at, nor is a path whose look ahead
-    /// would change what the loads remember.
-    fn crossed_limit(
-        &mut self,
-        trial: &[Vec3],
-        point: Point,
-        along: Along,
-        settings: &Settings,
-    ) -> Option<f64> {
-        let problem = self.equilibrium.problem;
-        let plain = problem.contact().is_none() && problem.fluid().is_none();
-        let known = plain && problem.floor().is_none() && !problem.depends_on_way();
-        if !known || !along.has_factor() || self.equilibrium.system.is_iterative() {
-            return None;
-        }
-        let loads = |at: &[Vec3]| problem.load_potential(at, &point.factor_of());
-        let share = 1.0 - self.point.pressure / point.pressure;
-        let work = share * (loads(&self.positions) - loads(trial));
-        let before = self.equilibrium.potential(&self.positions, point).0;
-        let free = before - self.equilibrium.potential(trial, point).0;
-        if free <= SET_FREE * work {
-            return None;
-        }
-        control::look_for_limit(self, settings).filter(|limit| *limit < point.pressure)
     }
 
     /// Load control. From a given start the full load is tried first.

@@ -1,22 +1,59 @@
-//! Snaps of a load path with contact: where a wall buckles or what is pressed slides off an edge there is no equilibrium
+//! Snaps of a load path. Without contact a step may cross a limit and end on the far side; that is looked at afterwards.
+//!
+//! With contact, where a wall buckles or what is pressed slides off an edge there is no equilibrium
 //! near the last one, however short the step.
 //!
 //! The body moves on to another equilibrium under the same load then. It is found as that of what is loose is
 //! ([`crate::loose`]): every vertex has a damper, so that the motion goes downhill, and the dampers get weaker until they carry
 //! less than the tolerance of the forces. Nothing is left of them in the answer.
 
+use voxsoft_solid::vector::Vec3;
 use voxsoft_solid::{Contact, Status, Term};
 
 use std::sync::Arc;
 
+use crate::along::Along;
+use crate::control;
 use crate::equilibrium::Equilibrium;
 use crate::loose::Loose;
 use crate::path::Path;
+use crate::point::Point;
 use crate::settings::{LinearSolver, Settings};
 use crate::settle::Search;
 use crate::system::{Means, System};
 
+/// The part of the work of the loads that a step may set free before it is looked whether it has crossed a limit: half of it
+/// where the answer is linear, less where the body gets stiffer, all of it where it gives way at once.
+const SET_FREE: f64 = 0.6;
+
 impl Path<'_, '_> {
+    /// The limit that the step from the last equilibrium to another one has crossed, if there is one: the loads drop there, and the
+    /// body snaps. A step that sets free no more than ordinary ones do is not looked at, nor is a path whose look ahead
+    /// would change what the loads remember.
+    pub fn crossed_limit(
+        &mut self,
+        trial: &[Vec3],
+        point: Point,
+        along: Along,
+        settings: &Settings,
+    ) -> Option<f64> {
+        let problem = self.equilibrium.problem;
+        let plain = problem.contact().is_none() && problem.fluid().is_none();
+        let known = plain && problem.floor().is_none() && !problem.depends_on_way();
+        if !known || !along.has_factor() || self.equilibrium.system.is_iterative() {
+            return None;
+        }
+        let loads = |at: &[Vec3]| problem.load_potential(at, &point.factor_of());
+        let share = 1.0 - self.point.pressure / point.pressure;
+        let work = share * (loads(&self.positions) - loads(trial));
+        let before = self.equilibrium.potential(&self.positions, point).0;
+        let free = before - self.equilibrium.potential(trial, point).0;
+        if free <= SET_FREE * work {
+            return None;
+        }
+        control::look_for_limit(self, settings).filter(|limit| *limit < point.pressure)
+    }
+
     /// Moves on to an equilibrium that the `search` finds, to which no short step leads; whether one was found. If not, nothing has
     /// changed.
     pub fn snap(

@@ -1,4 +1,5 @@
-//! Implicit steps: the rest of statics, the closed form's motion, momentum, hands and sudden loads.
+//! Implicit steps: the rest of statics, the closed form of a motion, momentum, falls, hands and sudden loads. Long because each of
+//! these is a closed form with its derivation beside it.
 
 mod common;
 

@@ -71,6 +71,9 @@ def _show(report: CheckReport) -> None:
         where = f" {plain(finding.where)}:" if finding.where else ""
         hint = f" Try: {plain(finding.hint)}" if finding.hint else ""
         say(f"[{color}]{finding.severity}[/{color}]{where} {plain(finding.what)}.{hint}")
+    if report.file is not None:
+        for line in str(report.file).splitlines():
+            say(plain(line))
     if report.tets:
         _show_body(report)
     say("[green]valid[/green]" if report.valid else "[red]not valid[/red]")
@@ -78,8 +81,10 @@ def _show(report: CheckReport) -> None:
 
 def _show_body(report: CheckReport) -> None:
     voxels = f"{report.voxels:,} voxels, " if report.voxels else ""
-    mass = "" if report.mass is None else f", mass {quantity(report.mass, 'mass')}"
-    say(f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra{mass}")
+    say(
+        f"{voxels}{report.vertices:,} vertices, {report.tets:,} tetrahedra"
+        + ("" if report.mass is None else f", mass {quantity(report.mass, 'mass')}")
+    )
     for index, cavity in enumerate(report.cavities):
         volume, area = quantity(cavity.volume, "volume"), quantity(cavity.area, "area")
         name = report.chambers[index] if index < len(report.chambers) else ""

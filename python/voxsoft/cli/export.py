@@ -25,8 +25,9 @@ def export(
         bool, typer.Option("--deformed", help="The shape under load (run folders only).")
     ] = False,
     unit: Annotated[
-        str, typer.Option("--unit", help="Unit of the numbers in .stl and .obj files.")
-    ] = "m",
+        str | None,
+        typer.Option("--unit", help="Unit of the numbers in .stl and .obj files; default: mm."),
+    ] = None,
     html: Annotated[
         Path | None,
         typer.Option("--html", help="Page to write, alive in any browser without VoxSoft."),
@@ -41,7 +42,9 @@ def export(
     with errors_in_words():
         if target is not None:
             files.export(source, target, sets or [], deformed=deformed, unit=unit)
-            say(f"wrote {plain(str(target))}")
+            surface = target.suffix.lower() in (".stl", ".obj")
+            shown = f", in {plain(files.unit_of(target, unit))}" if surface else ""
+            say(f"wrote {plain(str(target))}{shown}")
         if html is not None:
             from voxsoft.studio.html import export_page
 

@@ -19,7 +19,7 @@ def mesh(
     design: DesignFile,
     out: Annotated[
         Path | None,
-        typer.Option("--out", "-o", help="File to write: .vtu .msh .inp .stl .obj (in m)."),
+        typer.Option("--out", "-o", help="File to write: .vtu .msh .inp (in m) .stl .obj (in mm)."),
     ] = None,
     sets: Sets = None,
     json: Json = False,

@@ -90,10 +90,11 @@ class ProgressBar:
             # Steps that an earlier run did must not count for the speed of this one.
             self._first = done - 1
             self._bar.reset(self._task, completed=self._first, note="")
+        began = self._done == 0
         self._done = done
         if self._fancy:
             self._bar.update(self._task, completed=done, note=plain(note))
-        elif time.monotonic() - self._spoken > PLAIN_PERIOD:
+        elif time.monotonic() - self._spoken > PLAIN_PERIOD or (note and began and done):
             self._speak(note)
 
     def _speak(self, note: str) -> None:

@@ -110,14 +110,16 @@ def _show_path(path: LoadPath, bars: Sequence[ErrorBars]) -> None:
                 row.append("0")
             else:
                 row.append(quantity(value, kind) if bar is None else str(bar))
+    statuses = [result.status for result in path.results]
+    doubtful = [status != "ok" for status in statuses]
     columns = [path.over.key, *names]
-    if any(result.status != "ok" for result in path.results):
+    if any(doubtful):
         columns.append("status")
-        for row, result in zip(rows, path.results, strict=True):
-            row.append(result.status)
+        for row, status in zip(rows, statuses, strict=True):
+            row.append(status)
     color = "green" if path.status == "ok" else "red"
     say(f"[{color}]{path.status}[/{color}]: {plain(path.message)}")
-    show_table(f"Along {path.over.key}", columns, rows)
+    show_table(f"Along {path.over.key}", columns, rows, doubtful)
     say("The last equilibrium:")
 
 

@@ -278,13 +278,18 @@ class _Search:
         sizes = [run.size for run in runs]
         own = runs.index(self.own)
 
-        def bar(values: Sequence[float], kind: str, size: float | None = None) -> ErrorBar:
+        def bar(
+            values: Sequence[float],
+            kind: str,
+            size: float | None = None,
+            bounds: tuple[float, float] = (-math.inf, math.inf),
+        ) -> ErrorBar:
             found: Estimate = discretization_error(sizes[-3:], values[-3:], regular=regular)
             error, last = found.error, abs(values[-1])
             if abs(values[-1] - values[-2]) > UNCHANGED * last:
                 least = (UNKNOWN if len(values) == 2 else 0.0) if regular else HIDDEN
                 error = max(error, least * (last if size is None else size))
-            return ErrorBar(values[own], found.limit, error, kind)
+            return ErrorBar.within(values[own], found.limit, error, kind, bounds)
 
         def bars(values: Sequence[NDArray[np.float64]]) -> tuple[ErrorBar, ErrorBar, ErrorBar]:
             # What is left of components that symmetry makes zero is rounding.
@@ -310,11 +315,12 @@ class _Search:
                     [result.metrics[name] for result in results],
                     _kind(name, asked),
                     hidden.get(_metric(name, asked)),
+                    METRICS[_metric(name, asked)].bounds,
                 )
                 for name in names
             },
             tuple(
-                bar(each, "volume", abs(growth))
+                bar(each, "volume", abs(growth), METRICS["cavity_volume"].bounds)
                 for each, growth in zip(zip(*volumes, strict=True), grown, strict=True)
             )
             if same
@@ -370,7 +376,9 @@ def _is_accurate(bars: ErrorBars, design: Design) -> bool:
     for name, target in _asked(design).items():
         accuracy = design.solver.accuracy if target.accuracy is None else target.accuracy
         bar = bars.metrics.get(name)
-        if bar is not None and accuracy is not None and bar.error > accuracy * abs(bar.estimate):
+        if bar is None or accuracy is None:
+            continue
+        if bar.unknown or bar.error > accuracy * abs(bar.estimate):
             return False
     if design.solver.accuracy is None:
         return True
@@ -381,4 +389,5 @@ def _is_accurate(bars: ErrorBars, design: Design) -> bool:
     if not pairs and not _asked(design):
         moved = bars.metrics["max_displacement"]
         pairs = [(abs(moved.estimate), moved.error)]
+    # A comparison with NaN, which stands for what is not known, does not hold.
     return all(error <= design.solver.accuracy * size for size, error in pairs)

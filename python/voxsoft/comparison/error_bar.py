@@ -24,12 +24,38 @@ class ErrorBar:
         How far that may be off, to either side.
     kind
         A key of :data:`voxsoft.units.KINDS`.
+    unknown
+        Why there is no estimate; estimate and error are NaN then. Empty where there is one.
     """
 
     value: float
     estimate: float
     error: float
     kind: str
+    unknown: str = ""
+
+    @classmethod
+    def within(
+        cls, value: float, estimate: float, error: float, kind: str, bounds: tuple[float, float]
+    ) -> ErrorBar:
+        """Return a bar, or none where the estimate is what the number cannot be.
+
+        A value that is beyond already, as by rounding, says nothing against the estimate.
+
+        Examples
+        --------
+        >>> bar = ErrorBar.within(1e-6, -2e-6, 3e-6, "volume", (0.0, math.inf))
+        >>> print(bar)
+        not known: smaller voxels point to -2 mL, beyond what it can be
+        >>> bar.summary()["estimate"] is None
+        True
+        """
+        low, high = bounds
+        if min(low, value) <= estimate <= max(high, value):
+            return cls(value, estimate, error, kind)
+        beyond = format_quantity(float(f"{estimate:.2g}"), kind)
+        why = f"smaller voxels point to {beyond}, beyond what it can be"
+        return cls(value, math.nan, math.nan, kind, why)
 
     def __str__(self) -> str:
         """The estimate with its error, in a unit that suits both.
@@ -39,6 +65,8 @@ class ErrorBar:
         >>> str(ErrorBar(-0.0123, -0.01304, 0.00052, "length"))
         '-13.04 ± 0.52 mm'
         """
+        if self.unknown:
+            return f"not known: {self.unknown}"
         unit, factor = _unit_of([self])
         if self.estimate == self.error == 0.0:
             return "0"
@@ -56,8 +84,10 @@ class ErrorBar:
         shown = [round(each / factor, digits) + 0.0 for each in (self.estimate, self.error)]
         return f"{shown[0]:.{digits}f} ± {shown[1]:.{digits}f}"
 
-    def summary(self) -> dict[str, float]:
-        """Plain data in SI units."""
+    def summary(self) -> dict[str, Any]:
+        """Plain data in SI units; estimate and error are None, with the reason, if not known."""
+        if self.unknown:
+            return {"value": self.value, "estimate": None, "error": None, "reason": self.unknown}
         return {"value": self.value, "estimate": self.estimate, "error": self.error}
 
 
@@ -91,6 +121,8 @@ def share_of(components: Sequence[ErrorBar], beside: float = 0.0) -> float | Non
     >>> share_of([ErrorBar(1.0, 1.1, 0.1, "volume")], beside=0.9)
     0.5
     """
+    if any(bar.unknown for bar in components):
+        return None
     size = math.hypot(*(bar.estimate - beside for bar in components))
     error = math.hypot(*(bar.error for bar in components))
     if error == 0.0:

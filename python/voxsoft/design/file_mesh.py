@@ -16,10 +16,11 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict
 from voxsoft.design.references import places_in
 from voxsoft.design.region import Region
 from voxsoft.errors import DesignError, ErrorDetail, FileError, VoxSoftError
+from voxsoft.formats.unit import doubt
 from voxsoft.materials import Hyperelastic
 from voxsoft.records import Record, closest, place
-from voxsoft.shapes.mesh_bodies import MeshBody, read_body
-from voxsoft.units import format_quantity, parse
+from voxsoft.shapes.mesh_bodies import MeshBody, read_body, sizes_in_units
+from voxsoft.units import parse
 
 if TYPE_CHECKING:
     from voxsoft.design.model import Design
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 #: What a part calls all that no part before it names.
 REST: Final = "all"
-_UNITS: Final = ("mm", "cm", "inch", "m")
 #: Entries of a design that are about voxels, and what to do without them.
 _OF_VOXELS: Final[Mapping[str, str]] = {
     "voxel_size": "leave it out: the elements are those of the file",
@@ -140,6 +140,10 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
         replace(each, volume=each.volume * meter**3, area=each.area * meter**2)
         for each in mesh.cavities
     )
+    caution = doubt(np.ptp(mesh.vertices, axis=0), meter)
+    report = mesh.report and replace(
+        mesh.report, meter=meter, cautions=(caution,) if caution else ()
+    )
     scaled = replace(
         mesh,
         vertices=mesh.vertices * meter,
@@ -147,6 +151,7 @@ def _scaled(body: MeshBody, name: str, unit: str | None) -> ReadMesh:
         tet_voxel=None,
         voxel_size=None,
         regions=body.regions,
+        report=report,
     )
     return ReadMesh(scaled, body.parts)
 
@@ -155,16 +160,10 @@ def _sizes(vertices: NDArray[np.float64]) -> tuple[str, str]:
     """What and hint of the error about a missing unit."""
     extents = np.ptp(vertices, axis=0)
     shown = " × ".join(f"{extent:.4g}" for extent in extents)
-    longest = {unit: float(extents.max()) * parse(f"1 {unit}", "length") for unit in _UNITS}
-    sizes = ", ".join(f"{unit}: {_length(size)} long" for unit, size in longest.items())
     return (
         f"is missing: the file does not say its unit; its numbers span {shown}",
-        f'write unit = "mm", or another; the body would be, in {sizes}',
+        f'write unit = "mm", or another; the body would be, {sizes_in_units(extents.max())}',
     )
-
-
-def _length(size: float) -> str:
-    return format_quantity(float(f"{size:.3g}"), "length")
 
 
 def refuse_file_mesh(design: Design, who: str) -> None:

@@ -171,11 +171,11 @@ def _bodies(document: Mapping[str, Any], included: Included) -> Iterator[ErrorDe
     parts = ((path, part) for path, part in _list(document, "parts"))
     for path, table in (*places_in(document), *parts):
         name = entry_of(table, "body")
-        if isinstance(name, str) and name not in known:
-            hint = closest(name, known) or "leave it out: without [[bodies]] there is one body"
-            yield ErrorDetail(
-                place((*path, "body")), f'there is no body of the name "{name}"', hint
-            )
+        if isinstance(name, str) and not known:
+            what = f'"{name}" is no name: there is one body, and [[bodies]] name several'
+            yield ErrorDetail(place((*path, "body")), what, "leave body out")
+        elif isinstance(name, str) and name not in known:
+            yield _unknown((*path, "body"), "body", name, known)
 
 
 def _shape_names(document: Mapping[str, Any]) -> Iterator[tuple[Path, str]]:

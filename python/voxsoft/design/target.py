@@ -78,7 +78,7 @@ class Objective(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
-    clamp: str | None = None
+    clamp: Name | None = None
     region: Region | None = None
     along: Along | None = None
     accuracy: Proportion | None = None
@@ -128,7 +128,7 @@ class Constraint(Record):
     percentile: float | None = Field(None, gt=0, le=100)
     object: Name | None = None
     tendon: Name | None = None
-    clamp: str | None = None
+    clamp: Name | None = None
     region: Region | None = None
     along: Along | None = None
     accuracy: Proportion | None = None

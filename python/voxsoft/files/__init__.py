@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from voxsoft.files.checks import check_design, check_mesh
     from voxsoft.files.comparison_report import write_comparison
     from voxsoft.files.designs import load, save
-    from voxsoft.files.exports import export
+    from voxsoft.files.exports import export, unit_of
     from voxsoft.files.family_file import write_family
     from voxsoft.files.meshes import read_mesh, write_mesh
     from voxsoft.files.path_table import write_path
@@ -26,6 +26,7 @@ __all__ = [
     "load",
     "read_mesh",
     "save",
+    "unit_of",
     "write_calibration",
     "write_comparison",
     "write_confirmation",
@@ -45,6 +46,7 @@ _HOMES = {
     "load": "voxsoft.files.designs",
     "read_mesh": "voxsoft.files.meshes",
     "save": "voxsoft.files.designs",
+    "unit_of": "voxsoft.files.exports",
     "write_calibration": "voxsoft.files.calibrations",
     "write_confirmation": "voxsoft.files.study_folder",
     "write_comparison": "voxsoft.files.comparison_report",

@@ -11,7 +11,9 @@ from typing import Final
 import numpy as np
 
 from voxsoft.errors import UnitError, VoxSoftError
+from voxsoft.files.accounts import account_of_surface
 from voxsoft.files.designs import FilePath, load
+from voxsoft.formats.unit import name_of
 from voxsoft.shapes import TriangleMesh, voxelize
 from voxsoft.shapes.nesting import Nested
 from voxsoft.shapes.surface_files import Surface, read_surface
@@ -22,8 +24,6 @@ from voxsoft.units import format_quantity, parse
 
 #: Voxels along the longest side of a mesh whose voxel size is not given.
 DEFAULT_VOXELS: Final = 50
-
-_UNITS: Final = ("mm", "cm", "inch", "m")
 
 
 def check_design(path: FilePath, assignments: Iterable[str] = ()) -> CheckReport:
@@ -67,7 +67,8 @@ def check_mesh(
     path
         ``.stl``, ``.obj``, ``.ply``, ``.off``, ``.vtu`` or another that meshio reads.
     unit
-        What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``.
+        What the numbers in the file are: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``; not needed where
+        the file says it.
     voxel_size
         Text with a unit, or a number in m; default: a 50th of the longest side.
     nested
@@ -76,7 +77,8 @@ def check_mesh(
     Returns
     -------
     CheckReport
-        A file that holds no body is a finding.
+        A file that holds no body is a finding. Its `file` has all that the file holds beside the
+        surface that was taken.
 
     Raises
     ------
@@ -88,21 +90,20 @@ def check_mesh(
     """
     file = Path(path)
     surface = read_surface(file)
-    if unit is None:
-        raise UnitError(file.name, *_sizes(surface))
-    meter = parse(f"1 {unit}", "length", where="--unit")
+    account = account_of_surface(file, surface, unit, "--unit")
+    meter = account.meter
     size, chosen = _voxel_size(voxel_size, _extents(surface) * meter)
     try:
-        mesh = TriangleMesh(path=str(file), unit=unit, nested=nested)
+        mesh = TriangleMesh(path=str(file), unit=unit or name_of(meter), nested=nested)
         voxels = voxelize(mesh, size)
         report = check(voxels)
         volumes = volumes_in(mesh, voxels.mesh(), file.name)
     except VoxSoftError as error:
-        return _report_of(error)
+        return replace(_report_of(error), file=account)
     # Warnings follow what the voxels show; an empty grid is an error of its own.
     findings = [*report.findings, *findings_of_surface(mesh.state(), file.name), *chosen]
     findings += doubts(volumes, "make the voxels smaller, or its sizes multiples of them")
-    return replace(report, findings=tuple(findings), volumes=volumes)
+    return replace(report, findings=tuple(findings), volumes=volumes, file=account)
 
 
 def _report_of(error: VoxSoftError) -> CheckReport:
@@ -118,22 +119,6 @@ def _extents(surface: Surface) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     used = surface.points[np.unique(surface.triangles)]
     extents: np.ndarray[tuple[int], np.dtype[np.float64]] = np.ptp(used, axis=0)
     return extents
-
-
-def _sizes(surface: Surface) -> tuple[str, str]:
-    """What and hint of the error about a missing unit."""
-    extents = _extents(surface)
-    shown = " × ".join(f"{extent:.4g}" for extent in extents)
-    sizes = ", ".join(f"{unit}: {_longest(extents, unit)} long" for unit in _UNITS)
-    return (
-        f"a mesh file does not say its unit; its numbers span {shown}",
-        f"give --unit, one of {', '.join(_UNITS)}; the body would be, in {sizes}",
-    )
-
-
-def _longest(extents: np.ndarray[tuple[int], np.dtype[np.float64]], unit: str) -> str:
-    longest = float(extents.max()) * parse(f"1 {unit}", "length")
-    return format_quantity(float(f"{longest:.3g}"), "length")
 
 
 def _voxel_size(

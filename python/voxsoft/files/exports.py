@@ -26,6 +26,12 @@ from voxsoft.units import parse
 FORMATS: Final = (".vtu", ".msh", ".inp", ".stl", ".obj", ".npy", ".toml", ".csv")
 
 _SURFACES: Final = (".stl", ".obj")
+#: Why some formats take no unit.
+_OF_NO_UNIT: Final = {
+    ".toml": "says the unit of each number",
+    ".npy": "holds the parts of voxels, and no lengths",
+    ".csv": "has its units in its header",
+}
 
 
 def export(
@@ -34,7 +40,7 @@ def export(
     assignments: Iterable[str] = (),
     *,
     deformed: bool = False,
-    unit: str = "m",
+    unit: str | None = None,
 ) -> None:
     """Write a design or a result in the format that the target's suffix names.
 
@@ -51,8 +57,8 @@ def export(
     deformed
         Whether to write the shape under load; needs a run folder and a mesh or surface format.
     unit
-        Unit of the numbers in ``.stl`` and ``.obj``, which most programs read as mm; every
-        other format is in m.
+        Unit of the numbers in ``.stl`` and ``.obj``; default: mm, as most programs read them.
+        Every other mesh is in m.
 
     Raises
     ------
@@ -85,10 +91,25 @@ def export(
         np.save(array, voxels_of(design).array)
         write_atomically(goal, array.getvalue())
     else:
-        _write_body(goal, _body(origin, design), deformed, parse(f"1 {unit}", "length"))
+        _write_body(
+            goal, _body(origin, design), deformed, parse(f"1 {unit_of(goal, unit)}", "length")
+        )
 
 
-def _check(origin: Path, goal: Path, assignments: list[str], deformed: bool, unit: str) -> None:
+def unit_of(target: FilePath, unit: str | None = None) -> str:
+    """Return the unit of the numbers that a mesh is written in; parameters as for :func:`export`.
+
+    Examples
+    --------
+    >>> unit_of("arm.stl"), unit_of("arm.stl", "inch"), unit_of("arm.vtu")
+    ('mm', 'inch', 'm')
+    """
+    return unit or ("mm" if Path(target).suffix.lower() in _SURFACES else "m")
+
+
+def _check(
+    origin: Path, goal: Path, assignments: list[str], deformed: bool, unit: str | None
+) -> None:
     """Refuse what cannot be, before anything is computed."""
     suffix, is_run = goal.suffix.lower(), origin.is_dir()
     if suffix not in FORMATS:
@@ -103,9 +124,11 @@ def _check(origin: Path, goal: Path, assignments: list[str], deformed: bool, uni
         raise FileError(str(origin), what, f"voxsoft run {origin}, then export its folder")
     if deformed and suffix in (".npy", ".toml", ".csv"):
         raise FileError(str(goal), f"{suffix} cannot hold a deformed shape", "write .vtu or .stl")
-    parse(f"1 {unit}", "length", where="unit")
-    if unit != "m" and suffix not in _SURFACES:
-        raise FileError(str(goal), f"{suffix} is always in m", "only .stl and .obj take a unit")
+    if unit is not None:
+        parse(f"1 {unit}", "length", where="unit")
+        if suffix not in _SURFACES and (suffix in _OF_NO_UNIT or unit != "m"):
+            what = f"{suffix} {_OF_NO_UNIT.get(suffix, 'is always in m')}"
+            raise FileError(str(goal), what, "leave --unit out; it is for .stl and .obj")
 
 
 def _design_file(origin: Path) -> Path:

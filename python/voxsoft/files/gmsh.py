@@ -7,22 +7,16 @@ groups in this version of the format only where every entity owns a vertex.
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-from itertools import takewhile
 from pathlib import Path
 from typing import TextIO
 
-import meshio
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.errors import FileError
-from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
-from voxsoft.files.region_names import comments_of, labels_of, names_in
+from voxsoft.files.mesh_file import MeshFile
+from voxsoft.formats.region_names import UNIT_COMMENT, comments_of, labels_of
 from voxsoft.mesh import Mesh
 
-_DIMENSIONS = {"vertex": 0, "line": 1, "triangle": 2, "tetra": 3}
 _TYPES = {0: 15, 2: 2, 3: 4}
 
 #: Dimension, number, name and rows of vertices of a physical group, which is one entity too.
@@ -43,8 +37,8 @@ def write(path: Path, content: MeshFile) -> None:
 
     with path.open("w", encoding="ascii", newline="\n") as file:
         file.write("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
-        if comments := comments_of(labels):
-            file.write("\n".join(["$Comments", *comments, "$EndComments\n"]))
+        comments = [UNIT_COMMENT, *comments_of(labels)]
+        file.write("\n".join(["$Comments", *comments, "$EndComments\n"]))
         names = [f'{dimension} {number} "{name}"' for dimension, number, name, _ in groups]
         file.write("\n".join(["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames\n"]))
         _write_entities(file, mesh, groups)
@@ -84,55 +78,3 @@ def _write_elements(file: TextIO, groups: list[Group]) -> None:
         np.savetxt(file, np.column_stack((tags, rows + 1)), "%d")
         first += len(rows)
     file.write("$EndElements\n")
-
-
-def read(path: Path) -> MeshFile:
-    """Read a Gmsh file of any version meshio knows.
-
-    Physical volumes are parts: by their number if that is from 1 to 255, else counted up. Physical
-    surfaces named ``cavity-N`` are cavities; other groups of points, lines or surfaces are regions.
-    """
-    data = meshio.gmsh.read(str(path))
-    names = {(int(dim), int(tag)): name for name, (tag, dim) in data.field_data.items()}
-    physical = data.cell_data.get("gmsh:physical", [np.zeros(len(c.data), int) for c in data.cells])
-    tets, parts = [], []
-    cavities: dict[int, list[NDArray[np.integer]]] = {}
-    regions: dict[str, list[NDArray[np.integer]]] = {}
-    for block, tags in zip(data.cells, physical, strict=True):
-        dimension = _DIMENSIONS.get(block.type)
-        if dimension == 3:
-            tets.append(block.data)
-            parts.append(tags)
-        elif dimension is not None:
-            for tag in np.unique(tags).tolist():
-                name, rows = names.get((dimension, tag), ""), block.data[tags == tag]
-                cavity = re.fullmatch(r"cavity-(\d+)", name)
-                if cavity and dimension == 2:
-                    cavities.setdefault(int(cavity[1]), []).append(rows)
-                elif name:
-                    regions.setdefault(name, []).append(rows.ravel())
-    if not tets:
-        raise FileError(str(path), "holds no linear tetrahedra")
-
-    mesh = Mesh.from_tets(data.points, np.concatenate(tets), _part_ids(np.concatenate(parts)))
-    if cavities:
-        surfaces = [np.concatenate(cavities[number]) for number in sorted(cavities)]
-        mesh = with_cavities(mesh, surfaces, str(path))
-    count = len(mesh.vertices)
-    written = names_in(_comments(path))
-    kept = {written.get(label, label): np.concatenate(rows) for label, rows in regions.items()}
-    return MeshFile(mesh, {name: vertex_set(str(path), name, v, count) for name, v in kept.items()})
-
-
-def _comments(path: Path) -> Iterator[str]:
-    """Lines of the section of comments before the names, if there is one."""
-    with path.open(encoding="utf-8", errors="replace") as file:
-        yield from takewhile(lambda line: not line.startswith(("$PhysicalNames", "$Nodes")), file)
-
-
-def _part_ids(tags: NDArray[np.integer]) -> NDArray[np.integer]:
-    """Return part numbers from 1: the tags where they can be, else their rank."""
-    if tags.min() >= 1 and tags.max() <= 255:
-        return tags
-    ranks: NDArray[np.integer] = np.unique(tags, return_inverse=True)[1].reshape(tags.shape) + 1
-    return ranks

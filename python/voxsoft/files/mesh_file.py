@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.errors import FileError
+from voxsoft.formats.report import ReadReport
 from voxsoft.mesh import Mesh
 
 
@@ -33,6 +34,11 @@ class MeshFile:
     regions: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     point_data: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
     cell_data: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+
+    @property
+    def report(self) -> ReadReport | None:
+        """The account of the read; None for a mesh that was not read from a file."""
+        return self.mesh.report
 
 
 def with_cavities(mesh: Mesh, surfaces: list[NDArray[np.integer]], path: str) -> Mesh:

@@ -10,8 +10,8 @@ Suffix   Format                        Parts   Regions Cavities Data
 ``.obj`` Wavefront OBJ of the boundary
 ======== ============================= ======= ======= ======== =====
 
-Only ``.vtu`` keeps which voxel a tet belongs to. Of other volume formats that meshio reads, such as
-Medit's ``.mesh`` and Netgen's ``.vol``, the tetrahedra are taken. Surface formats can be written,
+Only ``.vtu`` keeps which voxel a tet belongs to. Other volume formats, such as Medit's ``.mesh``
+and Netgen's ``.vol``, are read, not written. Surface formats can be written,
 not read: a surface enters as a shape.
 """
 
@@ -28,11 +28,12 @@ from numpy.typing import ArrayLike, NDArray
 from voxsoft.errors import DesignError, FileError, MeshError
 from voxsoft.files import abaqus, gmsh, vtu
 from voxsoft.files.atomic import replace_whole
+from voxsoft.files.from_contents import mesh_of_contents
 from voxsoft.files.mesh_file import MeshFile, vertex_set
+from voxsoft.formats.read import read_contents
 from voxsoft.mesh import Mesh
 from voxsoft.records import check_name
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
-from voxsoft.shapes.surface_files import known_suffixes
 
 
 def _write_stl(path: Path, content: MeshFile) -> None:
@@ -56,22 +57,8 @@ _WRITERS: dict[str, Callable[[Path, MeshFile], None]] = {
     ".stl": _write_stl,
     ".obj": _write_obj,
 }
-_READERS: dict[str, Callable[[Path], MeshFile]] = {
-    ".vtu": vtu.read,
-    ".msh": gmsh.read,
-    ".inp": abaqus.read,
-}
 _SURFACES = {".stl", ".obj"}
 _ONLY_SURFACES = {*_SURFACES, ".ply", ".off"}
-
-
-def _read_other(path: Path) -> MeshFile:
-    """The linear tetrahedra of a file of any other format that meshio reads."""
-    data = meshio.read(path)
-    tets = [block.data for block in data.cells if block.type == "tetra"]
-    if not tets:
-        raise FileError(str(path), "holds no linear tetrahedra", "enter it as a shape")
-    return MeshFile(Mesh.from_tets(data.points, np.concatenate(tets)), {}, {}, {})
 
 
 def write_mesh(
@@ -129,23 +116,37 @@ def write_mesh(
     replace_whole(target, lambda temporary: writer(temporary, content))
 
 
-def read_mesh(path: str | os.PathLike[str]) -> Mesh:
+def read_mesh(path: str | os.PathLike[str], *, unit: str | None = None) -> Mesh:
     """Return the mesh of a file; see :func:`read_mesh_file`."""
-    return read_mesh_file(path).mesh
+    return read_mesh_file(path, unit=unit).mesh
 
 
-def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
-    """Return the mesh of a ``.vtu``, ``.msh`` or ``.inp`` file with its regions and data.
+def read_mesh_file(path: str | os.PathLike[str], *, unit: str | None = None) -> MeshFile:
+    """Return the mesh of a file with its parts, regions, data, and the account of the read.
 
-    Of other formats that meshio reads only the tetrahedra are taken.
+    Volume cells of all kinds are taken, cut into tetrahedra where they are others; cells of less
+    dimension only where they name a region. Sets of cells, physical volumes and arrays such as
+    ``material`` are parts. Cavities that the file does not name are found.
 
-    Files of other programs can be read too: linear tetrahedra are taken, cells of less dimension
-    only where they name a region. Cavities that the file does not name are found.
+    Parameters
+    ----------
+    path
+        The file.
+    unit
+        Of its numbers: ``"mm"``, ``"cm"``, ``"m"``, ``"inch"``. Files that were written here, and
+        formats that say their unit, need none.
+
+    Returns
+    -------
+    MeshFile
+        Its `report` tells all that the file holds, and each difference from the mesh.
 
     Raises
     ------
     FileError
-        If the file is missing, truncated, of another format, or holds no valid tetrahedra.
+        If the file is missing, cut short, of another format, or holds no valid volume cells.
+    UnitError
+        If neither the file nor `unit` says the unit; the message has the size in each.
 
     Examples
     --------
@@ -161,21 +162,15 @@ def read_mesh_file(path: str | os.PathLike[str]) -> MeshFile:
         raise FileError(str(source), f"{suffix} holds a surface, not tetrahedra", hint)
     if is_cad_file(source.name):
         raise FileError(str(source), WHAT, HINT)
-    reader = _READERS.get(suffix, _read_other)
-    if suffix not in known_suffixes():
-        raise _unknown_format(source, [*_READERS, *sorted(set(known_suffixes()) - set(_READERS))])
-    if not source.is_file():
-        raise FileError(str(source), "no such file")
     try:
-        return reader(source)
-    except FileError:
-        raise
+        if suffix == ".vtu" and source.is_file() and vtu.is_ours(source):
+            if unit not in (None, "m"):
+                what = f"was written by VoxSoft, in m; the unit {unit} was given"
+                raise FileError(str(source), what, "leave the unit out")
+            return vtu.read(source)
+        return mesh_of_contents(source, read_contents(source), unit)
     except MeshError as error:
         raise FileError(str(source), f"{error.where}: {error.what}", error.hint) from error
-    except (Exception, SystemExit) as error:
-        # meshio raises whatever its parsers run into, and leaves the program in places.
-        what = f"cannot be read as {suffix}: {error or type(error).__name__}"
-        raise FileError(str(source), what, "check that the file is complete") from error
 
 
 def _unknown_format(path: Path, known: list[str]) -> FileError:

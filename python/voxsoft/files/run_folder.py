@@ -169,6 +169,9 @@ def _history_csv(result: Result) -> str:
     names = list(result.recording.probes)
     header = ["time_s", *(f"{name}_d{axis}_m" for name in names for axis in "xyz")]
     columns = [result.recording.times[:, None], *(result.recording.probes[name] for name in names)]
+    for name, (positions, _) in result.recording.objects.items():
+        header += [f"{name}_{axis}_m" for axis in "xyz"]
+        columns.append(positions)
     for name, chamber in result.recording.chambers.items():
         header += [f"{name}_pressure_Pa", f"{name}_volume_m3", f"{name}_mass_kg"]
         columns.append(np.column_stack((chamber.pressure, chamber.volume, chamber.mass)))

@@ -8,6 +8,8 @@ cavity is not kept. A region is the point array ``region:NAME``, 1 at its vertic
 
 from __future__ import annotations
 
+import mmap
+import os
 from dataclasses import replace
 from pathlib import Path
 from xml.sax.saxutils import escape
@@ -18,9 +20,15 @@ from numpy.typing import NDArray
 
 from voxsoft.errors import FileError
 from voxsoft.files.mesh_file import MeshFile, vertex_set, with_cavities
+from voxsoft.formats.region_names import UNIT_COMMENT
+from voxsoft.formats.report import ReadReport
 from voxsoft.mesh import Mesh
 
 _REGION = "region:"
+_CLOSE = b"</VTKFile>"
+#: The end of a file: a comment of XML, over which readers pass, says the unit.
+_END = f"<!-- VoxSoft mesh, {UNIT_COMMENT} -->\n".encode() + _CLOSE
+_OLDER = (b'Name="voxel_size"', b'Name="displacement"')
 _OWN_ARRAYS = {"part", "cavity", "voxel", "voxel_size", "fraction", "moments"}
 
 
@@ -58,6 +66,12 @@ def write(path: Path, content: MeshFile) -> None:
     points = {_attribute(name): values for name, values in points.items()}
     arrays = {_attribute(name): values for name, values in arrays.items()}
     meshio.vtu.write(str(path), meshio.Mesh(mesh.vertices, cells, points, arrays))
+    with path.open("r+b") as file:
+        file.seek(-2 * len(_CLOSE), os.SEEK_END)
+        place = file.tell() + file.read().rindex(_CLOSE)
+        file.seek(place)
+        file.truncate()
+        file.write(_END + b"\n")
 
 
 def _attribute(name: str) -> str:
@@ -66,9 +80,34 @@ def _attribute(name: str) -> str:
     return escaped.encode("ascii", "xmlcharrefreplace").decode("ascii")
 
 
+def is_ours(path: Path) -> bool:
+    """Whether the file was written here, in m; older files know themselves by their arrays."""
+    size = path.stat().st_size
+    if not size:
+        return False
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        if content[-len(_END) - 2 :].strip().endswith(_END):
+            return True
+        is_older = b"created by meshio" in content[:1000] and content.find(b'Name="part"') > 0
+        return is_older and any(content.find(name) > 0 for name in _OLDER)
+
+
 def read(path: Path) -> MeshFile:
-    """Read a VTU file; of other programs' files the tets and all arrays are taken."""
-    data = meshio.vtu.read(str(path))
+    """Read a VTU file that was written here.
+
+    Raises
+    ------
+    FileError
+        If it has no end, or its arrays cannot be unpacked.
+    """
+    try:
+        data = meshio.vtu.read(str(path))
+    except (Exception, SystemExit) as error:
+        with path.open("rb") as file:
+            file.seek(-2 * len(_CLOSE), os.SEEK_END)
+            is_cut = _CLOSE not in file.read()
+        what = f"is cut short: it has no {_CLOSE.decode()}" if is_cut else f"is damaged: {error}"
+        raise FileError(str(path), what, "write or copy it again") from error
     blocks = [block for block, cells in enumerate(data.cells) if cells.type == "tetra"]
     if not blocks:
         raise FileError(str(path), "holds no linear tetrahedra")
@@ -96,7 +135,21 @@ def read(path: Path) -> MeshFile:
         else:
             points[name] = values
     others = {name: values for name, values in per_tet.items() if name not in _OWN_ARRAYS}
-    return MeshFile(mesh, regions, points, others)
+    counts = np.bincount(mesh.tet_part)
+    names = {int(part): f"part {part}" for part in np.flatnonzero(counts)}
+    taken = {
+        "vertices": len(mesh.vertices),
+        "tets": len(mesh.tets),
+        "parts": {names[part]: int(counts[part]) for part in names},
+        "regions": {name: len(vertices) for name, vertices in regions.items()},
+        "arrays": [*points, *per_tet],
+    }
+    cells = {"tetra": len(tets)}
+    if triangles := sum(len(b.data) for b in data.cells if b.type == "triangle"):
+        cells["triangle"] = triangles
+    held = {"points": len(data.points), "cells": cells, "arrays": [*data.point_data, *per_tet]}
+    report = ReadReport("VTU of VoxSoft", 1.0, held, taken, names)
+    return MeshFile(replace(mesh, report=report), regions, points, others)
 
 
 def _cavity_triangles(data: meshio.Mesh) -> list[NDArray[np.integer]]:

@@ -63,6 +63,10 @@ class Contents:
         over, arrays on points, instances, blocks that are left out. Each begins with its subject.
     format
         The format as a person calls it: ``Abaqus input``, ``Gmsh 4.1``.
+    sections
+        Those cell sets that carry a material by the file's own word; empty where it says none.
+    instances
+        Names of instances of an assembly.
     """
 
     points: NDArray[np.float64]
@@ -73,3 +77,5 @@ class Contents:
     unit: float | None = None
     notes: tuple[str, ...] = ()
     format: str = ""
+    sections: tuple[str, ...] = ()
+    instances: tuple[str, ...] = ()

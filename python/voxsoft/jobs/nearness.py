@@ -27,17 +27,40 @@ def digits_lost(residual: float, largest: float, tolerance: float = DEFAULT_TOLE
 
 
 class Nearness:
-    """The part of a run that is done: of its end time, or of the digits of its residual."""
+    """The part of a run that is done: of its end time, its load, or the digits of its residual.
 
-    def __init__(self, solver: Solver) -> None:
-        self._end = solver.end_time
+    Parameters
+    ----------
+    solver
+        Its settings.
+    of_loads
+        Whether it reports the load that it has reached, as statics does.
+
+    Examples
+    --------
+    >>> nearness = Nearness(Solver(), of_loads=True)
+    >>> nearness.at(0.5, 1e-6), nearness.at(0.5, 0.9), nearness.at(0.25, 0.9)
+    (0.5, 0.5, 0.5)
+    """
+
+    def __init__(self, solver: Solver, *, of_loads: bool = False) -> None:
+        self._end, self._of_loads = solver.end_time, of_loads
         self._tolerance = solver.tolerance or DEFAULT_TOLERANCE
-        self._largest = 0.0
+        self._largest = self._share = 0.0
 
     def at(self, time: float, residual: float) -> float:
-        """Return the part that is done, from 0 to 1."""
+        """Return the part that is done, from 0 to 1; it never falls.
+
+        Of statics it is the part of the load that was reached, which is the time it reports.
+        """
+        self._share = max(self._share, self._now(time, residual))
+        return self._share
+
+    def _now(self, time: float, residual: float) -> float:
         if self._end:
             return min(1.0, time / self._end)
+        if self._of_loads:
+            return min(1.0, max(0.0, time))
         if math.isfinite(residual):
             self._largest = max(self._largest, residual)
         return digits_lost(residual, self._largest, self._tolerance)

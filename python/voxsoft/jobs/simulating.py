@@ -12,21 +12,28 @@ from voxsoft import files, simulation
 from voxsoft.comparison.bars import error_bars
 from voxsoft.comparison.error_bar import ErrorBars
 from voxsoft.comparison.path_bars import path_error_bars
-from voxsoft.design import Design
+from voxsoft.design import Design, require_design
 from voxsoft.files.figures import save_figure, save_thumbnail
-from voxsoft.files.run_folder import Unwritten, write_summary
+from voxsoft.files.run_folder import Unwritten, make_folder, write_summary
 from voxsoft.jobs.events import Listener, Progress
 from voxsoft.jobs.folder import write_job
+from voxsoft.jobs.kept_path import KeptPath
 from voxsoft.jobs.nearness import Nearness
 from voxsoft.jobs.outcome import JobOutcome, path_summary
 from voxsoft.jobs.spec import RunSpec
-from voxsoft.simulation import Result
+from voxsoft.simulation import Result, Setup
+from voxsoft.simulation.choice import check_solver, method_of
+from voxsoft.simulation.cost import cost_of
+from voxsoft.simulation.equilibrium import Statics
 from voxsoft.units import format_percent, format_quantity
 
 #: What is counted while a further run for error bars is made.
 FURTHER: Final = "percent of a further run"
 #: Seconds between two words on how far a run is.
 _REPORT_EVERY: Final = 0.25
+#: Seconds of a run before it may be called overdue, and how many times what was expected that is.
+_LONG: Final = 10.0
+_OVERDUE: Final = 10.0
 #: No further entries of a summary.
 _NOTHING: Final[Mapping[str, Any]] = MappingProxyType({})
 
@@ -40,8 +47,11 @@ def run_simulation(spec: RunSpec, folder: Path, notify: Listener) -> JobOutcome[
     notify(Progress(0, 100, "percent", "meshing"))
     if spec.over is not None:
         return _follow(spec, design, folder, notify)
-    nearness = Nearness(design.solver)
-    result = simulation.simulate(design, progress=_reporting(nearness, notify))
+    design = require_design(design).assembled
+    check_solver(design)
+    method = method_of(design, design.solver)
+    setup = Setup.of(design, allow_loose=not method.to_rest, refine=design.solver.refine)
+    result = simulation.simulate(setup, progress=_reporting(setup, notify))
     unwritten = Unwritten(folder)
     _write(spec, result, folder, unwritten)
     bars = _error_bars(result, notify)
@@ -91,26 +101,35 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
     """Follow a path, and write the folder of its last equilibrium with a table of all of them."""
     assert spec.over is not None  # asked by the caller
     over = simulation.Over.read(spec.over)
-
+    kept = KeptPath(folder, design, over)
+    earlier = kept.read()
+    if not earlier:
+        kept.clear()  # of another path
     followed: simulation.LoadPath | None = None
 
     def step(path: simulation.LoadPath) -> None:
         nonlocal followed
+        done = len(path.results)
+        if followed is None:
+            make_folder(folder)
+            write_job(spec.replace(kept=False), folder)
         followed = path
+        if done > len(earlier):
+            kept.keep(done - 1, path.results[-1])
+        files.write_path(path, (), folder)
         notify(path)
-        notify(Progress(len(path.results), len(over.values), "equilibria"))
+        reached = f"{over.in_words(over.values[done - 1])} reached"
+        notify(Progress(done, len(over.values), "equilibria", reached))
 
     unwritten = Unwritten(folder)
     try:
-        path = simulation.follow(design, over, step=step)
+        path = simulation.follow(design, over, step=step, earlier=earlier)
     except BaseException:
         # Whatever ends the search, Ctrl-C too, leaves the equilibria that were found.
         if followed is not None:
-            files.write_path(followed, (), folder)
             _write(spec, followed.results[-1], folder, unwritten, path_summary(followed))
         raise
     result = path.results[-1]
-    files.write_path(path, (), folder)
     _write(spec, result, folder, unwritten, path_summary(path))
 
     def announce(size: float, voxels: int, seconds: float) -> None:
@@ -122,6 +141,7 @@ def _follow(spec: RunSpec, design: Design, folder: Path, notify: Listener) -> Jo
         bars = path_error_bars(path, announce=announce)
     except KeyboardInterrupt:
         bars = ()
+    kept.clear()
     write_summary(result, folder, more=path_summary(path, bars))
     files.write_path(path, bars, folder)
     if spec.figure:
@@ -163,19 +183,39 @@ def _error_bars(result: Result, notify: Listener) -> ErrorBars:
         return ErrorBars.none("they were stopped before they were found", "run it again")
 
 
-def _reporting(nearness: Nearness, notify: Listener) -> Callable[[int, float, float], None]:
-    last = time.monotonic()
+def _reporting(setup: Setup, notify: Listener) -> Callable[[int, float, float], None]:
+    design = setup.design
+    of_loads = isinstance(method_of(design, design.solver), Statics)
+    nearness = Nearness(design.solver, of_loads=of_loads)
+    started = last = time.monotonic()
+    slow = ""
 
     def report(_: int, when: float, residual: float) -> None:
-        nonlocal last
+        nonlocal last, slow
         share = nearness.at(when, residual)
         now = time.monotonic()
         if now - last < _REPORT_EVERY:
             return
         last = now
+        slow = slow or overdue(setup, now - started)
         left = "searching for equilibrium"
         if residual <= 1.0:
             left = f"residual {format_percent(residual)} of the load"
-        notify(Progress(min(99, int(100 * share)), 100, "percent", left))
+        if of_loads:
+            left = f"{format_percent(share)} of the load reached, {left}"
+        notify(Progress(min(99, int(100 * share)), 100, "percent", left + slow))
 
     return report
+
+
+def overdue(setup: Setup, seconds: float) -> str:
+    """Say that a run takes ten times as long as was expected, if it does and that is long."""
+    if seconds < _LONG:
+        return ""
+    expected = cost_of(setup.design, setup.mesh, None, setup.problem.mass).seconds
+    if seconds < _OVERDUE * expected:
+        return ""
+    return (
+        f"; about {expected:.2g} s were expected: the loads may be more than the body carries, "
+        "try smaller ones"
+    )

@@ -9,7 +9,7 @@ import numpy as np
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.design.chamber import chosen_cavities
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Floats, Metric, SlopeState, State, Target
 
 
 def _chosen(state: State, target: Target) -> Sequence[MeshCavity]:
@@ -50,7 +50,7 @@ def _add_slope(cavity: MeshCavity, positions: Floats, slope: Floats) -> None:
 
 
 CAVITY_VOLUME: Final = Metric(
-    "cavity_volume", "volume", _volume, _slope, takes=frozenset({"cavity"})
+    "cavity_volume", "volume", _volume, _slope, takes=frozenset({"cavity"}), bounds=NOT_NEGATIVE
 )
 CAVITY_VOLUME_CHANGE: Final = Metric(
     "cavity_volume_change", "volume", _change, _slope, takes=frozenset({"cavity"})

@@ -10,7 +10,16 @@ import numpy as np
 from voxsoft.design import Design
 from voxsoft.design.contact import BODY, names_of
 from voxsoft.errors import DesignError, ErrorDetail
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target, Touch
+from voxsoft.metrics.definition import (
+    NOT_NEGATIVE,
+    SHARE,
+    Floats,
+    Metric,
+    SlopeState,
+    State,
+    Target,
+    Touch,
+)
 from voxsoft.metrics.vectors import component
 from voxsoft.records import closest
 
@@ -134,5 +143,7 @@ CONTACT_GAP: Final = Metric(
     "contact_gap", "length", _gap, _slope_at_given_forces, frozenset({"object"})
 )
 # Without slopes: they change in jumps, where a point comes into contact or begins to slip.
-CONTACT_AREA: Final = Metric("contact_area", "area", _area, None, frozenset({"object"}))
-STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}))
+CONTACT_AREA: Final = Metric(
+    "contact_area", "area", _area, None, frozenset({"object"}), bounds=NOT_NEGATIVE
+)
+STICKING: Final = Metric("sticking", "number", _sticking, None, frozenset({"object"}), bounds=SHARE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, Literal, Protocol
@@ -202,6 +203,11 @@ class SlopeState(State, Protocol):
         """Triangles of open surfaces that a pressure pushes on, (t, 3), and the pressure in Pa."""
 
 
+#: Bounds of what is never negative, and of a share.
+NOT_NEGATIVE: Final = (0.0, math.inf)
+SHARE: Final = (0.0, 1.0)
+
+
 @dataclass(frozen=True)
 class Metric:
     """A number that a design may ask for.
@@ -228,6 +234,8 @@ class Metric:
         Whether a body has what it measures; a result lists it unasked only then. Default: all have.
     home
         Module and name of the function of a metric that a user added; empty for VoxSoft's own.
+    bounds
+        Between which the number lies for every body, in SI units: an estimate beyond is none.
 
     Examples
     --------
@@ -246,6 +254,7 @@ class Metric:
     is_costly: bool = False
     is_of: Callable[[State], bool] | None = None
     home: str = ""
+    bounds: tuple[float, float] = (-math.inf, math.inf)
 
     def refusals(self, target: Target) -> Iterator[ErrorDetail]:
         """Find the keys of a target that this metric would not use."""

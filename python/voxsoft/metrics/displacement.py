@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from voxsoft.geometry import mean_displacement
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Floats, Metric, SlopeState, State, Target
 from voxsoft.metrics.probes import place_of_target
 from voxsoft.metrics.vectors import component, direction
 
@@ -49,4 +49,6 @@ DISPLACEMENT: Final = Metric(
     needs=frozenset({"probe"}),
     takes=frozenset({"axis"}),
 )
-MAX_DISPLACEMENT: Final = Metric("max_displacement", "length", _largest, _slope_of_largest)
+MAX_DISPLACEMENT: Final = Metric(
+    "max_displacement", "length", _largest, _slope_of_largest, bounds=NOT_NEGATIVE
+)

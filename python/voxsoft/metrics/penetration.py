@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from voxsoft.metrics.definition import Metric, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Metric, State, Target
 
 
 def _value(state: State, _: Target) -> float:
@@ -12,4 +12,4 @@ def _value(state: State, _: Target) -> float:
 
 
 # Without a slope: at the first touch it has a kink, and before it there is nothing to follow.
-PENETRATION: Final = Metric("penetration", "length", _value, None)
+PENETRATION: Final = Metric("penetration", "length", _value, None, bounds=NOT_NEGATIVE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from voxsoft.metrics.definition import Metric, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Metric, State, Target
 
 
 def _stress(state: State, target: Target) -> float:
@@ -12,5 +12,11 @@ def _stress(state: State, target: Target) -> float:
 
 
 MAX_STRESS: Final = Metric(
-    "max_stress", "pressure", _stress, slope=None, takes=frozenset({"percentile"}), is_peak=True
+    "max_stress",
+    "pressure",
+    _stress,
+    slope=None,
+    takes=frozenset({"percentile"}),
+    is_peak=True,
+    bounds=NOT_NEGATIVE,
 )

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from voxsoft.design.tested import tested_ranges
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Floats, Metric, SlopeState, State, Target
 
 
 def _stretch(state: State, target: Target) -> float:
@@ -57,6 +57,7 @@ MAX_STRETCH: Final = Metric(
     _stretch_slope,
     takes=frozenset({"percentile"}),
     is_peak=True,
+    bounds=NOT_NEGATIVE,
 )
 TESTED_SHARE: Final = Metric(
     "tested_share",
@@ -65,8 +66,9 @@ TESTED_SHARE: Final = Metric(
     _share_slope,
     takes=frozenset({"percentile"}),
     is_peak=True,
+    bounds=NOT_NEGATIVE,
     is_of=_is_tested,
 )
 MIN_VOLUME_RATIO: Final = Metric(
-    "min_volume_ratio", "number", _volume_ratio, slope=None, is_peak=True
+    "min_volume_ratio", "number", _volume_ratio, slope=None, is_peak=True, bounds=NOT_NEGATIVE
 )

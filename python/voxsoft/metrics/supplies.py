@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Final
 
 from voxsoft.design.chamber import chosen_cavities
+from voxsoft.design.fluid import ATMOSPHERE
 from voxsoft.metrics.definition import Metric, State, Supplied, Target
 
 
@@ -43,6 +45,8 @@ CHAMBER_PRESSURE: Final = Metric(
     "pressure",
     _pressure,
     None,
+    # No gas is below vacuum.
+    bounds=(-ATMOSPHERE, math.inf),
     takes=frozenset({"cavity"}),
     is_of=_are_supplied,
 )

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from voxsoft.metrics.definition import Metric, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Metric, State, Target
 from voxsoft.metrics.probes import place_of_target
 
 
@@ -44,5 +44,5 @@ STIFFNESS: Final = Metric(
     takes=frozenset({"axis"}),
 )
 NATURAL_FREQUENCY: Final = Metric(
-    "natural_frequency", "rate", _frequency, slope=None, is_costly=True
+    "natural_frequency", "rate", _frequency, slope=None, is_costly=True, bounds=NOT_NEGATIVE
 )

@@ -7,7 +7,7 @@ from typing import Final
 
 from voxsoft.design import Design
 from voxsoft.errors import DesignError, ErrorDetail
-from voxsoft.metrics.definition import Metric, Pulled, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Metric, Pulled, State, Target
 from voxsoft.records import closest
 
 
@@ -42,5 +42,9 @@ def _length(state: State, target: Target) -> float:
     return _named(TENDON_LENGTH, state, target).length
 
 
-TENDON_TENSION: Final = Metric("tendon_tension", "force", _tension, None, frozenset({"tendon"}))
-TENDON_LENGTH: Final = Metric("tendon_length", "length", _length, None, frozenset({"tendon"}))
+TENDON_TENSION: Final = Metric(
+    "tendon_tension", "force", _tension, None, frozenset({"tendon"}), bounds=NOT_NEGATIVE
+)
+TENDON_LENGTH: Final = Metric(
+    "tendon_length", "length", _length, None, frozenset({"tendon"}), bounds=NOT_NEGATIVE
+)

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from voxsoft.metrics.definition import Floats, Metric, SlopeState, State, Target
+from voxsoft.metrics.definition import NOT_NEGATIVE, Floats, Metric, SlopeState, State, Target
 
 
 def _mass(state: State, _: Target) -> float:
@@ -31,6 +31,8 @@ def _slope_of_energy(state: SlopeState, _: Target) -> Floats:
     return slope
 
 
-MASS: Final = Metric("mass", "mass", _mass, _unmoved)
-VOLUME: Final = Metric("volume", "volume", _volume, _unmoved)
-ELASTIC_ENERGY: Final = Metric("elastic_energy", "energy", _elastic_energy, _slope_of_energy)
+MASS: Final = Metric("mass", "mass", _mass, _unmoved, bounds=NOT_NEGATIVE)
+VOLUME: Final = Metric("volume", "volume", _volume, _unmoved, bounds=NOT_NEGATIVE)
+ELASTIC_ENERGY: Final = Metric(
+    "elastic_energy", "energy", _elastic_energy, _slope_of_energy, bounds=NOT_NEGATIVE
+)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -209,18 +209,14 @@ def _field_names(model: type[Record], path: Sequence[str | int], document: objec
         ]
         # A step that no field has is a key of a mapping such as [shapes]: same type as before.
         reached = [r for annotation in inner for r in records_in(annotation)] or reached
-    exact = [m for m in reached if isinstance(here, Mapping) and _may_be(m, here)]
+    chosen = here if isinstance(here, Mapping) else {}
+    exact = [
+        m
+        for m in reached
+        for tag in ("kind", "model")  # tells which of several tables this is
+        if tag in m.model_fields and chosen.get(tag) in get_args(m.model_fields[tag].annotation)
+    ]
     return {f.alias or n for m in exact or reached for n, f in m.model_fields.items()}
-
-
-def _may_be(model: type[Record], table: Mapping[str, object]) -> bool:
-    """Whether the choices in a table, such as `kind` or `model`, are among those of a record."""
-    choices = {
-        info.alias or name: get_args(info.annotation)
-        for name, info in model.model_fields.items()
-        if get_origin(info.annotation) is Literal
-    }
-    return all(table[key] in known for key, known in choices.items() if key in table)
 
 
 def records_in(annotation: object) -> Iterator[type[Record]]:

@@ -66,8 +66,6 @@ def _unquoted(text: str) -> str:
 def closest(name: str, known: Iterable[str]) -> str:
     """Suggest the known name closest to a wrong one, or list what there is.
 
-    A name that was refused is not suggested, whoever else knows it.
-
     Examples
     --------
     >>> closest("materal", ["shape", "material"])
@@ -75,7 +73,7 @@ def closest(name: str, known: Iterable[str]) -> str:
     >>> closest("color", ["shape", "material"])
     'known are material, shape'
     """
-    names = sorted({*known} - {name})
+    names = sorted({*known} - {name})  # what is known elsewhere does not help here
     matches = difflib.get_close_matches(name, names, n=1)
     if matches:
         return f'did you mean "{matches[0]}"?'

@@ -11,12 +11,20 @@ from __future__ import annotations
 import contextlib
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal
+from math import inf
+from typing import Any, Final, Literal
 
 import optuna
 from optuna.distributions import BaseDistribution
 from optuna.exceptions import ExperimentalWarning, StorageInternalError
-from optuna.samplers import BaseSampler, RandomSampler
+from optuna.samplers import (
+    BaseSampler,
+    CmaEsSampler,
+    GPSampler,
+    NSGAIIISampler,
+    NSGAIISampler,
+    RandomSampler,
+)
 from optuna.storages import BaseStorage, JournalStorage, RDBStorage
 from optuna.storages.journal import BaseJournalBackend
 from optuna.study import StudyDirection
@@ -40,6 +48,8 @@ __all__ = [
 
 Distributions = Mapping[str, BaseDistribution]
 Direction = Literal["maximize", "minimize"]
+#: Samplers that look at completed trials only.
+_LEARN_FROM_COMPLETED: Final = (CmaEsSampler, GPSampler, NSGAIISampler, NSGAIIISampler)
 #: Where a trial stands in the search of a sampler: a generation or start, and an index in it.
 Place = list[int]
 
@@ -170,6 +180,8 @@ class StoredStudy:
         """Make a trial that the sampler suggests; return its number and parameters."""
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ExperimentalWarning)
+            # The infinity of a design that could not be solved; see tell_unsolved.
+            warnings.filterwarnings("ignore", message="Clip non-finite values")
             trial = self._study.ask(dict(space))
         self._held = trial.number + 1
         return trial.number, trial.params
@@ -206,11 +218,23 @@ class StoredStudy:
         """Write an attribute of a trial that runs."""
         self._storage.set_trial_user_attr(self._trial_id(number), key, value)
 
-    def tell(
-        self, number: int, values: Sequence[float] | None = None, state: TrialState | None = None
-    ) -> None:
-        """End a trial, with its values or as pruned or failed."""
-        self._study.tell(number, values, state)
+    def tell(self, number: int, values: Sequence[float]) -> None:
+        """End a trial with its values."""
+        self._study.tell(number, values)
+
+    def tell_unsolved(self, number: int) -> None:
+        """End a trial without values so that the sampler in use learns from it.
+
+        TPE and the samplers of VoxSoft learn from pruned trials. Other samplers of Optuna forget
+        all but completed ones, and are told the worst value of each objective: infinity, which
+        they rank last whatever the scale of the objectives.
+        """
+        if isinstance(self._study.sampler, _LEARN_FROM_COMPLETED):
+            minimize = StudyDirection.MINIMIZE
+            worst = [inf if each == minimize else -inf for each in self._study.directions]
+            self._study.tell(number, worst)
+        else:
+            self._study.tell(number, state=TrialState.PRUNED)
 
     def _store_place(self, number: int, key: str, place: Place) -> None:
         self._storage.set_trial_system_attr(self._trial_id(number), key, place)

@@ -15,6 +15,7 @@ from voxsoft import _core
 from voxsoft.errors import FileError, ShapeError
 from voxsoft.records import closest
 from voxsoft.shapes.surface_files import Surface
+from voxsoft.units import format_quantity, parse
 
 if TYPE_CHECKING:
     from voxsoft.mesh import Mesh
@@ -98,6 +99,21 @@ class MeshBody:
         )
 
 
+def sizes_in_units(longest: float) -> str:
+    """Word how long a body would be [m] in each unit that its numbers may be in.
+
+    Examples
+    --------
+    >>> sizes_in_units(40.0)
+    'in mm: 40 mm long, cm: 400 mm long, inch: 1.02 m long, m: 40 m long'
+    """
+    lengths = {unit: longest * parse(f"1 {unit}", "length") for unit in ("mm", "cm", "inch", "m")}
+    return "in " + ", ".join(
+        f"{unit}: {format_quantity(float(f'{length:.3g}'), 'length')} long"
+        for unit, length in lengths.items()
+    )
+
+
 def read_body(file: Path) -> MeshBody:
     """Read a file of tetrahedra, once for as long as it does not change.
 
@@ -121,6 +137,10 @@ def _read(file: Path, changed: tuple[int, int]) -> MeshBody:
     # `files` lies above shapes: a shape or a design reaches up for its mesh, when it is read.
     from voxsoft.files.meshes import read_mesh_file
 
-    found = read_mesh_file(file)
+    # As if in m: the numbers of the file as they are, to which users add the unit.
+    found = read_mesh_file(file, unit="m")
+    names = {} if found.report is None else found.report.parts
     numbers = np.unique(found.mesh.tet_part).tolist()
-    return MeshBody(found.mesh, {f"part-{number}": number for number in numbers}, found.regions)
+    parts = {f"part-{number}": number for number in numbers}
+    parts |= {name: number for number, name in names.items()}
+    return MeshBody(found.mesh, parts, found.regions)

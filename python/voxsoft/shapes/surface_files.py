@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voxsoft.errors import ShapeError
+from voxsoft.errors import FileError, ShapeError
+from voxsoft.formats.read import READERS, read_contents
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
 from voxsoft.shapes.faces import faces_of
 
@@ -59,7 +60,7 @@ def read_surface(path: Path) -> Surface:
         raise ShapeError("path", f"{path.name} {WHAT}", HINT)
     if not path.name.lower().endswith(known_suffixes()):
         what = f"{path.name} is none of {' '.join(known_suffixes())}"
-        raise ShapeError("path", what, "export the part as STL, or convert it with meshio")
+        raise ShapeError("path", what, "export the part as STL or OBJ")
     points, triangles = _first_that_reads(path)
     # Some files hold colors behind the coordinates, and plane ones two coordinates.
     plane = np.zeros((len(points), max(0, 3 - points.shape[1])))
@@ -79,7 +80,7 @@ def read_surface(path: Path) -> Surface:
 def _first_that_reads(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Try meshio, then trimesh."""
     readers: list[Callable[[Path], tuple[NDArray[np.float64], NDArray[np.int64]]]]
-    readers = [_read_by_meshio]
+    readers = [_read_contents if path.suffix.lower() in READERS else _read_by_meshio]
     if path.suffix.lower() in _BY_TRIMESH:
         readers.append(_read_by_trimesh)
     reasons: list[BaseException] = []
@@ -100,6 +101,8 @@ def _unreadable(path: Path, reasons: list[BaseException]) -> ShapeError:
     if isinstance(first, ImportError) and first.name:
         what = f"{path} needs the package {first.name} to be read"
         return ShapeError("path", what, f"pip install {first.name}, or export the part as STL")
+    if isinstance(first, FileError):
+        return ShapeError("path", str(first).partition(". Try: ")[0], first.hint)
     why = str(first) if isinstance(first, (ShapeError, _ReportedError)) else ""
     if path.suffix.lower() == ".stl" and not _looks_like_stl(path):
         why = (
@@ -121,6 +124,12 @@ def _looks_like_stl(path: Path) -> bool:
 
 class _ReportedError(Exception):
     """What a reader printed before it ended the program."""
+
+
+def _read_contents(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    contents = read_contents(path)
+    cells = [(block.kind, block.nodes) for block in contents.blocks]
+    return contents.points, faces_of(contents.points, cells)
 
 
 def _read_by_meshio(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

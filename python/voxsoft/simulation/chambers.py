@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from voxsoft.cavity import MeshCavity
 from voxsoft.design import Chamber, Design
-from voxsoft.errors import DesignError, NoCavityError
+from voxsoft.errors import DesignError, ErrorDetail, NoCavityError
 from voxsoft.mesh import Mesh
 from voxsoft.metrics import Target
 from voxsoft.shapes import Shape
 from voxsoft.simulation.diagnostic import Diagnostic
 from voxsoft.simulation.loads import readings
+from voxsoft.simulation.missing_cavity import why_no_cavity
 from voxsoft.simulation.places import inside_region, is_named, voxel_size
 from voxsoft.units import format_quantity
 
@@ -54,6 +55,12 @@ def check_chambers(design: Design, mesh: Mesh) -> None:
         Two names for one cavity, or a region that holds several.
     """
     _, errors = _named_cavities(design, mesh)
+    if errors and not mesh.cavities:
+        why, hint = why_no_cavity(design, mesh)
+        what = f"there is no enclosed cavity to name: {why}"
+        raise NoCavityError.listing(
+            ErrorDetail(f"chambers.{name}", what, hint) for name in design.chambers
+        )
     if errors:
         missing = any(isinstance(error, NoCavityError) for error in errors)
         kind = NoCavityError if missing else DesignError

@@ -1,4 +1,7 @@
-"""Checks: what would go wrong with a design or a body of voxels, found before it is solved."""
+"""Checks: what would go wrong with a design or a body of voxels, found before it is solved.
+
+Long because the report and its words stand beside the checks that fill it.
+"""
 
 from __future__ import annotations
 
@@ -15,19 +18,25 @@ from voxsoft.design import Design, require_design
 from voxsoft.design.discretize import filled
 from voxsoft.design.region import Region
 from voxsoft.errors import VoxSoftError
+from voxsoft.formats.report import ReadReport
 from voxsoft.materials import SILICONE_DENSITY, Hyperelastic
 from voxsoft.mesh import BodyMesh, Mesh
 from voxsoft.simulation.anchors import weak_anchors
 from voxsoft.simulation.chambers import ambiguous_indices
-from voxsoft.simulation.choice import unused_settings
+from voxsoft.simulation.choice import kind_of, unused_settings
+from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.cost import Cost, cost_of
 from voxsoft.simulation.diagnostic import Diagnostic, near
 from voxsoft.simulation.file_tets import cavities_of_tets, findings_of_tets
 from voxsoft.simulation.layers import LayerTriangles, chambers, layers_on, sealed
 from voxsoft.simulation.plausible import implausible_numbers
+from voxsoft.simulation.relaxed import relaxed_parts
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.unheld import unheld
+from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import PRECISE, Volumes, doubtful_volumes, volumes_of
 from voxsoft.units import format_quantity
 from voxsoft.voxels import Cavity, Leak, Voxels, Wall
@@ -63,8 +72,7 @@ class CheckReport(Shown):
     chambers
         What the design calls each cavity; an empty text where it has no name.
     mass
-        In kg; None for a design that cannot be solved, whose materials are not all known. Voxels
-        without a design are taken for silicone.
+        In kg; None for a design that cannot be made ready.
     thinnest_wall
         In voxels; None for an empty body.
     cost
@@ -80,6 +88,8 @@ class CheckReport(Shown):
     bodies
         Voxels of each body by its name, where there are several; places are then said in the own
         frame of a body.
+    file
+        All that the file of the body holds beside all that was taken; None for shapes.
     """
 
     findings: tuple[Diagnostic, ...]
@@ -97,6 +107,7 @@ class CheckReport(Shown):
     leak_points: tuple[Point, ...] = field(default=(), repr=False)
     volumes: Volumes = field(default_factory=Volumes, repr=False)
     phases: Mapping[str, Point] = field(default_factory=dict, repr=False)
+    file: ReadReport | None = field(default=None, repr=False)
 
     @property
     def valid(self) -> bool:
@@ -115,14 +126,15 @@ class CheckReport(Shown):
             if n
         ]
         yield ", ".join(["valid" if self.valid else "not valid", *reported])
-        weight = (
-            "" if self.mass is None else f", mass {format_quantity(rounded(self.mass), 'mass')}"
-        )
+        mass = self.mass
+        weight = "" if mass is None else f", mass {format_quantity(rounded(mass), 'mass')}"
         yield f"{counted(self.voxels, 'voxel')}{weight}"
         yield from (f"body {name}: {counted(n, 'voxel')}" for name, n in self.bodies.items())
         for name, cavity in self._named_cavities():
             called = f"chamber {name}" if name else "cavity"
             yield f"{called} of {format_quantity(rounded(cavity.volume), 'volume')}"
+        if self.file is not None:
+            yield from str(self.file).splitlines()
         yield from shortened([f"{found.severity}: {found}" for found in self.findings])
 
     def summary(self) -> dict[str, Any]:
@@ -158,6 +170,7 @@ class CheckReport(Shown):
             ],
             "phase": list(next(iter(self.phases.values()))) if len(self.phases) == 1 else None,
             "volumes": self.volumes.summary(),
+            "file": None if self.file is None else self.file.summary(),
         }
 
 
@@ -219,7 +232,8 @@ def examine(
         for of in mesh.each_body
         if of.name in voxels
     ]
-    is_held, is_weighed, elements = False, not isinstance(body, Design), len(mesh.tets) // 5
+    ready = not isinstance(body, Design)
+    is_held, elements = False, len(mesh.tets) // 5
     if isinstance(body, Design):
         try:
             setup = setup or Setup(body, mesh)
@@ -227,16 +241,21 @@ def examine(
             setup.check()
             elements = setup.elements
             is_held = setup.loose_piece is None
-            mass, is_weighed = setup.problem.mass, True
+            mass, ready = setup.problem.mass, True
             findings += weak_anchors(setup)
+            findings += unheld(setup)
         except VoxSoftError as error:
             findings += [_placed(found, body, mesh) for found in _errors(error, body)]
         findings += [*doubtful_surfaces(body), *doubtful_thickness(body, mesh)]
         findings += doubtful_volumes(body, mesh, points=PRECISE)
+        findings += [*coarse_walls(body, mesh), *vanished_shapes(body)]
         findings += _findings_of_settings(body)
         findings += [Diagnostic("warning", *problem) for problem in body.left_out]
+        if kind_of(body, body.solver).to_rest:
+            findings += relaxed_parts(body)
     if isinstance(body, Design) and setup is not None:
         findings += ambiguous_indices(body, setup.mesh)
+    findings += thin_seals(None, mesh if setup is None else setup.mesh)
     findings += implausible_numbers(body, mesh, mass)
     for one in each:
         findings += one.findings(is_held)
@@ -259,10 +278,11 @@ def examine(
         voxels=elements if refined else sum(one.voxels.count for one in each),
         vertices=len(mesh.vertices),
         tets=len(mesh.tets),
+        file=mesh.report,
         cavities=tuple(sorted(cavities, key=lambda cavity: -cavity.volume)),
         leaks=tuple(leak for one in each for leak in one.leaks),
         chambers=() if setup is None else tuple(each.name for each in setup.mesh.cavities),
-        mass=mass if is_weighed else None,
+        mass=mass if ready else None,
         thinnest_wall=thinnest,
         cost=cost,
         memory=float(constraints * _BYTES_PER_CONSTRAINT),
@@ -411,20 +431,8 @@ def _findings_of_settings(design: Design) -> Iterator[Diagnostic]:
 def _findings_of_voxels(
     body: Design | Voxels, voxels: Voxels, leaks: tuple[Leak, ...], is_held: bool
 ) -> Iterator[Diagnostic]:
-    hint = "thicken the body there by a voxel, or make the voxels smaller"
-    for hinge in voxels.hinges[:_LISTED]:
-        at = _middle(voxels, *hinge.cells)
-        contact = "an edge" if hinge.contact == "edge" else "a corner"
-        yield Diagnostic(
-            "warning",
-            f"voxels {hinge.cells[0]} and {hinge.cells[1]}",
-            f"touch at {contact} only, a hinge, {near(at)}",
-            hint,
-            at,
-        )
-    if len(voxels.hinges) > _LISTED:
-        what = f"there are {len(voxels.hinges) - _LISTED:,} more hinges"
-        yield Diagnostic("warning", "voxels", what, hint)
+    if voxels.hinges:
+        yield _finding_of_hinges(voxels)
     components = voxels.components("face")
     if len(components) > 1 and not is_held:
         sizes = ", ".join(f"{component.count:,}" for component in components[:_LISTED])
@@ -456,6 +464,18 @@ def _findings_of_voxels(
             f"make the voxels smaller: {GOOD_WALL} or more across a wall",
             at,
         )
+
+
+def _finding_of_hinges(voxels: Voxels) -> Diagnostic:
+    """All hinges in one: a line of them is one fault."""
+    first, *others = voxels.hinges
+    at = _middle(voxels, *first.cells)
+    contact = "an edge" if first.contact == "edge" else "a corner"
+    what = f"touch at {contact} only, a hinge, {near(at)}"
+    if others:
+        what = f"{what}, and {counted(len(others), 'more hinge')} in other places"
+    hint = "thicken the body there by a voxel, or make the voxels smaller"
+    return Diagnostic("warning", f"voxels {first.cells[0]} and {first.cells[1]}", what, hint, at)
 
 
 def _middle(voxels: Voxels, *cells: Cell) -> tuple[float, float, float]:

@@ -147,7 +147,7 @@ class LoadCommands:
             hint = "it pulls as the design says; a history of it is followed by vs.simulate"
             raise DesignError("loads", what, hint)
         if not self._loads:
-            raise DesignError("loads", f'"{name}" is no load: the design has none', "step without")
+            raise DesignError("loads", f'"{name}" is no load: the design has none', "call step()")
         raise DesignError("loads", f'"{name}" is no load', closest(str(name), self.names))
 
     def _value(self, index: int, name: LoadName, value: object) -> Value:

@@ -10,7 +10,7 @@ from voxsoft._core import Status
 from voxsoft._memory import memory_limit
 from voxsoft.design.solver import Count, Ratio, Share, Tolerance
 from voxsoft.errors import SimulationError
-from voxsoft.simulation.freedom import moves_freely
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.loads import readings
 from voxsoft.simulation.materials import core_materials
 from voxsoft.simulation.method import Answer, Method, Progress, Report, Watch
@@ -190,7 +190,7 @@ def find_equilibrium(
         progress=progress,
     )
     path, status = path_of(answer), answer.status
-    if status == Status.NOT_CONVERGED and path.factor == 0.0 and moves_freely(setup):
+    if status == Status.NOT_CONVERGED and free_motion(setup):
         # Singular up to rounding is all that the factor shows of it.
         status = Status.MECHANISM
     if status == Status.OUT_OF_MEMORY:
@@ -224,10 +224,12 @@ def sentence(
     path: _core.LoadPath,
     *,
     touches: bool = False,
+    is_cut: bool = False,
 ) -> str:
     """Say how statics ended: its control, how it ended, its iterations, its residual, its path.
 
-    What `touches` has no other ways than statics and motion over time.
+    What `touches` has no other ways than statics and motion over time; where its voxels are cut
+    (`is_cut`) full ones may let contact settle.
     """
     iterations = f"{steps} Newton iterations"
     residual = f"residual {format_percent(residual_left)} of the load"
@@ -282,6 +284,8 @@ def sentence(
                     f"{_OTHER_WAYS[way]}, a smaller load, smaller voxels, or motion over time "
                     '(method = "dynamics")'
                 )
+                if is_cut:
+                    ways = f'fill = "binary", as contact settles on full voxels more surely; {ways}'
             if way == "arc-length" and path.factor > 0.0:
                 return (
                     f"the path was followed to {carried}, where its steps ended or found no way "

@@ -6,17 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voxsoft.simulation.setup import Setup
+from voxsoft.simulation.touching import has_contact
 
 #: Singular values below this part of the largest count as none. Those of real supports are ratios
 #: of lengths, such as the width of a clamp over the length of the body.
 NONE = 1e-6
+#: How far a motion may be from one along or about an axis alone.
+_ALONE = 1e-4
 
 
-def moves_freely(setup: Setup) -> bool:
-    """Whether a component of the body has a rigid motion that no clamp stops.
+def free_motion(setup: Setup) -> str:
+    """The rigid motions of a component of the body that nothing stops, in words; empty if none.
 
-    Pieces are what shares vertices; hinges between voxels on one edge are not looked at. Where
-    there is a floor, a layer or a spring, which may hold a component as well, the answer is no.
+    Components are what shares vertices; hinges between voxels on one edge are not looked at. Where
+    there is a floor, contact, a layer, a spring or a tendon, which may hold a component as well,
+    none is known.
 
     Parameters
     ----------
@@ -26,18 +30,25 @@ def moves_freely(setup: Setup) -> bool:
     Examples
     --------
     >>> from voxsoft.design import families
-    >>> moves_freely(Setup.of(families.beam()))
-    False
+    >>> beam = families.beam()
+    >>> free_motion(Setup.of(beam))
+    ''
+    >>> free_motion(Setup.of(beam.with_values("clamps.0.axes=xz")))
+    'move along y'
     """
-    if setup.design.floor is not None or setup.design.layers or setup.attached:
-        return False
+    design = setup.design
+    if design.floor is not None or design.layers or setup.attached:
+        return ""
+    if has_contact(design) or setup.tendons:
+        return ""
     held = np.zeros((len(setup.mesh.vertices), 3), dtype=bool)
-    for clamp, vertices in zip(setup.design.clamps, setup.clamped, strict=True):
+    for clamp, vertices in zip(design.clamps, setup.clamped, strict=True):
         held[vertices] |= [axis in clamp.axes for axis in "xyz"]
     if (sector := setup.sector) is not None:
         here = sector.vertices if setup.mesh is sector.mesh else slice(None)
         held[:, sector.axes] |= sector.on_planes[here]
-    return any(_freedoms(setup.mesh.vertices[p], held[p]) > 0 for p in _joined(setup))
+    found = (_in_words(_free(setup.mesh.vertices[p], held[p])) for p in _joined(setup))
+    return next(filter(None, found), "")
 
 
 def _joined(setup: Setup) -> list[NDArray[np.intp]]:
@@ -52,8 +63,11 @@ def _joined(setup: Setup) -> list[NDArray[np.intp]]:
     return [np.flatnonzero(labels == label) for label in range(number)]
 
 
-def _freedoms(points: NDArray[np.float64], held: NDArray[np.bool_]) -> int:
-    """The number of rigid motions of points, (n, 3) m, that spare their held axes, (n, 3)."""
+def _free(points: NDArray[np.float64], held: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """The rigid motions of points, (n, 3) m, that spare their held axes, (n, 3).
+
+    An orthonormal basis of them, (6, k): three shifts and three turns each.
+    """
     arms = points - points.mean(axis=0)
     arms = arms / max(float(np.abs(arms).max()), 1e-300)
     shifts = np.broadcast_to(np.eye(3), (len(points), 3, 3))
@@ -61,5 +75,31 @@ def _freedoms(points: NDArray[np.float64], held: NDArray[np.bool_]) -> int:
     turns = np.stack([np.cross(axis, arms) for axis in np.eye(3)], axis=2)
     stopped = np.concatenate([shifts, turns], axis=2)[held]
     # Six by six, however many vertices are held.
-    values = np.sqrt(np.maximum(np.linalg.eigvalsh(stopped.T @ stopped), 0.0))
-    return int(np.sum(values <= NONE * max(float(values.max()), 1e-300)))
+    squares, motions = np.linalg.eigh(stopped.T @ stopped)
+    sizes = np.sqrt(np.maximum(squares, 0.0))
+    free: NDArray[np.float64] = motions[:, sizes <= NONE * max(float(sizes.max()), 1e-300)]
+    return free
+
+
+def _in_words(free: NDArray[np.float64]) -> str:
+    """Free rigid motions, (6, k), by the axes along and about which there are some.
+
+    A turn is one about any line along its axis. What goes along or about no axis alone is a motion
+    askew.
+    """
+    if not free.shape[1]:
+        return ""
+    turns = free[3:]
+    along = [axis for at, axis in enumerate("xyz") if np.linalg.norm(free[at]) > 1.0 - _ALONE]
+    about = []
+    for at, axis in enumerate("xyz"):
+        mix, *_ = np.linalg.lstsq(turns, np.eye(3)[at], rcond=_ALONE)
+        if np.abs(turns @ mix - np.eye(3)[at]).max() < _ALONE:
+            about.append(axis)
+    words = [f"move along {_listed(along)}"] if along else []
+    words += [f"turn about {_listed(about)}"] if about else []
+    return " and to ".join(words) or "move askew to the axes"
+
+
+def _listed(names: list[str]) -> str:
+    return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))

@@ -3,6 +3,10 @@
 Each equilibrium begins where the one before ended, with its contact: friction remembers the way,
 so that a way there and back is a loop. Loads and motions are made histories of one body, which is
 meshed once.
+
+Long because all that may change along a path, and how it becomes one design, stands here.
+
+Long because a path is followed, kept and resumed by one class that has its state.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from statistics import fmean
 from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from voxsoft.design import Design, Solver, require_design
 from voxsoft.design.activation import AnyActivation
@@ -36,6 +41,7 @@ from voxsoft.simulation.run import ProgressCallback, result_of
 from voxsoft.simulation.sector_setup import SectorSetup
 from voxsoft.simulation.setup import Setup
 from voxsoft.simulation.softening import check_softening
+from voxsoft.simulation.solved_state import SolvedState, is_given_by_positions
 from voxsoft.simulation.start import Start
 from voxsoft.simulation.touching import refuse_contact
 
@@ -156,6 +162,7 @@ def follow(
     *,
     progress: ProgressCallback | None = None,
     step: Callable[[LoadPath], None] | None = None,
+    earlier: Sequence[tuple[NDArray[np.float64], SolvedState]] = (),
     **settings: Any,  # noqa: ANN401 - the fields of Solver declare the types
 ) -> LoadPath:
     """Follow equilibria along the values of a load, a motion or a parameter of them.
@@ -176,6 +183,10 @@ def follow(
         As for :func:`voxsoft.simulate`.
     step
         Called after each equilibrium with the path so far.
+    earlier
+        Positions of the vertices and all else of the first equilibria, as a path that was stopped
+        has left them. It goes on behind them where positions say all of an equilibrium; contact,
+        tendons, supplies and what softens remember their way, which is gone again then.
     **settings
         Fields of :class:`voxsoft.design.Solver` that replace the design's own.
 
@@ -234,7 +245,18 @@ def follow(
     start: Start | None = None
     before: float | None = None
     share = max(1, len(instants) - 1)
+    if part is None and is_given_by_positions(given) and not given.tendons:
+        for number, (positions, state) in enumerate(earlier):
+            found = state.result(setup, positions)
+            if found.status != "ok":
+                break
+            results.append(replace(found, design=designs[number]))
+            start, before = Start(positions), instants[number]
+    if results and step is not None:
+        step(LoadPath(given, asked, tuple(results)))
     for number, instant in enumerate(instants):
+        if number < len(results):
+            continue
         started = time.perf_counter()
         own = None
         if swells:

@@ -233,7 +233,9 @@ def simulate_many(
         )
     solver = setup.design.solver
     found: list[Settled | None] = [None] * count
-    if _is_plain(solver) and (ensemble := Ensemble.of(setup)) is not None:
+    with setup.lock.held():
+        ensemble = Ensemble.of(setup) if _is_plain(solver) else None
+    if ensemble is not None:
         asked = tolerance or solver.tolerance or DEFAULT_STATICS_TOLERANCE
         found = ensemble.settle(chosen, factors, asked)
     settings = {} if tolerance is None else {"tolerance": tolerance}

@@ -1,4 +1,7 @@
-"""The answer of a simulation."""
+"""The answer of a simulation. Long because all that it gives is a short property of one class.
+
+Long because it documents every number of a result where it is defined.
+"""
 
 from __future__ import annotations
 
@@ -31,6 +34,7 @@ from voxsoft.simulation.loads import readings
 from voxsoft.simulation.overlaps import penetration_of
 from voxsoft.simulation.penetration import Penetration
 from voxsoft.simulation.posed import distance_between, posed_surface
+from voxsoft.simulation.relaxed import relaxed_parts
 from voxsoft.simulation.supports import Force, clamp_reactions, clamped_vertices, reaction_in
 from voxsoft.simulation.tendons import TendonState
 from voxsoft.simulation.touching import ContactState, Pose
@@ -400,6 +404,8 @@ class Result(Shown):
         if self.supplies:
             fluids = Fluids(self.design, self.mesh)
             found = (*doubtful_fluids(fluids, self.supplies, self.recording.chambers), *found)
+        if self.solver["way"] != "dynamics":
+            found = (*relaxed_parts(self.design), *found)
         if self.stable is False:
             what, hint = "is not stable under constant loads", "lower the load"
             found = (Diagnostic("warning", "equilibrium", what, hint), *found)

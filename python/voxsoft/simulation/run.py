@@ -18,6 +18,7 @@ from voxsoft.simulation.contact_field import ContactField
 from voxsoft.simulation.equilibrium import LoadControl, find_equilibrium, sentence
 from voxsoft.simulation.falling import falls, flies
 from voxsoft.simulation.fluids import refuse_supplies
+from voxsoft.simulation.freedom import free_motion
 from voxsoft.simulation.growth import at_time
 from voxsoft.simulation.large_voxels import refuse_refinement
 from voxsoft.simulation.method import Report, Watch
@@ -57,7 +58,8 @@ def simulate(
     Parameters
     ----------
     design
-        What to simulate; a :class:`Setup` saves meshing again.
+        What to simulate; a :class:`Setup` saves meshing again. Threads that share one wait for each
+        other.
     record_interval
         Time between two records of the probes, in s or with its unit, ``"50 ms"``; default 1/50 s.
         For runs over time only.
@@ -88,7 +90,7 @@ def simulate(
         Special cases of that, which a study counts apart.
     SimulationError
         A setting that would not be used, with what it belongs to and what to write; or a tangent
-        too large for the memory.
+        too large for the memory; a setup that is solved from within its own progress.
 
     Examples
     --------
@@ -109,16 +111,18 @@ def simulate(
         _check_refinement(setup, settings)
     else:
         setup = Setup.of(given, allow_loose=not method.to_rest, refine=solver.refine)
-    started = time.perf_counter()
-    part = SectorSetup.part_of(setup)
-    solved = setup if part is None else part
-    if isinstance(method, LoadControl) and coarser is not None:
-        start = nested(coarser, solved)
-        used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
-    else:
-        used, report = method.solve(solved, Watch(progress, record_interval, frames))
-    used["refine"] = refinement(setup)
-    result = result_of(solved, used, report, time.perf_counter() - started)
+    progress = setup.lock.reported(progress)
+    with setup.lock.held():
+        started = time.perf_counter()
+        part = SectorSetup.part_of(setup)
+        solved = setup if part is None else part
+        if isinstance(method, LoadControl) and coarser is not None:
+            start = nested(coarser, solved)
+            used, report = find_equilibrium(solved, method, progress, frames=frames, start=start)
+        else:
+            used, report = method.solve(solved, Watch(progress, record_interval, frames))
+        used["refine"] = refinement(setup)
+        result = result_of(solved, used, report, time.perf_counter() - started)
     return result if part is None else part.unfolded(result)
 
 
@@ -142,8 +146,9 @@ def relax(setup: Setup, problem: _core.Problem, tolerance: float, max_steps: int
     refuse_refinement(setup.design, "relaxation")
     started = time.perf_counter()
     used = {"method": "xpbd", "way": "relaxation", "tolerance": tolerance, "max_steps": max_steps}
-    answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
-    return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
+    with setup.lock.held():
+        answer = problem.relax(tolerance=tolerance, max_steps=max_steps)
+        return result_of(setup, used, Report.of(answer), time.perf_counter() - started)
 
 
 def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
@@ -159,8 +164,9 @@ def balance(setup: Setup, problem: _core.Problem, tolerance: float) -> Result:
         Largest relative residual.
     """
     started = time.perf_counter()
-    used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
-    return result_of(setup, used, report, time.perf_counter() - started)
+    with setup.lock.held():
+        used, report = find_equilibrium(setup, LoadControl(tolerance=tolerance), None, problem)
+        return result_of(setup, used, report, time.perf_counter() - started)
 
 
 def _settings(own: Solver, changes: dict[str, Any]) -> Solver:
@@ -278,9 +284,15 @@ def _sentence(setup: Setup, report: Report, way: str) -> str:
     if answer.path is not None:
         if report.status == Ended.NOT_AT_REST:
             return falls(setup, answer)
+        if report.status == Ended.MECHANISM and (free := free_motion(setup)):
+            return (
+                f"nothing holds the body: it is free to {free}, so that its place under the loads "
+                "is not known; clamp it along these axes, or give the design an end_time"
+            )
         touches = setup.touching is not None
         ended = (report.status, report.steps, answer.residual, answer.path)
-        return sentence(way, *ended, touches=touches)
+        is_cut = setup.design.fill == "fraction"
+        return sentence(way, *ended, touches=touches, is_cut=is_cut)
     residual = f"residual {format_percent(answer.residual)} of the load"
     steps = f"{report.steps} steps"
     match report.status:

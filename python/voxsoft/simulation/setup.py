@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final, TypeVar
 
@@ -41,6 +41,7 @@ from voxsoft.simulation.large_voxels import check_refinement, large_voxels
 from voxsoft.simulation.layers import LayerTriangles, all_layer_triangles, sealed
 from voxsoft.simulation.loads import LoadReceiver, ResolvedLoad, readings, resolve
 from voxsoft.simulation.materials import core_materials, solid_materials
+from voxsoft.simulation.missing_cavity import why_no_cavity
 from voxsoft.simulation.other_split import OtherSplit, with_other_split
 from voxsoft.simulation.places import on_the_body, place_of, vertices_in
 from voxsoft.simulation.profiles import check_profile_symmetry
@@ -48,6 +49,7 @@ from voxsoft.simulation.sector import Sector
 from voxsoft.simulation.sector_bodies import kinds_of
 from voxsoft.simulation.sector_parts import SectorParts
 from voxsoft.simulation.sector_touching import SectorTouching
+from voxsoft.simulation.solve_lock import SolveLock
 from voxsoft.simulation.supports import clamped_vertices
 from voxsoft.simulation.targets import check_targets
 from voxsoft.simulation.tendons import ResolvedTendon, resolve_tendons
@@ -76,6 +78,8 @@ class Setup:
     mesh
         Its tetrahedra. Chambers that layers close are among its cavities, and cavities have the
         names of the design's chambers.
+    lock
+        Solutions of it wait for each other, so that threads may share it.
 
     Raises
     ------
@@ -89,6 +93,7 @@ class Setup:
 
     design: Design
     mesh: Mesh
+    lock: SolveLock = field(default_factory=SolveLock, init=False, repr=False, compare=False)
 
     def __repr__(self) -> str:
         return f"Setup({self.design.name!r}, {self.mesh!r})"
@@ -427,12 +432,9 @@ class Setup:
                 continue
             where = f"loads[{index}]"
             if count == 0:
-                raise NoCavityError(
-                    where,
-                    "there is no enclosed cavity to put a pressure in",
-                    "make walls and caps at least one voxel thick, or the voxels smaller; "
-                    "the check of the design shows where a chamber leaks",
-                )
+                why, hint = why_no_cavity(self.design, self.mesh)
+                what = f"there is no enclosed cavity to put a pressure in: {why}"
+                raise NoCavityError(where, what, hint)
             self.load(index)
 
     @cached_property

@@ -158,7 +158,7 @@ def volumes_in(shape: Shape, mesh: Mesh, name: str, points: int = PRECISE) -> Vo
     """
     if mesh.voxel_size is None:
         return Volumes()
-    cells = _Cells.of(mesh, mesh.voxel_size)
+    cells = GridRegions.of(mesh, mesh.voxel_size)
     (material,), rooms = _described([shape.build()], cells, _affordable(shape.every(None), points))
     pairs = zip(mesh.cavities, rooms.tolist(), strict=True)
     return Volumes(
@@ -234,7 +234,7 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
     size = mesh.voxel_size
     if size is None or mesh.tet_voxel is None or not design.parts:
         return None
-    cells = _Cells.of(mesh, size)
+    cells = GridRegions.of(mesh, size)
     material, room = _described(built_parts(design), cells, _affordable(shapes_of(design), points))
     own = tet_volumes(mesh.vertices, mesh.tets)
     if mesh.fractions is not None:
@@ -248,7 +248,7 @@ def _of_body(design: Design, mesh: Mesh, points: int) -> tuple[list[Volume], lis
 
 
 @dataclass(frozen=True, eq=False)
-class _Cells:
+class GridRegions:
     """The cells of a body's grid, with a rim of empty ones.
 
     `parts` is the part of each from 1, 0 for none; `rooms` the cavity of each from 0, -1 for the
@@ -261,7 +261,8 @@ class _Cells:
     rooms: NDArray[np.int16]
 
     @classmethod
-    def of(cls, mesh: Mesh, size: float) -> _Cells:
+    def of(cls, mesh: Mesh, size: float) -> GridRegions:
+        """Return those of the voxels of a mesh, of edge `size` [m]."""
         corners = mesh.vertices[mesh.tets.reshape(-1, 20)].min(axis=1)
         origin = corners.min(axis=0) - _RIM * size
         cells = np.rint((corners - origin) / size).astype(np.intp)
@@ -287,7 +288,9 @@ def _affordable(shapes: Iterable[Shape], points: int) -> int:
     return points // _OF_A_FILE if any(isinstance(e, TriangleMesh) for e in shapes) else points
 
 
-def _described(shapes: Sequence[_core.Shape], cells: _Cells, points: int) -> tuple[Floats, Floats]:
+def _described(
+    shapes: Sequence[_core.Shape], cells: GridRegions, points: int
+) -> tuple[Floats, Floats]:
     """Volumes of the parts and of the cavities of the shapes [m³], each by number."""
     near = cells.near
     whole = np.bincount(cells.parts[~near], minlength=len(shapes) + 1)[1:].astype(float)

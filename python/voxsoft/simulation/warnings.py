@@ -18,6 +18,7 @@ from voxsoft.design import Design
 from voxsoft.fields import Fields
 from voxsoft.mesh import Mesh
 from voxsoft.simulation.chambers import ambiguous_indices
+from voxsoft.simulation.coarse_walls import coarse_walls
 from voxsoft.simulation.collapse import collapsed_voxels
 from voxsoft.simulation.crossed_surfaces import crossed_surfaces
 from voxsoft.simulation.diagnostic import Diagnostic
@@ -28,6 +29,8 @@ from voxsoft.simulation.separation import separations
 from voxsoft.simulation.surfaces import doubtful_surfaces
 from voxsoft.simulation.tested_range import beyond_tests
 from voxsoft.simulation.thickness import doubtful_thickness
+from voxsoft.simulation.thin_seals import thin_seals
+from voxsoft.simulation.vanished import vanished_shapes
 from voxsoft.simulation.volumes import doubtful_volumes
 
 #: From a design, its mesh and positions in m, (n, 3), to what is doubtful.
@@ -51,6 +54,9 @@ CHECKS: Final[tuple[Check, ...]] = (
     doubtful_surfaces,
     doubtful_thickness,
     doubtful_volumes,
+    coarse_walls,
+    vanished_shapes,
+    thin_seals,
     overlap_warnings,
     crossed_surfaces,
     separations,

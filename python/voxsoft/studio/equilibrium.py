@@ -7,15 +7,19 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Literal
 
+import numpy as np
+
+from voxsoft._shown import rounded
 from voxsoft.comparison.bars import error_bars
 from voxsoft.comparison.error_bar import ErrorBars, share_of, vector_in_words
 from voxsoft.errors import VoxSoftError
 from voxsoft.metrics import METRICS, Target
 from voxsoft.simulation import Diagnostic, Result
+from voxsoft.simulation.supports import Force
 from voxsoft.studio import events
 from voxsoft.studio.grips import grips_of
 from voxsoft.studio.objects import is_filmed
-from voxsoft.units import format_percent
+from voxsoft.units import format_percent, format_quantity
 
 
 class Measurement(threading.Thread):
@@ -135,12 +139,23 @@ def equilibrium_of(
             events.Summarized(name=name, words=tendon.words)
             for name, tendon in result.tendons.items()
         ],
+        reactions=[
+            events.Summarized(name=name, words=_force_in_words(force))
+            for name, force in result.clamp_reactions.items()
+        ],
         supplies=[
             events.Summarized(name=supply.name, words=supply.words) for supply in result.supplies
         ],
         grips=grips_of(result),
         missing=_missing(result),
     )
+
+
+def _force_in_words(force: Force) -> str:
+    size = float(np.linalg.norm(force))
+    # What is below a billionth of the whole is rounding.
+    parts = (0.0 if abs(each) <= 1e-9 * size else rounded(each) for each in force)
+    return f"({', '.join(format_quantity(each, 'force') for each in parts)})"
 
 
 def _missing(result: Result) -> str:

@@ -645,6 +645,7 @@ class Equilibrium(Event):
     largest_strain: float
     warnings: list[Finding]
     tendons: list[Summarized]
+    reactions: list[Summarized]
     supplies: list[Summarized]
     grips: list[Grip]
     error_bars: str = ""

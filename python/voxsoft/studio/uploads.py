@@ -6,8 +6,9 @@ import io
 import json
 import zipfile
 import zlib
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,8 @@ from voxsoft.files.atomic import write_atomically
 from voxsoft.files.run_folder import make_folder
 from voxsoft.shapes import TriangleMesh
 from voxsoft.shapes.cad_files import HINT, WHAT, is_cad_file
-from voxsoft.units import format_quantity
+from voxsoft.shapes.mesh_bodies import sizes_in_units
+from voxsoft.units import format_quantity, parse
 from voxsoft.voxels import Voxels
 
 #: What the files of an archive may take together when unpacked [bytes].
@@ -29,6 +31,8 @@ MESHES: Final = (".stl", ".obj", ".ply", ".off", ".mesh", ".msh", ".vtk", ".vtu"
 KINDS: Final = (".toml", *MESHES, ".npy", ".csv", ".zip")
 #: Cells along the longest side of a mesh that is dropped on the page.
 _FIRST_CELLS: Final = 32
+#: The material of a body that says none.
+_SOFT: Final = "ecoflex-00-30"
 
 
 def safe_name(name: str) -> str:
@@ -74,50 +78,83 @@ def design_of_mesh(file: Path, unit: str = "mm") -> str:
     low, high = TriangleMesh(path=str(file), unit=unit).build().bounds()
     size = max(b - a for a, b in zip(low, high, strict=True)) / _FIRST_CELLS
     voxel = format_quantity(float(f"{size:.2g}"), "length")
-    return _standing(file, unit, voxel, low[2])
+    sizes = sizes_in_units(_FIRST_CELLS * size / parse(f"1 {unit}", "length"))
+    about = (
+        f"# A body from {file.name}. Its numbers are taken as {unit}: change `unit`, and",
+        f"# the lengths below, if that is wrong. It would be, {sizes}.",
+    )
+    return _standing(about, [_Piece(file, unit)], voxel, low[2], file.stem)
 
 
 def design_of_array(file: Path) -> str:
     """Write a design file whose body is an array of voxels, and the mesh of it beside the array.
 
-    Cells that are not zero are full; a voxel is 1 mm wide.
+    Each number that is not zero is a part; a voxel is 1 mm wide, as an array does not say it.
 
     Raises
     ------
     FileError
-        It is no array of numbers with three axes.
+        It is no array with three axes.
     VoxelError
-        No cell is full.
+        Its numbers are no parts, 0 to 255, or no cell is full.
     """
     try:
         array = np.load(io.BytesIO(file.read_bytes()), allow_pickle=False)
     except (OSError, ValueError, EOFError) as error:
         raise FileError(file.name, f"is no array of NumPy: {error}") from None
-    if array.ndim != 3 or array.dtype.kind not in "biuf":
+    if array.ndim != 3:
         what = f"holds {array.dtype} of shape {array.shape}; expected three axes of numbers"
         raise FileError(file.name, what)
-    surface = file.with_suffix(".stl")
-    write_mesh(surface, Voxels.from_array(array != 0, 1e-3).mesh())
-    return _standing(surface, "m", "1 mm", 0.0)
+    voxels = Voxels.from_array(array, 1e-3)
+    labels = sorted(voxels.part_counts)
+    # Only a file of tetrahedra has parts; one surface is read more quickly.
+    body = file.with_suffix(".stl" if len(labels) == 1 else ".vtu")
+    write_mesh(body, voxels.mesh())
+    parts = [_Piece(body, "m")]
+    if len(labels) > 1:
+        parts = [_Piece(body, "m", f"part-{label}") for label in labels]
+    about = (
+        f"# A body from {file.name}, each number of which is a part. An array does not say",
+        "# how large its voxels are: they are taken as 1 mm. For 2 mm scale the shapes by 2.",
+    )
+    return _standing(about, parts, "1 mm", 0.0, file.stem)
 
 
-def _standing(file: Path, unit: str, voxel: str, lowest: float) -> str:
+class _Piece(NamedTuple):
+    """A file of a body, or a part of it."""
+
+    file: Path
+    unit: str
+    part: str | None = None
+
+    @property
+    def name(self) -> str:
+        return self.part or "body"
+
+    @property
+    def shape(self) -> str:
+        part = "" if self.part is None else f', part = "{self.part}"'
+        path = json.dumps(str(self.file))
+        return f'{{ kind = "mesh", path = {path}, unit = "{self.unit}"{part} }}'
+
+
+def _standing(
+    about: Iterable[str], pieces: Sequence[_Piece], voxel: str, lowest: float, name: str
+) -> str:
     bottom = format_quantity(float(f"{lowest:.6g}"), "length")
+    made = [("", "[[parts]]", f'shape = "{each.name}"', f'material = "{_SOFT}"') for each in pieces]
     return "\n".join(
         (
-            f"# A body from {file.name}. Its numbers were taken as {unit}: change `unit` if that",
-            "# is wrong. It stands on its lowest layer and carries its own weight.",
+            *about,
+            "# It stands on its lowest layer and carries its own weight.",
             "",
             'schema = "voxsoft/1"',
-            f"name = {json.dumps(file.stem)}",
+            f"name = {json.dumps(name)}",
             f'voxel_size = "{voxel}"',
             "",
             "[shapes]",
-            f'body = {{ kind = "mesh", path = {json.dumps(str(file))}, unit = "{unit}" }}',
-            "",
-            "[[parts]]",
-            'shape = "body"',
-            'material = "ecoflex-00-30"',
+            *(f"{each.name} = {each.shape}" for each in pieces),
+            *(line for lines in made for line in lines),
             "",
             "[[clamps]]",
             f'region = {{ z = ["{bottom}", "{bottom}"] }}',

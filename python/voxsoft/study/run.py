@@ -211,13 +211,12 @@ class StudyRun:
             self.progress(TrialEvent(trial, self._best, self._done, total, self._doubts))
 
     def _tell(self, number: int, outcome: Outcome) -> None:
-        """Tell the sampler. Designs that cannot be solved are pruned: it learns to avoid them."""
+        """Tell the sampler, which learns to avoid designs that cannot be solved."""
         if outcome.status == "ok":
             values = [outcome.metrics[name] for name in self.objectives]
             self.study.tell(number, values)
         else:
-            failed = outcome.status == "failed"
-            self.study.tell(number, state=TrialState.FAIL if failed else TrialState.PRUNED)
+            self.study.tell_unsolved(number)
 
     def _learn(self, trial: Trial, outcome: Outcome) -> None:
         self._done += 1
@@ -245,9 +244,13 @@ def _outcome(future: Future[Outcome], objectives: Mapping[str, Objective]) -> Ou
         return Outcome("failed", f"{type(error).__name__}: {error}")
     if outcome.status != "ok":
         return outcome
-    wrong = [name for name in objectives if not isfinite(outcome.metrics.get(name, float("nan")))]
+    wrong = [name for name in objectives if not _finite(outcome.metrics.get(name))]
     if wrong:
         value = outcome.metrics.get(wrong[0], "missing")
         message = f'the objective "{wrong[0]}" is {value}'
         return replace(outcome, status="failed", message=message)
     return outcome
+
+
+def _finite(value: float | None) -> bool:
+    return value is not None and isfinite(value)

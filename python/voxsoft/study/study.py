@@ -367,7 +367,8 @@ class Study:
         return design.replace(objectives=self.objectives, constraints=self.constraints)
 
     def _violations(self, trial: FrozenTrial) -> tuple[float, ...]:
-        return violations(trial.user_attrs[OUTCOME_KEY]["metrics"], self.constraints)
+        record = trial.user_attrs[OUTCOME_KEY]
+        return violations(record["metrics"] if record["status"] == "ok" else {}, self.constraints)
 
     def _result(self, study: StoredStudy) -> StudyResult:
         return StudyResult(

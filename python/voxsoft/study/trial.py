@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import inf, isnan, nan
 from typing import Any
 
 from voxsoft.design import Constraint
@@ -87,7 +88,7 @@ def record_of(outcome: Outcome, design_hash: str, same_as: int | None) -> dict[s
     record = {
         "status": outcome.status,
         "message": outcome.message,
-        "metrics": {name: float(value) for name, value in outcome.metrics.items()},
+        "metrics": {name: _number(value) for name, value in outcome.metrics.items()},
         "seconds": outcome.seconds,
         "warnings": list(outcome.warnings),
         "hash": design_hash,
@@ -145,6 +146,11 @@ def read_trial(
     )
 
 
+def _number(value: float | None) -> float:
+    """A metric as a number; None, as an evaluation of the user's may say it, is unknown."""
+    return nan if value is None else float(value)
+
+
 def _warnings(record: Mapping[str, Any]) -> tuple[str, ...]:
     """Those of a record; journals that are older than warnings have none."""
     return tuple(record.get("warnings", ()))
@@ -159,17 +165,23 @@ def violations(
 ) -> tuple[float, ...]:
     """Say by how much each bound is broken: at most 0 where it holds, infinite if unknown.
 
+    A metric that is missing, None or NaN is unknown: comparisons with NaN are all false, so that
+    the largest of some numbers would depend on their order.
+
     Examples
     --------
     >>> light = Constraint(metric="mass", max="30 g")
     >>> violations({"light": 0.0625}, {"light": light})
     (0.0325,)
+    >>> violations({"light": float("nan")}, {"light": light})
+    (inf,)
     """
     found = []
     for name, constraint in constraints.items():
         value = metrics.get(name)
+        known = None if value is None or isnan(value) else value
         if constraint.min is not None:
-            found.append(float("inf") if value is None else constraint.min - value)
+            found.append(inf if known is None else constraint.min - known)
         if constraint.max is not None:
-            found.append(float("inf") if value is None else value - constraint.max)
+            found.append(inf if known is None else known - constraint.max)
     return tuple(found)

@@ -38,6 +38,11 @@ export function EquilibriumCard() {
       words,
       "",
     ]),
+    ...found.reactions.map(({ name, words }): [string, string, string] => [
+      `Reaction of ${name}`,
+      words,
+      "",
+    ]),
     ...found.supplies.map(({ name, words }): [string, string, string] => [
       `Supply ${name}`,
       words,

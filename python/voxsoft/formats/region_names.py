@@ -12,10 +12,15 @@ import unicodedata
 from collections.abc import Iterable, Mapping
 from typing import Final
 
+from voxsoft.units import parse
+
 _LONGEST: Final = 60  # Abaqus takes 80
 #: Labels of the sets that the writers make themselves, whatever their case.
 _RESERVED: Final = re.compile(r"(?:part|cavity)-\d+(?:-s\d)?|all-(?:nodes|elements)", re.IGNORECASE)
 _COMMENT: Final = re.compile(r'REGION ([A-Za-z][\w-]*) = (".*")', re.ASCII)
+_UNIT: Final = re.compile(r"UNIT = ([A-Za-z]+)", re.ASCII)
+#: The comment that says our own unit.
+UNIT_COMMENT: Final = "UNIT = m"
 
 
 def labels_of(names: Iterable[str]) -> dict[str, str]:
@@ -30,15 +35,13 @@ def labels_of(names: Iterable[str]) -> dict[str, str]:
 'probe_tip_left-2', 'höhe': 'hohe', '名前': 'region'}
     """
     every = list(names)
-    taken = {name.lower() for name in every if _label(name) == name}
-    labels = {}
-    for name in every:
-        label = _label(name)
-        if label != name:
-            label = _free(label, taken)
-            taken.add(label.lower())
-        labels[name] = label
-    return labels
+    labels: dict[str, str] = {}
+    taken: set[str] = set()
+    # Names that can be labels first: they keep them, unless they differ from one by case alone.
+    for name in sorted(every, key=lambda name: _label(name) != name):
+        labels[name] = _free(_label(name), taken)
+        taken.add(labels[name].lower())
+    return {name: labels[name] for name in every}
 
 
 def _label(name: str) -> str:
@@ -83,3 +86,16 @@ def names_in(lines: Iterable[str]) -> dict[str, str]:
     """
     found = (_COMMENT.search(line) for line in lines)
     return {match[1]: str(json.loads(match[2])) for match in found if match}
+
+
+def unit_in(lines: Iterable[str]) -> float | None:
+    """Read a unit of length from comments, in m; None where there is none.
+
+    Examples
+    --------
+    >>> unit_in(["** UNIT = mm"])
+    0.001
+    """
+    for match in filter(None, map(_UNIT.search, lines)):
+        return parse(f"1 {match[1]}", "length", where="UNIT")
+    return None

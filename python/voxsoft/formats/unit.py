@@ -1,0 +1,105 @@
+"""The unit of a file's numbers: said by the file, given, or asked for with sizes in each unit."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.errors import UnitError
+from voxsoft.units import format_quantity, parse
+
+UNITS: Final = ("mm", "cm", "inch", "m")
+#: Bodies beyond are soft robots no more, but numbers in another unit [m].
+_SMALLEST, _LARGEST = 0.5e-3, 5.0
+
+
+def meter_of(
+    where: str, stated: float | None, given: str | None, points: NDArray[np.float64], ask: str
+) -> float:
+    """Return meters in one unit of the numbers; a given unit counts before the file's own.
+
+    Parameters
+    ----------
+    where
+        The file, for messages.
+    stated
+        Meters in the unit that the file says, None if it says none.
+    given
+        A unit such as ``"mm"``, or None.
+    points
+        Positions of the body in the file's unit, (n, 3).
+    ask
+        How a caller gives the unit: ``--unit`` or ``unit=``.
+
+    Raises
+    ------
+    UnitError
+        If nobody says the unit; the message has the size of the body in each.
+
+    Examples
+    --------
+    >>> meter_of("a.inp", None, "mm", np.eye(3), "unit=")
+    0.001
+    """
+    if given is not None:
+        return parse(f"1 {given}", "length", where="unit")
+    if stated is None:
+        raise UnitError(where, *sizes(np.ptp(points, axis=0), ask))
+    return stated
+
+
+def name_of(meter: float) -> str:
+    """Return the unit of so many meters.
+
+    Examples
+    --------
+    >>> name_of(0.001), name_of(0.0254), name_of(1e-6)
+    ('mm', 'inch', 'um')
+    """
+    known = {parse(f"1 {unit}", "length"): unit for unit in (*UNITS, "um", "nm", "ft")}
+    return min(known.items(), key=lambda each: abs(np.log(each[0] / meter)))[1]
+
+
+def sizes(extents: NDArray[np.float64], ask: str) -> tuple[str, str]:
+    """Return the what and the hint of the error about a missing unit.
+
+    Examples
+    --------
+    >>> print(*sizes(np.array([80.0, 20, 20]), "unit="), sep="; ")
+    a mesh file does not say its unit; its numbers span 80 × 20 × 20; give unit=, one of mm, cm, \
+inch, m; the body would be, in mm: 80 mm long, cm: 800 mm long, inch: 2.03 m long, m: 80 m long
+    """
+    shown = " × ".join(f"{extent:.4g}" for extent in extents)
+    listed = ", ".join(
+        f"{unit}: {_longest(extents, parse(f'1 {unit}', 'length'))}" for unit in UNITS
+    )
+    return (
+        f"a mesh file does not say its unit; its numbers span {shown}",
+        f"give {ask}, one of {', '.join(UNITS)}; the body would be, in {listed}",
+    )
+
+
+def doubt(extents: NDArray[np.float64], meter: float) -> str:
+    """Return a caution about a body of an unlikely size, else an empty text.
+
+    Examples
+    --------
+    >>> doubt(np.array([80.0, 20, 20]), 1.0)
+    'The body is 80 m long: is the unit right? In mm it would be 80 mm long'
+    >>> doubt(np.array([80.0, 20, 20]), 1e-3)
+    ''
+    """
+    longest = float(extents.max()) * meter
+    if _SMALLEST <= longest <= _LARGEST:
+        return ""
+    other = "mm" if longest > _LARGEST else "m"
+    would = _longest(extents, parse(f"1 {other}", "length"))
+    found = _longest(extents, meter)
+    return f"The body is {found}: is the unit right? In {other} it would be {would}"
+
+
+def _longest(extents: NDArray[np.float64], meter: float) -> str:
+    longest = float(f"{float(extents.max()) * meter:.3g}")
+    return f"{format_quantity(longest, 'length')} long"

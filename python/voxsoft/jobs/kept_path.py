@@ -1,0 +1,104 @@
+"""The equilibria of a path on disk while it is followed: what ends the job costs none of them."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, Final
+from zipfile import BadZipFile
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voxsoft.design import Design
+from voxsoft.files.atomic import replace_whole
+from voxsoft.files.run_folder import make_folder
+from voxsoft.files.toml_text import write_toml
+from voxsoft.simulation import Over, Result
+from voxsoft.simulation.solved_state import SolvedState
+
+#: The folder beside the table that holds them until the path is finished.
+FOLDER: Final = "path-equilibria"
+
+
+class KeptPath:
+    """The equilibria that a path has found so far, in a folder.
+
+    Parameters
+    ----------
+    folder
+        The folder of the job.
+    design, over
+        What is followed: equilibria of any other path are not taken for those of this one.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import voxsoft as vs
+    >>> from voxsoft.design import families
+    >>> design = families.beam()
+    >>> over = Over.read("loads[0].value=0..1 N/2")
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     kept = KeptPath(Path(folder), design, over)
+    ...     kept.keep(0, vs.simulate(design))
+    ...     len(kept.read())
+    1
+    """
+
+    def __init__(self, folder: Path, design: Design, over: Over) -> None:
+        self._folder = folder / FOLDER
+        values = ", ".join(map(repr, over.values))
+        described = f"{write_toml(design.resolved)}\n{over.key}: {values}"
+        self._key = hashlib.sha256(described.encode()).hexdigest()
+
+    def keep(self, number: int, result: Result) -> None:
+        """Write the equilibrium at a value, the first of which has the number 0.
+
+        Raises
+        ------
+        OutputError
+            It cannot be written.
+        """
+        state = SolvedState.of(result)
+        arrays = {f"array{at}": each for at, each in enumerate(state.arrays)}
+        content: dict[str, Any] = {"key": self._key, "state": state.text, **arrays}
+        make_folder(self._folder)
+        replace_whole(
+            self._file(number),
+            lambda beside: np.savez(beside, positions=result.positions, **content),
+        )
+
+    def read(self) -> list[tuple[NDArray[np.float64], SolvedState]]:
+        """Positions and all else of the equilibria from the first value on, without a gap.
+
+        What cannot be read, or is of another path, ends them.
+        """
+        return list(self._read())
+
+    def _read(self) -> Iterator[tuple[NDArray[np.float64], SolvedState]]:
+        number = 0
+        while self._file(number).exists():
+            found = None
+            with (
+                suppress(OSError, ValueError, KeyError, EOFError, BadZipFile),
+                np.load(self._file(number), allow_pickle=False) as content,
+            ):
+                if str(content["key"]) == self._key:
+                    count = sum(name.startswith("array") for name in content)
+                    arrays = tuple(content[f"array{at}"] for at in range(count))
+                    state = SolvedState(str(content["state"]), arrays)
+                    found = np.asarray(content["positions"]), state
+            if found is None:
+                return
+            yield found
+            number += 1
+
+    def clear(self) -> None:
+        """Remove all of them: the path is finished, and the same job done anew begins anew."""
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _file(self, number: int) -> Path:
+        return self._folder / f"{number:04}.npz"
