@@ -53,4 +53,6 @@ def read_contents(path: Path) -> Contents:
         raise FileError(str(path), what)
     if not path.is_file():
         raise FileError(str(path), "no such file")
+    if suffix == ".msh" and b"$MeshFormat" not in path.read_bytes()[:4096]:
+        return by_meshio.read(path)  # ANSYS and others use the suffix too
     return READERS.get(suffix, by_meshio.read)(path)
