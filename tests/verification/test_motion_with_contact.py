@@ -39,7 +39,7 @@ def accelerations(designs, friction, degrees=20.0, step=5e-3):
 
 
 def test_a_ball_rolls_where_friction_is_enough(designs):
-    # When a facet lands within a step is chance, and may cost one of them a few percent: the median.
+    # When a facet lands within a step is chance, which may cost a run some percent: the median.
     runs = [accelerations(designs, 0.5, step=step) for step in (5e-3, 4e-3, 2.5e-3)]
     along, around, slip = (float(each) for each in np.median(runs, axis=0))
     expected = 5.0 / 7.0 * GRAVITY * math.sin(math.radians(20.0))
