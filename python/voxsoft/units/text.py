@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 from voxsoft.errors import UnitError
 from voxsoft.units import factors
 from voxsoft.units.kinds import KINDS, Dimension, Kind, Quantity, describe_dimension
+from voxsoft.units.workshop import READ, refusal, weight
 
 if TYPE_CHECKING:
     import pint
@@ -91,11 +92,10 @@ def parse(text: str, kind: str, *, where: str = "") -> float:
         return _without_unit(number, text, where, due)
     quantity = _quantity(number, unit, text, where)
     if quantity.dimension != due.dimension:
-        raise UnitError(
-            where,
-            f'"{text}" is {describe_dimension(quantity.dimension)}; {_expected(due)}',
-            _suggest(number, due),
-        )
+        # Its number in another unit would be another quantity.
+        hint = weight(quantity.value, quantity.dimension, due.dimension) or _units_of(due)
+        is_of = describe_dimension(quantity.dimension)
+        raise UnitError(where, f'"{text}" is {is_of}; {_expected(due)}', hint)
     return quantity.value
 
 
@@ -228,6 +228,8 @@ def _without_unit(number: str, text: str, where: str, due: Kind) -> float:
 
 @lru_cache(maxsize=1024)  # a study reads the bounds and constants of its family for every trial
 def _quantity(number: str, unit: str, text: str, where: str) -> Quantity:
+    if refused := refusal(number, unit):
+        raise UnitError(where, f'"{text}" {refused.what}', refused.hint)
     factor, dimension = _unit(unit, text, where)
     value = float(_DECIMAL.multiply(Decimal(number), factor))
     return Quantity(_finite(value, text, where), dimension)
@@ -243,6 +245,10 @@ def _expected(kind: Kind) -> str:
     return "expected a plain number" if not kind.units else f"expected {kind.article}"
 
 
+def _units_of(kind: Kind) -> str:
+    return f"give it in {' or '.join(kind.units)}" if kind.units else "leave the unit out"
+
+
 def _suggest(number: str, kind: Kind) -> str:
     return f'write "{number} {kind.units[0]}"' if kind.units else f'write "{number}"'
 
@@ -250,6 +256,7 @@ def _suggest(number: str, kind: Kind) -> str:
 def _unit(unit: str, text: str, where: str) -> tuple[Decimal, Dimension]:
     """Factor to SI and dimension of a compound unit such as ``kg/m^3`` or ``N*m``."""
     normalized = unit.translate(_SUPERSCRIPTS).replace("·", "*").replace("**", "^")
+    normalized = normalized.replace("H2O", "HHO")  # its digit is no power
     if normalized.startswith("/"):
         normalized = f"1{normalized}"  # "5 /s" is "5 1/s"
     if not _COMPOUND.fullmatch(normalized):
@@ -324,6 +331,8 @@ def _look_up(name: str) -> tuple[Decimal, Dimension] | str:
     """Factor and dimension of one unit name, or the reason why there are none."""
     if name in COMMON_UNITS:
         return Decimal(repr(getattr(factors, name))), COMMON_UNITS[name]
+    if name in READ:
+        return READ[name]
     if name == "%":
         return Decimal("0.01"), Dimension()
     return _ask_pint("degree" if name == "°" else name)
