@@ -137,10 +137,14 @@ def _study(
     from voxsoft import files
     from voxsoft.cli.progress import JobBar
     from voxsoft.jobs import DesignSource, StudySpec, run_job
+    from voxsoft.study.plateau import below_voxels
+    from voxsoft.study.space import space_of
 
     with errors_in_words(json=json):
         design = files.load(path, assignments=sets)
         spec = StudySpec(design=DesignSource.of_file(path, sets), **search)
+        for doubt in below_voxels(design, space_of(design)):
+            say(f"[yellow]warning:[/yellow] {plain(str(doubt))}")
         folder = out or Path("runs") / f"{folder_name(design.name)}-{verb}"
         with JobBar() as bar:
             outcome = run_job(spec, folder, bar.follow, scheduler=scheduler, storage=storage)
@@ -194,7 +198,8 @@ def _show(design: Design, result: StudyResult) -> None:
     reasons = {trial.status: trial.message for trial in reversed(result.trials)}
     found = {status: count for status, count in result.counts.items() if count}
     counts = ", ".join(f"{count} {status}" for status, count in found.items())
-    say(f"[bold]{len(result.trials)} designs[/bold]: {counts}")
+    distinct = f", {result.distinct} distinct" if result.distinct < result.counts["ok"] else ""
+    say(f"[bold]{len(result.trials)} designs[/bold]: {counts}{distinct}")
     for status in found:
         if status != "ok":
             say(f"[yellow]{status}[/yellow], for instance: {plain(reasons[status])}")
@@ -208,13 +213,16 @@ def _show(design: Design, result: StudyResult) -> None:
         say("[red]no design is at rest within the constraints[/red]")
         return
     best = result.ranking[:LISTED]
-    columns = [("rank", [str(rank) for rank in range(1, len(best) + 1)])]
+    columns = [("rank", [str(rank) for rank in result.ranks[:LISTED]])]
     for name in result.parameters:
         values = [trial.parameters[name] for trial in best]
         columns.append(_column(name, values, design.parameters[name].kind))
     for name, objective in design.objectives.items():
         values = [trial.objectives[name] for trial in best]
         columns.append(_column(name, values, METRICS[objective.metric].kind))
+    for name, constraint in design.constraints.items():
+        values = [trial.metrics.get(name, float("nan")) for trial in best]
+        columns.append(_column(name, values, METRICS[constraint.metric].kind))
     first, objective = next(iter(design.objectives.items()))
     title = f"The best designs (to {objective.direction} {first})"
     show_table(
@@ -223,7 +231,14 @@ def _show(design: Design, result: StudyResult) -> None:
         zip(*(cells for _, cells in columns), strict=True),
         doubtful=[bool(trial.warnings) for trial in best],
     )
-    for rank, trial in enumerate(best, start=1):
+    for name, (low, high) in result.plateau.items():
+        kind = design.parameters[name].kind
+        ends = f"from {quantity(low, kind)} to {quantity(high, kind)}"
+        say(f"the best is one body for {plain(name)} {ends}")
+    if len(design.objectives) > 1:
+        numbers = ", ".join(str(trial.number) for trial in result.pareto_front)
+        say(f"on the Pareto front: designs {numbers}")
+    for rank, trial in zip(result.ranks, best, strict=False):
         if trial.warnings:
             more = f" (and {len(trial.warnings) - 1} more)" if len(trial.warnings) > 1 else ""
             say(f"[yellow]warning[/yellow]: rank {rank}: {plain(trial.warnings[0])}{more}")

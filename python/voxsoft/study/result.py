@@ -21,6 +21,7 @@ from voxsoft.metrics import METRICS
 from voxsoft.records import closest
 from voxsoft.simulation import Diagnostic, Status
 from voxsoft.study.indexed_cavities import switched_cavities
+from voxsoft.study.plateau import alike, repeated, spans
 from voxsoft.study.trial import Trial
 from voxsoft.units import format_quantity
 
@@ -97,8 +98,28 @@ class StudyResult(Shown):
 
     @cached_property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """Why trials cannot be compared: cavities meant by an index that changes its meaning."""
-        return tuple(switched_cavities(self.trials))
+        """Why trials cannot be compared: they are one body, or an index of cavities changes."""
+        return (*switched_cavities(self.trials), *repeated(self.trials))
+
+    @cached_property
+    def distinct(self) -> int:
+        """How many distinct bodies the solved designs are, by all that was measured of them."""
+        return len(alike(trial for trial in self.trials if trial.status == "ok"))
+
+    @cached_property
+    def ranks(self) -> tuple[int, ...]:
+        """The rank of each of :attr:`ranking`; designs that are one body share a place."""
+        places: dict[int, int] = {}
+        for group in alike(self.ranking):
+            first = 1 + min(self.ranking.index(trial) for trial in group)
+            places |= {trial.number: first for trial in group}
+        return tuple(places[trial.number] for trial in self.ranking)
+
+    @cached_property
+    def plateau(self) -> dict[str, tuple[float, float]]:
+        """Between which values of the parameters the best design stays one body; SI units."""
+        groups = alike(self.ranking)
+        return spans(groups[0]) if groups else {}
 
     @cached_property
     def ranking(self) -> tuple[Trial, ...]:
@@ -294,11 +315,13 @@ class StudyResult(Shown):
         return {
             "trials": len(self.trials),
             "counts": dict(self.counts),
+            "distinct": self.distinct,
             "best": None
             if best is None
             else {
                 "number": best.number,
                 "parameters": dict(best.parameters),
+                "plateau": {name: list(ends) for name, ends in self.plateau.items()},
                 "objectives": dict(best.objectives),
                 "warnings": list(best.warnings),
             },
