@@ -88,7 +88,7 @@ def refusal(number: str, unit: str) -> Refusal | None:
 
 
 def weight(value: float, dimension: Dimension, due: Dimension) -> str:
-    """Return what to write for a mass where a force is due; empty for all else.
+    """Return what to write for a mass where a force is expected; empty for all else.
 
     Examples
     --------
