@@ -30,9 +30,11 @@ Ints = NDArray[np.intp]
 LARGE: Final = 0.03
 #: Beyond this it is given in whole percent, as far as a quick look knows it.
 _LARGER: Final = 0.1
-#: Points for a table, 0.1 % of the volume of most bodies, and for a warning, some 0.3 %: a body of
-#: k cells at its surface with m³ random points in each is off by some √k/(2 m²) cells.
-PRECISE, QUICK = 400_000, 5_000
+#: Points at most for a table, and for a warning, some 0.3 %: a body of k cells at its surface with
+#: m³ random points in each is off by some √k/(2 m²) cells.
+PRECISE, QUICK = 200_000, 5_000
+#: No more points than it takes to know the smallest part or cavity to a thousandth.
+_ENOUGH = 1e-3
 #: Between these differences a quick look is taken again at so many times the points.
 _SUSPECT, _AGAIN = (0.02, 0.05), 8
 #: The distance to a surface from a file takes fifty times as long as most shapes.
@@ -299,7 +301,11 @@ def _described(
         float
     )
     places = np.argwhere(near)
-    along = int(np.clip(round((points / max(len(places), 1)) ** (1 / 3)), 2, _MOST_ALONG))
+    sizes = [*np.bincount(cells.parts.reshape(-1))[1:], *np.bincount(cells.rooms[cells.rooms >= 0])]
+    smallest = min((int(each) for each in sizes if each), default=1)
+    enough = np.ceil(np.sqrt(np.sqrt(len(places)) / (2.0 * _ENOUGH * smallest)))
+    most = round((points / max(len(places), 1)) ** (1 / 3))
+    along = int(np.clip(min(most, enough), 2, _MOST_ALONG))
     rng = np.random.default_rng(0)
     step = max(1, _CHUNK // along**3)
     for start in range(0, len(places), step):
