@@ -1,24 +1,21 @@
-"""Whether samplers learn to stay out of the larger part of a space that cannot be solved.
+"""Learning of samplers in a space whose larger part cannot be solved.
 
 Walls of 10 to 20 mm and radii of 21 to 40 mm, of which walls above 12 mm count as diverged: one
 in five of the designs can be solved. The evaluation is a formula, so that the search alone is
 measured. For each sampler the share of solved designs among the first and the last 50 of 200
 trials, as the mean over seeds.
 
-    python benchmarks/unsolvable.py            # a table
-    python benchmarks/unsolvable.py --json     # the rows as data
+``python benchmarks/unsolvable.py [--json]``
 """
 
 from __future__ import annotations
 
-import argparse
-import json
-import os
-import platform
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from typing import Any, Final
+
+from measure import Report
 
 from voxsoft.design import Design, families
 from voxsoft.study import Outcome, Study
@@ -62,30 +59,13 @@ def shares(sampler: str, seed: int, trials: int = TRIALS) -> tuple[float, float]
 
 def main() -> None:
     """Measure every sampler that is installed."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--json", action="store_true", help="print rows as data")
-    parser.add_argument("samplers", nargs="*", help="default: all")
-    given = parser.parse_args()
-    there = [name for name in OBJECTIVES if name != "gp" or find_spec("torch")]
-    rows = []
-    for sampler in given.samplers or there:
+    report = Report("share of solved designs where four fifths cannot be solved")
+    for sampler in [name for name in OBJECTIVES if name != "gp" or find_spec("torch")]:
         found = [shares(sampler, seed) for seed in SEEDS]
         first, last = (sum(each) / len(SEEDS) for each in zip(*found, strict=True))
-        rows.append(
-            {
-                "name": sampler,
-                "value": last,
-                "unit": "1",
-                "ratio": last / first,
-                "first": [each[0] for each in found],
-                "last": [each[1] for each in found],
-            }
-        )
-        if not given.json:
-            print(f"| `{sampler}` | {first:.2f} | {last:.2f} |", flush=True)
-    if given.json:
-        machine = {"cpu": platform.processor() or platform.machine(), "cores": os.cpu_count()}
-        print(json.dumps({"machine": machine, "rows": rows}))
+        report.add(f"{sampler}, first {WINDOW}", first, "")
+        report.add(f"{sampler}, last {WINDOW}", last, "", last / first)
+    report.show()
 
 
 if __name__ == "__main__":

@@ -201,7 +201,7 @@ def own_parts(**entries):
             "layers[0].region.body",
             "bonded to one body",
         ),
-        ({"bodies": []}, "parts[0].body", "no body"),
+        ({"bodies": []}, "parts[0].body", "is no name"),
         ({"bodies": [], "parts": []}, "parts", "at least 1"),
     ],
 )  # fmt: skip
@@ -273,7 +273,11 @@ def test_check_lists_each_body_and_what_is_left_out(folder):
     cells = 12 * 4 * 4 - 8 * 2 * 2, 20 * 8 * 8 - 12 * 4 * 4
     assert dict(report.bodies) == {"left": cells[0], "right": cells[1]}
     assert report.voxels == sum(cells)
-    assert report.summary()["bodies"][1] == {"name": "right", "voxels": cells[1]}
+    assert report.summary()["bodies"][1] == {
+        "name": "right",
+        "voxels": cells[1],
+        "phase": [0, 0, 0],
+    }
     assert sorted(report.chambers) == ["left.air", "right.air"]
     floor = FINGER + '[floor]\nz = "-10 mm"\n[[loads]]\nkind = "gravity"\n'
     (folder / "finger.toml").write_text(floor)

@@ -12,6 +12,8 @@ import trimesh
 import voxsoft as vs
 from voxsoft.design import Object, families
 from voxsoft.shapes import Shape
+from voxsoft.shapes.sharpening import sharpened
+from voxsoft.simulation.apart import Surface
 from voxsoft.simulation.rigid import Solid, surface_of
 
 #: Volume in m³ and second moments over it in m², of each shape.
@@ -36,6 +38,13 @@ def object_of(shape: Shape, **more: Any) -> Object:
     return Object(name="thing", shape=shape, motion="free", density=500.0, **more)
 
 
+def sharp(shape: Shape, size: float) -> Surface:
+    traced = surface_of(object_of(shape, voxel_size=size), families.beam(), "objects[0]")
+    triangles = traced.triangles.astype(np.int64)
+    vertices, triangles = sharpened(shape.build(), traced.vertices, triangles, size / 3)
+    return Surface(vertices, triangles.astype(np.uint32))
+
+
 @pytest.mark.parametrize("size", [0.002, 0.0013])
 @pytest.mark.parametrize("name", SOLIDS)
 def test_mass_and_inertia_are_those_of_the_shape(name: str, size: float):
@@ -58,7 +67,7 @@ def test_edges_and_corners_stay_sharp_and_the_surface_closed(size: float):
     notch = vs.Box(size=(0.02,) * 3, corner=(0.0107, 0.0093, 0))
     shapes = [shape for shape, _, _ in SOLIDS.values()] + [vs.Box(size=(0.02,) * 3) - notch]
     for shape in shapes:
-        surface = surface_of(object_of(shape, voxel_size=size), families.beam(), "objects[0]")
+        surface = sharp(shape, size)
         body = trimesh.Trimesh(surface.vertices, surface.triangles, process=False)
         assert body.is_watertight
         assert body.is_winding_consistent
@@ -67,6 +76,6 @@ def test_edges_and_corners_stay_sharp_and_the_surface_closed(size: float):
         off = np.abs(shape.build().evaluate(surface.vertices)).max()
         assert off < 0.01 * size
     corners = np.array(np.meshgrid(*[[0, 0.02]] * 3)).reshape(3, -1).T
-    cube = surface_of(object_of(SOLIDS["cube"][0]), families.beam(), "objects[0]")
+    cube = sharp(SOLIDS["cube"][0], size)
     gaps = np.linalg.norm(cube.vertices[:, None] - corners, axis=-1).min(axis=0)
     assert gaps == pytest.approx(0.0, abs=1e-9)

@@ -26,7 +26,7 @@ LIMITS = {
 
 
 @pytest.mark.parametrize("unknown", [math.nan, None, math.inf])
-@pytest.mark.parametrize("order", itertools.permutations(LIMITS))
+@pytest.mark.parametrize("order", list(itertools.permutations(LIMITS)))
 def test_unknown_is_broken_in_any_order(order: tuple[str, ...], unknown: float | None):
     metrics = {"safety": unknown, "light": 0.1, "stiff": 0.1}
     found = violations(metrics, {name: LIMITS[name] for name in order})

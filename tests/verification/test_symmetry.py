@@ -183,7 +183,6 @@ LEFT = vs.Region(y=("-inf", 6 * mm))
     [
         ({"symmetry": [Symmetry(plane="y")]}, "symmetry[0]", "the body's middle is at 10 mm"),
         ({"symmetry": [Symmetry(plane="x", at=20 * mm)]}, "clamps[0]", "has no image across x"),
-        ({"symmetry": [Symmetry(plane="y", at=9 * mm)]}, "symmetry[0]", "passes through voxels"),
         ({"symmetry": [Symmetry(plane="z", at=5 * mm)]}, "loads[0]", "its acceleration points"),
         ({"clamps": [*BAR.clamps, vs.Clamp(region=LEFT)]}, "clamps[1]", "what it holds has no"),
         ({"loads": [vs.Force(region=LEFT, value=(0, 0, 1))]}, "loads[0]", "its force has no image"),

@@ -98,6 +98,8 @@ class Confirmation:
     def sentence(self) -> str:
         """What it says of the study's ranking."""
         failed = [found for found in self.designs if found.estimate is None]
+        if len(self.designs) == 1 and not failed:
+            return "the design was solved again; one alone has no ranking"
         if len(self.ranking) < 2:
             return "too few of the designs could be solved again to rank them"
         kept = [found.trial.number for found in self.designs if found.estimate is not None]

@@ -76,7 +76,7 @@ class FileMesh(Record):
     >>> FileMesh(path="bar.msh", unit="kPa")
     Traceback (most recent call last):
     ...
-    voxsoft.errors.DesignError: unit: 1 kPa is a pressure; expected a length. Try: write "1 mm"
+    voxsoft.errors.DesignError: unit: "1 kPa" is a pressure; expected a length. Try: write "1 mm"
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [{"path": "bar.msh", "unit": "mm"}]})

@@ -29,8 +29,8 @@ class Object(Record):
         Of a free object, either of them. Volume and moments of inertia are those of its shape, of
         one density.
     voxel_size
-        How finely its surface is traced: its triangles have sides of about a third of it. Edges
-        and corners stay sharp. Default: the voxel size of the design.
+        How finely its surface is traced: edges are rounded by a third of it. Default: the voxel
+        size of the design.
 
     Examples
     --------

@@ -82,11 +82,15 @@ def read_contents(path: Path) -> Contents:
     """
     suffix = path.suffix.lower()
     if suffix not in known_suffixes() and suffix not in _LISTS:
-        ways = [way for suffixes, way in _WAYS if suffix in suffixes]
+        ways = (way for suffixes, way in _WAYS if suffix in suffixes)
         what = f"unknown format {path.suffix!r}; known are {', '.join(known_suffixes())}"
-        raise FileError(str(path), what, *ways or ("export it as STL, OBJ or .vtu",))
+        raise FileError(str(path), what, next(ways, "export it as STL, OBJ or .vtu"))
     if not path.is_file():
         raise FileError(str(path), "no such file")
     if not path.stat().st_size:
         raise FileError(str(path), "holds nothing: it has 0 bytes", "save or copy it again")
+    if suffix == ".msh":
+        with path.open("rb") as file:
+            if b"$MeshFormat" not in file.read(4096):
+                return by_meshio.read(path)  # ANSYS and others use the suffix too
     return (READERS | _LISTS).get(suffix, by_meshio.read)(path)

@@ -155,9 +155,9 @@ class GeneticSampler(PlacingSampler):
     def _value(self, trial: FrozenTrial) -> float:
         if trial.state != TrialState.COMPLETE:
             return np.nan
-        broken = () if self._constraints_func is None else self._constraints_func(trial)
-        # Not "any > 0": NaN is unknown, and unknown is broken.
-        if not all(each <= 0 for each in broken):
+        limits = () if self._constraints_func is None else self._constraints_func(trial)
+        # Not "> 0": NaN is unknown, and unknown is broken.
+        if not all(broken <= 0 for broken in limits):
             return np.nan
         return float(trial.values[0])
 

@@ -19,7 +19,6 @@ from optuna.distributions import BaseDistribution
 from optuna.exceptions import ExperimentalWarning, StorageInternalError
 from optuna.samplers import (
     BaseSampler,
-    CmaEsSampler,
     GPSampler,
     NSGAIIISampler,
     NSGAIISampler,
@@ -48,8 +47,9 @@ __all__ = [
 
 Distributions = Mapping[str, BaseDistribution]
 Direction = Literal["maximize", "minimize"]
-#: Samplers that look at completed trials only.
-_LEARN_FROM_COMPLETED: Final = (CmaEsSampler, GPSampler, NSGAIISampler, NSGAIIISampler)
+#: Samplers that look at completed trials only. CMA-ES does too, and is better off without: a whole
+#: generation that cannot be solved has no best, and its mean would walk at random.
+_LEARN_FROM_COMPLETED: Final = (GPSampler, NSGAIISampler, NSGAIIISampler)
 #: Where a trial stands in the search of a sampler: a generation or start, and an index in it.
 Place = list[int]
 
@@ -225,9 +225,9 @@ class StoredStudy:
     def tell_unsolved(self, number: int) -> None:
         """End a trial without values so that the sampler in use learns from it.
 
-        TPE and the samplers of VoxSoft learn from pruned trials. Other samplers of Optuna forget
-        all but completed ones, and are told the worst value of each objective: infinity, which
-        they rank last whatever the scale of the objectives.
+        TPE and the samplers of VoxSoft learn from pruned trials; CMA-ES fills its generations with
+        designs that were solved. The others forget all but completed trials, and are told the
+        worst value of each objective: infinity, which they rank last whatever the scale.
         """
         if isinstance(self._study.sampler, _LEARN_FROM_COMPLETED):
             minimize = StudyDirection.MINIMIZE

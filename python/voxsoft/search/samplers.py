@@ -35,6 +35,13 @@ SAMPLERS: Final[Mapping[str, str]] = {
 }
 
 
+#: Designs in a generation of NSGA, as in the paper's genetic algorithm: Optuna's 50 leave a budget
+#: of 100 with two generations, the first of which is drawn at random.
+_POPULATION: Final = 30
+#: Chance that NSGA draws a parameter afresh, as in the paper. Optuna's 1 / parameters is half of
+#: all in two dimensions, so that a fresh draw leads back to where nothing can be solved.
+_MUTATION: Final = 0.05
+
 #: Samplers that take one objective only.
 SINGLE_OBJECTIVE: Final = frozenset({"cma-es", "genetic", "gradient"})
 
@@ -117,9 +124,19 @@ def _make(
         case "gp":
             return _gaussian_process(seed, constraints)
         case "nsga-ii":
-            return optuna.samplers.NSGAIISampler(seed=seed, constraints_func=constraints)
+            return optuna.samplers.NSGAIISampler(
+                population_size=_POPULATION,
+                mutation_prob=_MUTATION,
+                seed=seed,
+                constraints_func=constraints,
+            )
         case "nsga-iii":
-            return optuna.samplers.NSGAIIISampler(seed=seed, constraints_func=constraints)
+            return optuna.samplers.NSGAIIISampler(
+                population_size=_POPULATION,
+                mutation_prob=_MUTATION,
+                seed=seed,
+                constraints_func=constraints,
+            )
         case _:
             return GeneticSampler(space, seed=seed, constraints_func=constraints)
 

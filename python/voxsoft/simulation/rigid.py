@@ -71,8 +71,7 @@ def _integrals(traced: Surface, each: Object, design: Design) -> tuple[float, Fl
     shape = _shape(each, design).build(design.shapes)
     step = (each.voxel_size or design.voxel_size) / SAMPLES[0]
     vertices, triangles = traced.vertices, traced.triangles.astype(np.int64)
-    if _lets_go(each, design):
-        vertices, triangles = sharpened(shape, vertices, triangles, step)
+    vertices, triangles = sharpened(shape, vertices, triangles, step)
     sides, index = np.unique(
         np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1),
         axis=0,
@@ -120,26 +119,15 @@ def surface_of(each: Object, design: Design, where: str) -> Surface:
             hint = "close it in the program that it came from: what is inside it is a guess"
             raise DesignError(f"{where}.shape", what, hint)
     size = each.voxel_size or design.voxel_size
-    voxels = voxelize(shape, size, names=design.shapes)
+    # The surface is traced between the cells: where the grid lies does not move it.
+    voxels = voxelize(shape, size, names=design.shapes, phase=(0.0, 0.0, 0.0))
     built = shape.build(design.shapes)
     traced = trace([built], voxels)
     if traced is None:
         what = "has too large a surface to be traced"
         raise DesignError(where, what, "give it a larger voxel_size")
     vertices, triangles, _ = traced
-    if not _lets_go(each, design):
-        vertices, triangles = sharpened(built, vertices, triangles, size / SAMPLES[0])
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     if np.einsum("ij,ij->", a, np.cross(b, c)) < 0.0:
         triangles = triangles[:, ::-1]
     return Surface(vertices, np.ascontiguousarray(triangles, dtype=np.uint32))
-
-
-def _lets_go(each: Object, design: Design) -> bool:
-    """Whether a bond of an object may break.
-
-    Where flat faces are bonded with no gap at all and the rim of one is sharp, statics finds no
-    equilibrium past the first point that breaks; rims cut by marching cubes let it.
-    """
-    pairs = () if design.contact is None else design.contact.pairs
-    return any(pair.strength is not None and each.name in pair.of for pair in pairs)

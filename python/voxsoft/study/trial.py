@@ -178,10 +178,9 @@ def violations(
     """
     found = []
     for name, constraint in constraints.items():
-        value = metrics.get(name)
-        known = None if value is None or isnan(value) else value
+        value = _number(metrics.get(name))
         if constraint.min is not None:
-            found.append(inf if known is None else constraint.min - known)
+            found.append(inf if isnan(value) else constraint.min - value)
         if constraint.max is not None:
-            found.append(inf if known is None else known - constraint.max)
+            found.append(inf if isnan(value) else value - constraint.max)
     return tuple(found)
