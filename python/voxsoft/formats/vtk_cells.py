@@ -147,15 +147,16 @@ def check_cells(where: str, types: Indices, offsets: Indices, nodes: Indices, po
         wrong = nodes[(nodes < 0) | (nodes >= points)][0]
         raise FileError(where, f"is damaged: a cell has point {wrong}, of {points:,} points")
     refused = []
-    for type_, count in zip(*np.unique(types, return_counts=True), strict=True):
-        if int(type_) in _REFUSED:
-            refused.append(f"{count:,} {_REFUSED[int(type_)][count > 1]}")
-        elif int(type_) not in _KINDS and int(type_) not in (0, _POLY_VERTEX, _POLY_LINE, _STRIP):
-            refused.append(f"{counted(int(count), 'cell')} of VTK's type {type_}")
+    found, counts = np.unique(types, return_counts=True)
+    for type_, count in zip(found.tolist(), counts.tolist(), strict=True):
+        if type_ in _REFUSED:
+            refused.append(f"{count:,} {_REFUSED[type_][count > 1]}")
+        elif type_ not in (*_KINDS, 0, _POLY_VERTEX, _POLY_LINE, _STRIP):
+            refused.append(f"{counted(count, 'cell')} of VTK's type {type_}")
     if refused:
         hint = "cut them in ParaView by Filters, Alphabetical, Tetrahedralize, and save that"
         raise FileError(where, f"holds {', '.join(refused)}, which cannot be followed", hint)
-    for type_ in np.unique(types).tolist():
+    for type_ in found.tolist():
         least = _LINEAR.get(_KINDS.get(type_, ""), 0)
         if least and (np.diff(offsets)[types == type_] < least).any():
             what = f"is damaged: a {_KINDS[type_]} has fewer than {counted(least, 'point')}"

@@ -20,7 +20,7 @@ Indices = NDArray[np.int64]
 #: The array that marks cells of other pieces and hidden ones, and its bits for these.
 GHOSTS: Final = "vtkGhostType"
 HIDDEN: Final = 32
-_MARKS: Final = ((1, "of other pieces"), (HIDDEN, "that are hidden"))
+_MARKS: Final = ((1, "that another component has"), (HIDDEN, "that are hidden"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ def contents_of(
     >>> side = DataSet(np.eye(3), *map(np.array, ([5], [0, 3], [0, 1, 2])))
     >>> found = contents_of("a.vtu", [side, side], "VTU")
     >>> found.blocks[0].nodes.tolist(), len(found.points), found.notes
-    ([[0, 1, 2], [0, 1, 2]], 3, ('3 points where pieces meet become one with their doubles',))
+    ([[0, 1, 2], [0, 1, 2]], 3, ('3 points where components meet become one with their doubles',))
     """
     for piece in pieces:
         check_cells(where, piece.types, piece.offsets, piece.nodes, len(piece.points))
@@ -128,7 +128,7 @@ def _joined(
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     joined = len(points) - len(kept)
-    note = f"{counted(joined, 'point')} where pieces meet become one with their doubles"
+    note = f"{counted(joined, 'point')} where components meet become one with their doubles"
     return points[kept[order]], rank[new.reshape(-1)], [note] if joined else []
 
 
@@ -138,8 +138,9 @@ def _single_numbers(
     """Arrays on cells that are one number a cell, through all pieces; sentences on the others."""
     for piece in pieces:
         for name, values in piece.cell_arrays.items():
-            if len(values) != len(piece.types):
-                what = f'array "{name}" has {len(values):,} rows for {len(piece.types):,} cells'
+            count = len(piece.types)
+            if len(values) != count:
+                what = f'array "{name}" has {len(values):,} rows for {count:,} cells'
                 raise FileError(where, f"is damaged: {what}")
     found, notes = {}, []
     for name in dict.fromkeys(_names(pieces)):

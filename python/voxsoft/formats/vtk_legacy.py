@@ -168,7 +168,11 @@ class _File:
                 cursor.words()
             if self.place == "cell_data":
                 self.active = cursor.named(name)
-        self._keep(cursor.named(name), cursor.numbers(rows * width, kind), rows, width)
+        values = cursor.numbers(rows * width, kind)
+        if key == "color_scalars" and not cursor.is_binary:
+            # Texts have bytes as parts of 255; VTK writes any numbers of one byte so.
+            values = np.rint(255.0 * values.astype(np.float64)).astype(np.uint8)
+        self._keep(cursor.named(name), values, rows, width)
 
     def _array_of_field(self) -> None:
         words = self.cursor.words()

@@ -57,14 +57,16 @@ def read(path: Path) -> Contents:
     body = root.find(kind)
     pieces = [] if body is None else body.findall("Piece")
     if body is None or not pieces:
-        raise FileError(where, "holds no piece")
+        raise FileError(where, "holds no cells and no image")
     try:
         if kind == "ImageData":
             found = [cells_of_image(where, _image(arrays, body, pieces))]
         else:
             found = [_READERS[kind](arrays, piece) for piece in pieces]
     except (KeyError, ValueError) as error:
-        raise coding.damaged(f"a piece lacks an array or an extent ({error})") from None
+        raise coding.damaged(
+            f"an array or extent is missing, or does not fit ({error})"
+        ) from None
     fields = body.findall("FieldData/*")
     others = [f'Array "{each.get("Name")}" of the whole file is not read' for each in fields]
     found[0] = replace(found[0], notes=(*found[0].notes, *others, *arrays.notes))
