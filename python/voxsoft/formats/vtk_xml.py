@@ -64,9 +64,7 @@ def read(path: Path) -> Contents:
         else:
             found = [_READERS[kind](arrays, piece) for piece in pieces]
     except (KeyError, ValueError) as error:
-        raise coding.damaged(
-            f"an array or extent is missing, or does not fit ({error})"
-        ) from None
+        raise coding.damaged(f"an array or extent is missing, or does not fit ({error})") from None
     fields = body.findall("FieldData/*")
     others = [f'Array "{each.get("Name")}" of the whole file is not read' for each in fields]
     found[0] = replace(found[0], notes=(*found[0].notes, *others, *arrays.notes))
