@@ -1,13 +1,24 @@
-"""OBJ and STL: indices, groups and solids, and proof before a file is called cut short."""
+"""OBJ, STL and PLY: indices, groups and solids, and proof before a file is called cut short."""
 
+import struct
+
+import meshio
 import numpy as np
 import pytest
 import trimesh
 
 from voxsoft.errors import FileError, ShapeError
 from voxsoft.files.checks import check_mesh
+from voxsoft.files.meshes import read_mesh_file
 from voxsoft.formats.read import read_contents
 from voxsoft.shapes.surface_files import read_surface
+
+
+def volume_within(path):
+    surface = read_surface(path)
+    a, b, c = (surface.points[surface.triangles[:, corner]] for corner in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 
@@ -106,3 +117,90 @@ def test_formats_that_are_not_read_have_a_way_that_works(tmp_path, name, way):
     (tmp_path / name).write_bytes(b"x")
     with pytest.raises(ShapeError, match=f"unknown format.*{way}"):
         read_surface(tmp_path / name)
+
+
+PLY = """ply
+format ascii 1.0
+comment a pyramid of four sides
+element vertex 5
+property float x
+property float y
+property float z
+property uchar red
+element face 5
+property uchar flags
+property list uchar int vertex_indices
+element edge 1
+property int vertex1
+property int vertex2
+end_header
+0 0 0 255
+6 0 0 255
+6 6 0 255
+0 6 0 255
+3 3 5 0
+1 4 3 2 1 0
+1 3 0 1 4
+1 3 1 2 4
+1 3 2 3 4
+1 3 3 0 4
+0 1
+"""
+
+
+def test_a_ply_of_mixed_faces_is_read_whole(tmp_path):
+    found = read(tmp_path, PLY, "a.ply")
+    kinds = [(block.kind, len(block.nodes)) for block in found.blocks]
+    assert kinds == [("quad", 1), ("triangle", 4)]
+    assert volume_within(tmp_path / "a.ply") == pytest.approx(60, rel=1e-15)
+    assert found.notes == (
+        'Array "red" on points is not read',
+        'Array "flags" on cells is not read',
+        "1 elements of edge are not read",
+    )
+
+
+def test_a_ply_of_big_endian_bytes_is_read(tmp_path):
+    head = PLY.partition("end_header\n")[0].replace("ascii", "binary_big_endian")
+    points = [(0, 0, 0), (6, 0, 0), (6, 6, 0), (0, 6, 0), (3, 3, 5)]
+    faces = [(3, 2, 1, 0), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+    body = b"".join(struct.pack(">fffB", *point, 255) for point in points)
+    body += b"".join(struct.pack(f">BB{len(f)}i", 1, len(f), *f) for f in faces)
+    content = head.encode() + b"end_header\n" + body + struct.pack(">2i", 0, 1)
+    read(tmp_path, content, "a.ply")
+    assert volume_within(tmp_path / "a.ply") == pytest.approx(60, rel=1e-15)
+    with pytest.raises(FileError, match="is cut short: it ends before the last face of 5"):
+        read(tmp_path, content[:-20], "b.ply")
+
+
+def test_a_ply_of_text_that_ends_early_is_cut_short(tmp_path):
+    # Another reader goes on at the end for good.
+    with pytest.raises(FileError, match="is cut short: it ends before the last face of 5"):
+        read(tmp_path, PLY[:-30], "a.ply")
+    with pytest.raises(FileError, match="is damaged: a face names a vertex beyond its 5"):
+        read(tmp_path, PLY.replace("3 3 0 4", "3 3 0 5"), "b.ply")
+    with pytest.raises(FileError, match="its head has the line 'element face x'"):
+        read(tmp_path, PLY.replace("element face 5", "element face x"), "c.ply")
+
+
+def test_warped_bricks_beside_tets_are_one_body_in_both_ways(tmp_path):
+    # A brick with a raised corner, and two tets on its upper face, cut along the lower diagonal.
+    random = np.random.default_rng(3)
+    corners = np.array(
+        [[x, y, z] for z in (0, 10) for x, y in ((0, 0), (10, 0), (10, 10), (0, 10))], float
+    )
+    corners[6, 2] = 13
+    points = np.concatenate([corners, [[5, 5, 20]]])
+    for _ in range(10):
+        order = random.permutation(9)
+        moved = np.empty_like(points)
+        moved[order] = points
+        # The upper face is cut from its vertex of the smallest number.
+        turn = (np.arange(4) + order[4:8].argmin()) % 4 + 4
+        halves = [order[[*turn[[0, 1, 2]], 8]], order[[*turn[[0, 2, 3]], 8]]]
+        cells = [("hexahedron", order[None, :8]), ("tetra", np.array(halves))]
+        meshio.Mesh(moved, cells).write(tmp_path / "a.vtu")
+        mesh = read_mesh_file(tmp_path / "a.vtu", unit="m").mesh
+        surface = read_surface(tmp_path / "a.vtu")
+        assert volume_within(tmp_path / "a.vtu") == pytest.approx(mesh.volume, rel=1e-14)
+        assert len(surface.triangles) == len(mesh.triangles) == 14

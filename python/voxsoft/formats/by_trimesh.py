@@ -1,4 +1,4 @@
-"""Surfaces by trimesh: glTF binary, and dialects of PLY and OFF that meshio does not take."""
+"""Surfaces by trimesh: glTF binary, and dialects of OFF that meshio does not take."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Final
 
 from voxsoft.errors import FileError
-from voxsoft.formats import abaqus, by_meshio, by_trimesh, gmsh, obj, stl, vtk_legacy, vtk_xml
+from voxsoft.formats import abaqus, by_meshio, by_trimesh, gmsh, obj, ply, stl, vtk_legacy, vtk_xml
 from voxsoft.formats.contents import Contents
 
 #: Own readers by suffix, before meshio.
@@ -20,7 +20,7 @@ READERS: Final[dict[str, Callable[[Path], Contents]]] = {
     ".obj": obj.read,
     ".stl": stl.read,
     ".glb": by_trimesh.read,
-    ".ply": by_trimesh.read_after_meshio,
+    ".ply": ply.read,
     ".off": by_trimesh.read_after_meshio,
 }
 #: Files of VTK that list other files: their reader says which.

@@ -171,7 +171,8 @@ class _File:
         values = cursor.numbers(rows * width, kind)
         if key == "color_scalars" and not cursor.is_binary:
             # Texts have bytes as parts of 255; VTK writes any numbers of one byte so.
-            values = np.rint(255.0 * values.astype(np.float64)).astype(np.uint8)
+            whole = np.rint(255.0 * np.nan_to_num(values.astype(np.float64)))
+            values = np.clip(whole, 0, 255).astype(np.uint8)
         self._keep(cursor.named(name), values, rows, width)
 
     def _array_of_field(self) -> None:

@@ -53,12 +53,12 @@ def read(path: Path) -> Contents:
         "u8" if root.get("header_type") == "UInt64" else "u4",
         root.get("compressor", ""),
     )
-    arrays = _Arrays(coding, root, appended)
     body = root.find(kind)
     pieces = [] if body is None else body.findall("Piece")
     if body is None or not pieces:
         raise FileError(where, "holds no cells and no image")
     try:
+        arrays = _Arrays(coding, root, appended)
         if kind == "ImageData":
             found = [cells_of_image(where, _image(arrays, body, pieces))]
         else:
