@@ -68,7 +68,9 @@ def _contents(path: Path, bodies: list[trimesh.Trimesh]) -> Contents:
             name = str(body.metadata.get("node") or body.metadata.get("name") or number + 1)
             cells = np.arange(counts[number], counts[number + 1])
             sets[name] = np.concatenate([sets[name], cells]) if name in sets else cells
-    triangles = [body.faces + first for body, first in zip(bodies, firsts, strict=False)]
+    triangles = [
+        body.faces.reshape(-1, 3) + first for body, first in zip(bodies, firsts, strict=False)
+    ]
     is_gltf = path.suffix.lower() == ".glb"
     return Contents(
         np.concatenate([body.vertices for body in bodies]).astype(np.float64),

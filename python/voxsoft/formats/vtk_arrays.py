@@ -128,7 +128,14 @@ class Coding:
             expected = last if last and number == blocks - 1 else size
             try:
                 part = unpack(content[place : place + packed], expected)
-            except (zlib.error, lzma.LZMAError, IndexError, ValueError, EOFError) as error:
+            except (
+                zlib.error,
+                lzma.LZMAError,
+                IndexError,
+                ValueError,
+                EOFError,
+                OverflowError,
+            ) as error:
                 what = f"block {number + 1} of {blocks} of an array cannot be unpacked ({error})"
                 raise self.damaged(what) from None
             if len(part) != expected:

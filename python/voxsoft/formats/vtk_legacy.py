@@ -123,18 +123,18 @@ class _File:
         count, size = self.cursor.parsed(words[:2], int, 2)
         if self.cursor.peek().lower() == "offsets":
             # From version 5.1 on; the count is of offsets, one more than cells.
-            offsets = self.cursor.numbers(count, self.cursor.words()[1])
+            offsets = self.cursor.numbers(count, self.cursor.words()[-1])
             if self.cursor.peek().lower() != "connectivity":
                 raise self.cursor.wrong("OFFSETS are not followed by CONNECTIVITY")
-            nodes = self.cursor.numbers(size, self.cursor.words()[1])
+            nodes = self.cursor.numbers(size, self.cursor.words()[-1])
             starts = offsets.astype(np.int64) if count else np.zeros(1, np.int64)
             return starts, nodes.astype(np.int64)
         numbers = self.cursor.numbers(size, "int").astype(np.int64)
         starts, place = np.zeros(count + 1, np.int64), 0
         is_node = np.ones(size, bool)
         for cell in range(count):
-            if place >= size:
-                raise self.cursor.wrong(f"{count:,} cells have more than {size:,} numbers")
+            if place >= size or numbers[place] < 0:
+                raise self.cursor.wrong(f"cell {cell} has no number of points within {size:,}")
             starts[cell + 1] = starts[cell] + numbers[place]
             is_node[place] = False
             place += int(numbers[place]) + 1
