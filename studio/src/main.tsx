@@ -17,7 +17,10 @@ tellFits();
 const scheme = location.protocol === "https:" ? "wss:" : "ws:";
 connect(new ServerEngine(`${scheme}//${location.host}/ws`));
 createRoot(document.getElementById("root") as HTMLElement).render(
-  <PageFence resetLayout={forgetLayouts}>
+  <PageFence
+    comfort="The design and all runs are safe: VoxSoft keeps each change as it is made."
+    resetLayout={forgetLayouts}
+  >
     <App />
   </PageFence>,
 );

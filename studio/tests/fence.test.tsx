@@ -37,7 +37,7 @@ it("holds what fails while a pane is taken away, and says so", async () => {
   const forget = vi.fn();
   await act(async () => {
     createRoot(host, { onCaughtError: () => {} }).render(
-      <PageFence resetLayout={forget}>
+      <PageFence comfort="Runs are kept." resetLayout={forget}>
         <Page />
       </PageFence>,
     );
@@ -46,9 +46,27 @@ it("holds what fails while a pane is taken away, and says so", async () => {
   await act(async () => leave());
   expect(host.textContent).toContain("The page stopped working");
   expect(host.textContent).toContain("l is not a function");
+  expect(host.textContent).toContain("Runs are kept.");
   expect([...host.querySelectorAll("button")].map((button) => button.textContent)).toEqual([
     "Reload",
     "Reset the layout and reload",
   ]);
   said.mockRestore();
+});
+
+function Undrawn(): never {
+  throw new Error("Error creating WebGL context.");
+}
+
+it("names WebGL as the cause where the browser has none", async () => {
+  const host = document.createElement("div");
+  await act(async () => {
+    createRoot(host, { onCaughtError: () => {} }).render(
+      <PageFence comfort="Runs are kept.">
+        <Undrawn />
+      </PageFence>,
+    );
+  });
+  expect(host.textContent).toContain("This browser draws no WebGL");
+  expect(host.textContent).not.toContain("Runs are kept.");
 });

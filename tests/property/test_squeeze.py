@@ -35,7 +35,7 @@ def assert_orderly(verdict):
     assert verdict.points > 0
 
 
-@pytest.mark.parametrize("seed", [*SOUND, 3, 5, 6])
+@pytest.mark.parametrize("seed", [*SOUND, 3, 6, 17])
 def test_a_random_body_is_squeezed(seed):
     from squeeze_bodies import judged
 
@@ -62,17 +62,13 @@ def test_what_snaps_says_so():
     assert any("snapped to another one" in each for each in warnings)
 
 
-@pytest.mark.parametrize(
-    ("seed", "what"), [(5, "pass through each other"), (6, "is folded into itself")]
-)
-def test_what_passes_through_itself_says_so(seed, what):
-    # Walls end in each other, or a crease is in itself, as both judges of `judged` find.
+def test_what_is_folded_into_itself_says_so():
+    # A crease is in itself, as both judges of `judged` find.
     from squeeze_bodies import judged
 
-    _, warnings = warned(seed)
-    assert any(what in each for each in warnings)
-    verdict = judged(seed, SMALL)
-    assert (verdict.pairs if "pass" in what else verdict.folds) > 0
+    _, warnings = warned(6)
+    assert any("is folded into itself" in each for each in warnings)
+    assert judged(6, SMALL).folds > 0
 
 
 def test_a_body_that_is_folded_onto_itself_passes_through_itself():

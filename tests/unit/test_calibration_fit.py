@@ -18,7 +18,7 @@ BEAM = {"edge": 12e3, "bulk": 30e3}
 BLOCK = {"edge": 15e3, "bulk": 20e3}
 
 
-def observed(design, truth, quantities, noise, **stations):
+def observed(design, truth, quantities, noise, line="lower-edge", **stations):
     """Measure a simulated body with Gaussian noise (in m)."""
     material = {"model": "lattice", "edge": truth["edge"], "bulk": truth["bulk"]}
     document = design.document
@@ -28,7 +28,7 @@ def observed(design, truth, quantities, noise, **stations):
     blank = Measurement(
         quantities=quantities, values=np.zeros((count, len(quantities))), **stations
     )
-    probe = Experiment(true, _plausible(blank))
+    probe = Experiment(true, _plausible(blank), line)
     seen = probe.seen_at(simulate(probe.setup, tolerance=1e-6).positions)
     seen = seen + noise * np.random.default_rng(0).normal(size=seen.shape)
     return Experiment(
@@ -50,6 +50,21 @@ def bent():
     beam = families.beam().with_parameters(length="60 mm")
     arcs = np.arange(1, 6) * 10e-3
     return observed(beam, BEAM, ("x", "dz"), noise=2e-4, arcs=arcs)
+
+
+@pytest.mark.parametrize(("line", "caution"), [("lower-edge", ""), ("centerline", "deviate alike")])
+def test_marks_on_another_line_than_assumed_are_cautioned_of(line, caution):
+    beam = families.beam().with_parameters(length="60 mm")
+    arcs = np.arange(1, 10) * 5e-3
+    right = observed(beam, BEAM, ("x", "dz"), noise=2e-4, line=line, arcs=arcs)
+    assumed = Experiment(right.design, right.measurement)
+    found = calibrate(assumed, "gradient", parameters={"edge": (6e3, 24e3)}, identify=False)
+    (fit,) = found.fits
+    assert caution in fit.caution
+    assert fit.is_systematic == bool(caution)
+    assert caution in found.card("x").caution
+    if caution:
+        assert "the marks were on the lower edge" in fit.caution
 
 
 @pytest.fixture(scope="module")

@@ -28,6 +28,16 @@ def test_units_comments_and_spaces():
     np.testing.assert_allclose(seen.values, [[0.028, -0.009]])
 
 
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_spreadsheets_with_decimal_commas_read_as_those_with_points(separator):
+    text = "\ufeff ,probe,dz_mm,note\n1,tip,-12.5,1:2\n2,knee,-3e-1,\n"
+    seen = read_measurement(text.replace(",", separator).replace(".", ","))
+    expected = read_measurement(text)
+    assert seen.probes == expected.probes == ("tip", "knee")
+    np.testing.assert_array_equal(seen.values, expected.values)
+    np.testing.assert_array_equal(seen.values[:, 0], [-0.0125, -0.0003])
+
+
 def test_paper_beams_read_as_they_are():
     tips = {"00-20": 0.085266843, "00-30": 0.07699792, "00-50": 0.057872995}
     for name, sag in tips.items():
@@ -62,7 +72,8 @@ def test_one_of_several_materials():
         ("probe,dz_mm\ntip,-3 mm\n", r'"-3 mm" is not a number'),
         ("probe,dz_mm\na,-1\nb\n", r"line 3: has 1 cells.*may have been cut off"),
         ("probe,dz_mm\na,-1,5\nb,-2\n", r"line 2: has 3 cells.*decimal points"),
-        ("probe;dz_mm\na;-1,5\n", "not separated by commas"),
+        ("probe;dz_mm\na;-1,5,2\n", '"-1,5,2" is not a number'),
+        (" ,X,Y\n1,12.5,40.1\n", r"X and Y are places in a picture.*picture's Y points down"),
         ("probe,dz\ntip,-1\n", r'has no unit. Try: write "dz_mm"'),
         ("probe,dz_inch\ntip,-1\n", r'"inch" is not a unit'),
         ("probe,sag_mm\ntip,-1\n", r"column sag_mm: is not known"),

@@ -34,6 +34,15 @@ def scaled(values, factor):
         (["Extension (mm)", "Load (N)"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
         (["displacement_m", "force_mN"], scaled(STRAINS, 0.033), scaled(STRESSES, 18e-3)),
         (["strain [mm/mm]", "stress (N/mm^2)"], STRAINS, scaled(STRESSES, 1e-6)),
+        (["Dehnung [%]", "Spannung [MPa]"], scaled(STRAINS, 100), scaled(STRESSES, 1e-6)),
+        (["Weg (mm)", "Kraft (N)"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
+        (["Standardweg_mm", "Standardkraft_N"], scaled(STRAINS, 33), scaled(STRESSES, 18e-6)),
+        (
+            ["Standard travel (mm)", "Standard force (N)"],
+            scaled(STRAINS, 33),
+            scaled(STRESSES, 18e-6),
+        ),
+        (["Verlängerung (mm)", "Stress (Pa)"], scaled(STRAINS, 33), STRESSES),
     ],
 )
 def test_names_and_units_are_understood(heads, strains, stresses):
@@ -50,6 +59,26 @@ def test_decimal_commas_unit_rows_and_other_columns():
     curve = read_curve(text)
     np.testing.assert_allclose(curve.strain, [(i + 0.5) / 100 for i in range(6)])
     np.testing.assert_allclose(curve.stress, [2e3 * i + 250 for i in range(6)])
+
+
+def test_the_line_above_the_numbers_is_named_where_no_header_is_known():
+    text = "Sample;Ecoflex batch 7\nTemperatur;23\n\nAllongement;Contrainte\n(%);(kPa)\n0;0\n1;2\n"
+    with pytest.raises(MeasurementError, match='no column of stress among "Allongement", "Contr'):
+        read_curve(text)
+
+
+def test_a_preamble_without_separators_hides_no_commas():
+    text = "Batch 7\n\nstrain,stress_Pa\n" + "".join(f"0.{i},{i}\n" for i in range(6))
+    np.testing.assert_array_equal(read_curve(text).stress, range(6))
+
+
+def test_a_preamble_above_german_columns_is_passed_over():
+    text = "Sample;Ecoflex batch 7\n\nZeit;Weg;Kraft\ns;mm;N\n" + "".join(
+        f"{i};{3.3 * i:.1f};{1.8 * i:.1f}\n".replace(".", ",") for i in range(6)
+    )
+    curve = read_curve(text, area=18e-6, length=33e-3)
+    np.testing.assert_allclose(curve.strain, [0.1 * i for i in range(6)], atol=1e-12)
+    np.testing.assert_allclose(curve.stress, [1e5 * i for i in range(6)])
 
 
 def test_the_database_s_own_form():

@@ -39,7 +39,9 @@ def accelerations(designs, friction, degrees=20.0, step=5e-3):
 
 
 def test_a_ball_rolls_where_friction_is_enough(designs):
-    along, around, slip = accelerations(designs, 0.5)
+    # When a facet lands within a step is chance, which may cost a run some percent: the median.
+    runs = [accelerations(designs, 0.5, step=step) for step in (5e-3, 4e-3, 2.5e-3)]
+    along, around, slip = (float(each) for each in np.median(runs, axis=0))
     expected = 5.0 / 7.0 * GRAVITY * math.sin(math.radians(20.0))
     # Facets of h = 0.67 mm land on the plane, each of which takes m (v h/R)²/2: after a way L that
     # is 5/7 L h/R² of the acceleration, up to 6 % after the 12 mm here and less before.

@@ -1,4 +1,4 @@
-"""Measurements from tables: comma-separated text with units in the names of the columns."""
+"""Measurements from tables of text, with units in the names of the columns."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ ARC: Final = "arc_position_from_clamp"
 UNITS: Final = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
 _LABELS: Final = ("probe", "material", "note")
 _WITH_UNIT: Final = re.compile(rf"({ARC}|d?[xyz])(?:_(.*))?")
+_COMMA: Final = re.compile(r"[+-]?\d*,\d*(e[+-]?\d+)?", re.IGNORECASE)
 _ALLOWED: Final = (
     f"columns are probe or {ARC}_mm for the station, x_mm, y_mm, z_mm for positions relative to "
     "the clamp face, dx_mm, dy_mm, dz_mm for displacements (units: _m, _cm, _mm), "
@@ -32,15 +33,20 @@ class _Row:
 
 
 def read_measurement(text: str, *, name: str = "table", select: str | None = None) -> Measurement:
-    r"""Read one measurement from comma-separated text.
+    r"""Read one measurement from text with commas, semicolons or tabs between columns.
+
+    Beside semicolons and tabs, numbers may have decimal commas, as spreadsheets write them in much
+    of Europe.
 
     Lines that start with ``#`` are comments; they say where the data come from and become the
     measurement's source. The first other line names the columns:
 
-    - the station: ``probe`` (a probe of the design) or ``arc_position_from_clamp_m``;
+    - the station: ``probe`` (a probe of the design) or ``arc_position_from_clamp_m``, on the
+      lower edge unless a calibration is given another line;
     - what was seen: ``x_m``, ``y_m``, ``z_m``, positions relative to the clamp face, and
       ``dx_m``, ``dy_m``, ``dz_m``, displacements; either may be ``_mm`` or ``_cm``;
-    - ``material``, where one table holds several; ``note``, which is not read.
+    - ``material``, where one table holds several; ``note``, which is not read, as columns without
+      a name are not.
 
     Parameters
     ----------
@@ -69,13 +75,16 @@ def read_measurement(text: str, *, name: str = "table", select: str | None = Non
     (('tip',), -0.0125, 'me, 2026, CC0')
     """
     _refuse_binary(text, name)
-    numbered = list(enumerate(text.splitlines(), start=1))
+    numbered = list(enumerate(text.removeprefix("\ufeff").splitlines(), start=1))
     comments = [line.lstrip("# ").rstrip() for _, line in numbered if line.startswith("#")]
     lines = [(at, line) for at, line in numbered if line.strip() and not line.startswith("#")]
     if not lines:
         raise MeasurementError(name, "holds no table", _ALLOWED)
-    columns = _columns(lines[0][1], name)
-    rows = _selected(list(_rows(lines[1:], columns, name)), columns, select, name)
+    header = lines[0][1]
+    separator = max(",;\t", key=header.count)
+    columns = _columns(_cells(header, separator), name)
+    rows = list(_rows(lines[1:], columns, separator, name))
+    rows = _selected(rows, columns, select, name)
     source = " ".join(comment for comment in comments if comment)
     return _measurement(rows, columns, source, name)
 
@@ -85,15 +94,22 @@ def _refuse_binary(text: str, name: str) -> None:
         raise MeasurementError(name, "is not a text file", "save the table as CSV")
 
 
-def _columns(header: str, name: str) -> list[str]:
-    if ";" in header or "\t" in header:
-        raise MeasurementError(
-            f"{name}, header", "columns are not separated by commas", "save as CSV, decimal points"
+def _cells(line: str, separator: str) -> list[str]:
+    return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+
+
+def _columns(columns: list[str], name: str) -> list[str]:
+    if {"X", "Y"} <= {*columns}:
+        what = "X and Y are places in a picture, as ImageJ measures them, and name no station"
+        hint = (
+            f"add a column probe or {ARC}_mm, call X x_mm, measured from the clamp face, and Y "
+            "dz_mm, the displacement upward (a picture's Y points down)"
         )
-    columns = [cell.strip() for cell in header.split(",")]
-    for column in columns:
+        raise MeasurementError(f"{name}, header", what, hint)
+    named = [column for column in columns if column]
+    for column in named:
         _check_column(column, name)
-    bare = [_stem(column) for column in columns]
+    bare = [_stem(column) for column in named]
     twice = next((column for column in bare if bare.count(column) > 1), None)
     if twice:
         raise MeasurementError(f"{name}, header", f'"{twice}" comes twice', "keep one of them")
@@ -126,16 +142,22 @@ def _stem(column: str) -> str:
     return column if column in _LABELS else column.rpartition("_")[0]
 
 
-def _rows(lines: Sequence[tuple[int, str]], columns: list[str], name: str) -> Iterator[_Row]:
+def _rows(
+    lines: Sequence[tuple[int, str]], columns: list[str], separator: str, name: str
+) -> Iterator[_Row]:
     for at, line in lines:
-        cells = [cell.strip() for cell in next(csv.reader([line]))]
+        cells = _cells(line, separator)
         if len(cells) != len(columns):
             last = at == lines[-1][0] and len(cells) < len(columns)
             raise MeasurementError(
                 f"{name}, line {at}",
                 f"has {len(cells)} cells; there are {len(columns)} columns",
-                "the file may have been cut off" if last else "use decimal points, not commas",
+                "the file may have been cut off"
+                if last
+                else "use decimal points, or semicolons between columns",
             )
+        if separator != ",":
+            cells = [cell.replace(",", ".") if _COMMA.fullmatch(cell) else cell for cell in cells]
         yield _Row(at, dict(zip(columns, cells, strict=True)))
 
 

@@ -21,7 +21,9 @@ def calibrate(
     data: Annotated[
         list[Path],
         typer.Argument(
-            help="Measured data (CSV), one file or several.", exists=True, dir_okay=False
+            help="Measured data (CSV), one file or several; arc positions are on the lower edge.",
+            exists=True,
+            dir_okay=False,
         ),
     ],
     method: Annotated[
@@ -90,3 +92,9 @@ def _show(answer: Calibration) -> None:
         for name, value in answer.parameters.items()
     ]
     show_table("Parameters", ["name", "value", "what the data say"], rows)
+    for fit in answer.fits:
+        if fit.experiment.measurement.arcs is not None:
+            where = fit.experiment.line.replace("-", " ")
+            say(f"{plain(fit.experiment.name)}: arc positions are on the {where}")
+        if fit.caution:
+            say(f"[yellow]warning[/yellow] {plain(fit.caution)}")

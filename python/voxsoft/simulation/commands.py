@@ -64,6 +64,7 @@ class LoadCommands:
                 where = f"activations[{index}].history"
                 what = "is not used by a simulator, which keeps activations as they are"
                 raise DesignError(where, what, "leave it out, or use vs.simulate")
+        self._tendons = [tendon.name for tendon in design.tendons]
         self._loads: tuple[AnyLoad, ...] = tuple(design.loads)
         self.names = _names(self._readings)
 
@@ -141,8 +142,12 @@ class LoadCommands:
         for known in ([*self.names], places):
             if isinstance(name, str) and name in known:
                 return known.index(name)
+        if name in self._tendons:
+            what = f'"{name}" is a tendon, and a simulator commands loads'
+            hint = "it pulls as the design says; a history of it is followed by vs.simulate"
+            raise DesignError("loads", what, hint)
         if not self._loads:
-            raise DesignError("loads", "the design has none", "add one under [[loads]]")
+            raise DesignError("loads", f'"{name}" is no load: the design has none', "call step()")
         raise DesignError("loads", f'"{name}" is no load', closest(str(name), self.names))
 
     def _value(self, index: int, name: LoadName, value: object) -> Value:

@@ -2,6 +2,9 @@
 import { Component, type ReactNode } from "react";
 import { Button, Empty } from "../controls/Choice";
 
+const NO_WEBGL =
+  "This browser draws no WebGL, which bodies are drawn by. Turn on hardware acceleration or WebGL in its settings, or take another browser.";
+
 interface FenceProps {
   children: ReactNode;
   /** What to show instead; `again` tries what stood there once more. */
@@ -39,15 +42,20 @@ export function PaneFence(props: { title: string; children: ReactNode }) {
 }
 
 /** The last resort: an error that no pane has held, as one while a pane is taken away. */
-export function PageFence(props: { children: ReactNode; resetLayout?: () => void }) {
-  const { resetLayout } = props;
+export function PageFence(props: {
+  children: ReactNode;
+  /** Where the design and its runs are now, and what else may help. */
+  comfort: string;
+  resetLayout?: () => void;
+}) {
+  const { comfort, resetLayout } = props;
   return (
     <Fence
       instead={(error) => (
         <div className="page-fence" role="alert" data-testid="page-fence">
           <Empty title="The page stopped working">
             <p>{error.message}</p>
-            <p>The design and all runs are safe: VoxSoft keeps each change as it is made.</p>
+            <p>{/webgl/i.test(error.message) ? NO_WEBGL : comfort}</p>
             <Button kind="primary" onClick={() => location.reload()}>
               Reload
             </Button>

@@ -17,7 +17,7 @@ const root = createRoot(document.getElementById("root") as HTMLElement);
 const packed = document.getElementById("voxsoft-scene")?.textContent?.trim() ?? "";
 if (packed) connect(new WasmEngine(new CoreWorker(), bytesOf(core), bytesOf(packed)));
 root.render(
-  <PageFence>
+  <PageFence comfort="The body is in this file and stays as it was exported; motion since then is lost.">
     <Viewer empty={!packed} />
   </PageFence>,
 );

@@ -17,14 +17,28 @@ from voxsoft.materials.homogeneous import Mode
 from voxsoft.materials.hyperelastic import Floats
 from voxsoft.units import format_quantity, parse, to_si
 
+# English and German, as the machines of Instron, MTS, Shimadzu and ZwickRoell name them.
+# "Travel" is the crosshead's; compression, whose sign differs between machines, is not guessed.
 _NAMES: Final = {
-    "strain": ("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
+    "strain": (
+        *("strain", "eng strain", "engineering strain", "nominal strain", "tensile strain"),
+        *("dehnung", "technische dehnung", "nenndehnung"),
+    ),
     "stretch": ("stretch", "stretch ratio", "lambda"),
-    "displacement": ("displacement", "extension", "elongation", "crosshead"),
-    "stress": ("stress", "eng stress", "engineering stress", "nominal stress", "tensile stress"),
-    "force": ("force", "load"),
+    "displacement": (
+        *("displacement", "extension", "tensile extension", "elongation", "crosshead", "stroke"),
+        *("standard travel", "weg", "standardweg", "traversenweg", "verlängerung"),
+    ),
+    "stress": (
+        *("stress", "eng stress", "engineering stress", "nominal stress", "tensile stress"),
+        *("spannung", "technische spannung", "nennspannung", "zugspannung"),
+    ),
+    "force": ("force", "load", "tensile load", "standard force", "kraft", "standardkraft"),
 }
-_TRUE: Final = ("true strain", "log strain", "true stress", "cauchy stress")
+_TRUE: Final = (
+    *("true strain", "log strain", "true stress", "cauchy stress"),
+    *("wahre dehnung", "wahre spannung"),
+)
 _STRAINS: Final = ("strain", "stretch", "displacement")
 _STRESSES: Final = ("stress", "force")
 _KIND: Final = {"displacement": "length", "stress": "pressure", "force": "force"}
@@ -156,8 +170,8 @@ def _rows(text: str, name: str) -> tuple[str, list[list[str]]]:
     if len(text) > _LARGEST_TEXT or "\0" in text:
         raise MeasurementError(name, "is not a table of text", "save the table as CSV")
     lines = text.lstrip("\ufeff").splitlines()
-    head = next((line for line in lines if line.strip()), "")
-    separator = max(";\t,", key=head.count)
+    # Lines above the header may have none; where commas are in numbers, the other is in all lines.
+    separator = max(";\t,", key=lambda each: sum(each in line for line in lines[:100]))
     try:
         rows = list(csv.reader(io.StringIO("\n".join(lines)), delimiter=separator))
     except csv.Error as error:
@@ -176,8 +190,9 @@ def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Co
         along = _one_of(columns, _STRESSES, f"{name}, line {at + 1}")
         if across and along:
             return at, across, along
-    heads = [cell.strip() for cell in rows[first] if cell.strip()]
-    found = [column for i, cell in enumerate(rows[first]) if (column := _column(i, cell))]
+    likely = rows[_above_numbers(rows, first)]
+    heads = [cell.strip() for cell in likely if cell.strip()]
+    found = [column for i, cell in enumerate(likely) if (column := _column(i, cell))]
     missing = [
         f"no column of {what}"
         for what, names in (("strain", _STRAINS), ("stress", _STRESSES))
@@ -188,6 +203,27 @@ def _header(rows: Sequence[Sequence[str]], name: str) -> tuple[int, _Column, _Co
     if any(_split(head)[0] in _TRUE for head in heads):
         hint = "expected engineering quantities: stress = true stress/stretch, strain = stretch - 1"
     raise MeasurementError(name, f"{' and '.join(missing)} among {came}", hint)
+
+
+def _above_numbers(rows: Sequence[Sequence[str]], first: int) -> int:
+    """Find the line that is most likely meant as the header: above numbers and their units."""
+    filled = [at for at in range(first, len(rows)) if any(cell.strip() for cell in rows[at])]
+    numbers = next((n for n, at in enumerate(filled) if all(map(_is_number, rows[at]))), 0)
+    above = [at for at in filled[:numbers] if not all(map(_is_unit, rows[at]))]
+    return above[-1] if above else first
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell.replace(",", ".") or "0")
+    except ValueError:
+        return False
+    return True
+
+
+def _is_unit(cell: str) -> bool:
+    unit = cell.strip(" ()[]").lower()
+    return unit in (*_NO_UNIT, *_PERCENT, *_CASELESS, "s", "min")
 
 
 def _one_of(columns: Sequence[_Column], names: Sequence[str], where: str) -> _Column | None:
